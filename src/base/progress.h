@@ -1,0 +1,32 @@
+/* progress.h - one line of progress on stderr for anything that takes over a second.
+ *
+ * On a terminal the line is rewritten in place, elsewhere a line is printed every 10 s. Nothing on stdout. */
+#ifndef BASE_PROGRESS_H
+#define BASE_PROGRESS_H
+
+#include <stdbool.h>
+
+struct progress {
+    const char *what;  /* borrowed */
+    double total;      /* units of work, > 0 */
+    double start;      /* host seconds */
+    double last;       /* host seconds of the last line */
+    bool quiet, tty, shown;
+};
+
+/* progress_make: begin; `quiet` shows nothing ever. */
+struct progress progress_make(const char *what, double total, bool quiet);
+
+/* progress_show: `done` of the total is finished; prints percent, rate and time left when it is time to. */
+void progress_show(struct progress *p, double done);
+
+/* progress_end: remove the line on a terminal. */
+void progress_end(struct progress *p);
+
+/* host_seconds: monotonic wall clock of the host [s]; for progress and cost reports, never for a result. */
+double host_seconds(void);
+
+/* host_peak_bytes: largest resident set of this process so far [B]. */
+long host_peak_bytes(void);
+
+#endif

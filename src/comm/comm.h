@@ -1,0 +1,90 @@
+/* comm.h - the only face of the machine that a kernel sees: ranks, messages, computing, stages.
+ *
+ * A kernel written against this header runs on virtual processors (room vp), on one rank without any simulator
+ * (comm_serial.h), and could run on MPI. Messages match by (source, tag) in the order sent, as MPI's; there is no
+ * wildcard. Peers that do not exist are errors of the kernel (CHECK). */
+#ifndef COMM_COMM_H
+#define COMM_COMM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/work.h"
+
+struct comm;
+
+/* A pending operation. Zero-initialised ones are complete. Owned by the kernel, usually on its stack; it must stay
+ * in place until its wait returns. */
+struct comm_request {
+    void *buffer;                /* receive: where the bytes go */
+    int64_t bytes;
+    int peer, tag;
+    int active;                  /* 0: complete or never started */
+    void *detail;                /* of the implementation */
+    const char *file;            /* where in the kernel it was posted, for the deadlock report */
+    int line;
+};
+
+struct comm_type {
+    const char *name;
+    void (*isend)(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r);
+    void (*irecv)(struct comm *c, int src, int tag, void *buffer, int64_t bytes, struct comm_request *r);
+    void (*wait)(struct comm *c, struct comm_request *r);
+    void (*barrier)(struct comm *c);
+    void (*work)(struct comm *c, const struct work *w);
+    void (*stage)(struct comm *c, int stage);
+    int64_t (*now_ps)(struct comm *c);
+};
+
+/* Every implementation's struct begins with this. */
+struct comm {
+    const struct comm_type *type;
+    int rank, size;
+    const char *file;            /* call site of the operation in progress, set by the macros below */
+    int line;
+};
+
+/* comm_rank, comm_size: 0 .. size-1. */
+static inline int comm_rank(const struct comm *c) { return c->rank; }
+static inline int comm_size(const struct comm *c) { return c->size; }
+
+/* comm_isend: start sending `bytes` bytes of `data` to `dst` with `tag` (>= 0). The data are copied before return;
+ * r completes when the sender's software is done with the message. r may be NULL for an eager, forgotten send. */
+#define comm_isend(c, dst, tag, data, bytes, r)                                                                        \
+    ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->isend((c), (dst), (tag), (data), (bytes), (r)))
+
+/* comm_irecv: post a receive of exactly `bytes` bytes from `src` with `tag` into `buffer`, valid until its wait. */
+#define comm_irecv(c, src, tag, buffer, bytes, r)                                                                      \
+    ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->irecv((c), (src), (tag), (buffer), (bytes), (r)))
+
+/* comm_wait: return when r is complete; a receive's data are then in its buffer and o_r is charged. */
+#define comm_wait(c, r) ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->wait((c), (r)))
+
+/* comm_waitall: wait for n requests in the order given. */
+#define comm_waitall(c, n, r)                                                                                          \
+    do {                                                                                                               \
+        for (int comm_i_ = 0; comm_i_ < (n); comm_i_++) comm_wait((c), &(r)[comm_i_]);                                 \
+    } while (0)
+
+/* comm_send: a send whose completion nobody waits for. comm_recv: irecv and wait. */
+#define comm_send(c, dst, tag, data, bytes) comm_isend((c), (dst), (tag), (data), (bytes), NULL)
+#define comm_recv(c, src, tag, buffer, bytes)                                                                          \
+    do {                                                                                                               \
+        struct comm_request comm_r_;                                                                                   \
+        comm_irecv((c), (src), (tag), (buffer), (bytes), &comm_r_);                                                    \
+        comm_wait((c), &comm_r_);                                                                                      \
+    } while (0)
+
+/* comm_barrier: return when every rank has entered; hardware barrier or messages, as the machine has it. */
+#define comm_barrier(c) ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->barrier((c)))
+
+/* comm_work: advance this rank's clock by what `w` costs on the node, and count it. */
+static inline void comm_work(struct comm *c, const struct work *w) { c->type->work(c, w); }
+
+/* comm_stage: the following time belongs to stage number `stage` (index into the kernel's list of stage names). */
+static inline void comm_stage(struct comm *c, int stage) { c->type->stage(c, stage); }
+
+/* comm_now_ps: this rank's clock [ps]; 0 where nothing is simulated. For micro-benchmarks. */
+static inline int64_t comm_now_ps(struct comm *c) { return c->type->now_ps(c); }
+
+#endif

@@ -1,0 +1,69 @@
+/* kernel.h - the table of kernels: parallel programs written against comm.h alone.
+ *
+ * A job is one evaluation shared by all ranks: what is given is read-only, each rank writes only its own bodies'
+ * answers into the output arrays. (The gathering of answers for the check costs no simulated time.) */
+#ifndef KERNEL_KERNEL_H
+#define KERNEL_KERNEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "comm/comm.h"
+#include "spec/run_spec.h"
+
+struct model;
+struct state;
+
+struct kernel_job {
+    const struct run_spec *spec;
+    const struct model *model;   /* NULL for kernels that need none (micro-benchmarks) */
+    const struct state *state;   /* q, qd, qdd, tau, external forces */
+    int nrank;
+    const void *shared;          /* what prepare made: partition tables, constant inertias; read-only */
+    double *tau;                 /* out (nu): inverse dynamics, model order; NULL if the task has none */
+    double *qdd;                 /* out (nu): forward dynamics; NULL if the task has none */
+    double *q_end, *qd_end;      /* out: state after the last time step; NULL when steps = 0 */
+    double *lambda;              /* out: loop forces; NULL without loops */
+    double *measured;            /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
+    double *residual;            /* out (nrank): largest constraint residual seen by each rank, relative */
+};
+
+/* What a run will cost, known before it runs (mimdsim explain). */
+struct kernel_estimate {
+    double messages, bytes;      /* sent, all ranks */
+    double flops;                /* all ranks */
+    double rank_bytes;           /* host memory per rank, workspace and messages in flight */
+};
+
+struct kernel_type {
+    const char *name;
+    const char *title;                    /* one line for people */
+    bool needs_model;
+    bool does_inverse, does_forward;
+    int nstage;
+    const char *const *stage_name;        /* (nstage) */
+
+    /* accepts: false with ERR_CONFIG when this kernel cannot run the spec (n < P, wrong model). */
+    bool (*accepts)(const struct run_spec *spec, const struct model *model, struct err *e);
+
+    /* prepare: tables shared by all ranks, from `a`, into job->shared; costs no simulated time. */
+    bool (*prepare)(struct kernel_job *job, struct arena *a, struct err *e);
+
+    /* workspace_bytes: private memory of rank `rank`; given zeroed to run. */
+    size_t (*workspace_bytes)(const struct kernel_job *job, int rank);
+
+    /* run: the program of one rank. */
+    void (*run)(struct comm *c, const struct kernel_job *job, void *workspace);
+
+    /* estimate: counts by formula, without running. */
+    void (*estimate)(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+};
+
+/* kernel_find: by name; NULL when there is none. kernel_list: all of them, (*n) pointers. */
+const struct kernel_type *kernel_find(const char *name);
+const struct kernel_type *const *kernel_list(int *n);
+
+#endif

@@ -1,0 +1,53 @@
+/* real.h - the scalar of the numerics: one source, three precisions, chosen by the build of each archive.
+ *
+ * Files of linalg, mech and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128. Their public
+ * names carry the precision (REAL_NAME); a header renames them right under each prototype's comment, so that the
+ * plain name always means "in this file's precision". Without REAL_BITS it is double. Answers of another precision
+ * are reached through const tables of functions (dynamics_table.h, kernel.h). */
+#ifndef LINALG_REAL_H
+#define LINALG_REAL_H
+
+#ifndef REAL_BITS
+#define REAL_BITS 64
+#endif
+
+#if REAL_BITS == 32
+#include <math.h>
+typedef float real;
+#define REAL_NAME(name) name##_f32
+#define REAL_EPSILON 1.1920929e-07f
+#define real_sqrt sqrtf
+#define real_fabs fabsf
+#define real_sin sinf
+#define real_cos cosf
+#define real_exp expf
+#elif REAL_BITS == 64
+#include <math.h>
+typedef double real;
+#define REAL_NAME(name) name##_f64
+#define REAL_EPSILON 2.2204460492503131e-16
+#define real_sqrt sqrt
+#define real_fabs fabs
+#define real_sin sin
+#define real_cos cos
+#define real_exp exp
+#elif REAL_BITS == 128
+typedef __float128 real;
+#define REAL_NAME(name) name##_f128
+#define REAL_EPSILON 1.92592994438723585305597794258492732e-34Q
+/* libquadmath; declared here because its header belongs to gcc alone. */
+__float128 sqrtq(__float128);
+__float128 fabsq(__float128);
+__float128 sinq(__float128);
+__float128 cosq(__float128);
+__float128 expq(__float128);
+#define real_sqrt sqrtq
+#define real_fabs fabsq
+#define real_sin sinq
+#define real_cos cosq
+#define real_exp expq
+#else
+#error "REAL_BITS must be 32, 64 or 128"
+#endif
+
+#endif

@@ -1,0 +1,50 @@
+/* topology.h - routers, links and routes of every family; no time in here.
+ *
+ * Nodes hang on routers (`nodes_per_router`), ranks on the processors of nodes (placement.h). A route is a sequence
+ * of directed links. Dimension 0 is fastest in the numbering: router = x0 + k0 (x1 + k1 (x2 ...)). */
+#ifndef MACHINE_TOPOLOGY_H
+#define MACHINE_TOPOLOGY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "spec/machine_spec.h"
+
+/* A directed link between two routers, one step of a route. */
+struct hop {
+    int link;      /* 0 .. nlink-1 */
+    int vc_class;  /* dateline class to use on it, 0 .. nclass-1 */
+};
+
+struct topology {
+    const struct topology_spec *spec; /* borrowed */
+    int nnode, nrouter, nlink;        /* links are directed */
+    int nclass;                       /* virtual-channel classes that its routes need to be free of deadlock */
+    int max_hops;                     /* longest route in links */
+    const struct topology_type *type;
+    void *state;                      /* of the family */
+};
+
+/* topology_create: the network of `s`, memory from `a`. Returns NULL with ERR_CONFIG when the numbers do not fit. */
+struct topology *topology_create(const struct topology_spec *s, struct arena *a, struct err *e);
+
+/* topology_route: the links from node `src` to node `dst` into route[max_hops]; returns how many (0: same router).
+ * `choice` selects among equally good random routes where the family has them (Valiant), else ignored. */
+int topology_route(const struct topology *t, int src, int dst, uint64_t choice, struct hop *route);
+
+/* topology_distance: number of links of that route without writing it. */
+int topology_distance(const struct topology *t, int src, int dst);
+
+/* topology_link_ends: the routers that directed link `link` joins, and its input-port number at *to's router
+ * (dimension order: from +, from - of dimension 0, then 1, ...; injection is last). */
+void topology_link_ends(const struct topology *t, int link, int *from, int *to, int *port);
+
+/* topology_link_bandwidth: rate of a link relative to the machine's link rate (1 unless the file says otherwise). */
+double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth);
+
+/* topology_router_of: the router of node `node`. */
+int topology_router_of(const struct topology *t, int node);
+
+#endif

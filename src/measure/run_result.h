@@ -1,0 +1,94 @@
+/* run_result.h - everything that one run tells us, as plain data: how it ended, times, counts, errors.
+ *
+ * For every rank the times of all its stages add up exactly, in integer picoseconds, to the makespan. */
+#ifndef MEASURE_RUN_RESULT_H
+#define MEASURE_RUN_RESULT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/work.h"
+
+enum run_status { RUN_OK, RUN_INVALID, RUN_DEADLOCK, RUN_FAILED };
+
+enum { RUN_MAX_STAGES = 16, RUN_MAX_BASELINES = 16, RUN_MAX_ERRORS = 16 };
+
+/* Where the time of one rank went in one stage [ps], and what it sent. */
+struct stage_time {
+    int64_t compute_ps;
+    int64_t send_ps;        /* send overhead, copies, back-pressure of the sender's software */
+    int64_t recv_ps;        /* receive overhead and copies */
+    int64_t wait_ps;        /* waiting that an uncontended network would also have caused, and idling at the end */
+    int64_t contention_ps;  /* further waiting: links, ports, servers shared with other messages */
+    int64_t messages;       /* sent */
+    int64_t bytes;          /* sent */
+    struct work work;
+};
+
+/* A slice of one rank's timeline, when spans are recorded. */
+enum span_kind { SPAN_COMPUTE, SPAN_SEND, SPAN_RECV, SPAN_WAIT, SPAN_BARRIER };
+struct span {
+    int rank, stage;
+    enum span_kind kind;
+    int64_t begin_ps, end_ps;
+    int peer;               /* the other rank, -1: none */
+    int64_t bytes;
+    int64_t message;        /* number that pairs a send with its receive, -1: none */
+};
+
+struct link_load {
+    int from, to;           /* routers; -1 marks a node's injection or ejection */
+    int node;               /* of an injection or ejection resource, else -1 */
+    int64_t messages, bytes;
+    int64_t busy_ps;        /* time in use */
+    int64_t queue_ps;       /* sum over messages of the time spent waiting for it */
+};
+
+/* A serial code whose predicted time on one node the speedup is measured against. */
+struct baseline {
+    char name[40];          /* "rnea+aba", "parallel work on one processor", ... */
+    int64_t time_ps;
+    struct work work;
+};
+
+/* One number checked against an independent reference. */
+struct error_check {
+    char quantity[24];      /* "tau", "qdd" */
+    char reference[24];     /* "rnea", "aba" */
+    double relative;        /* max |x - ref| / max |ref| */
+    double tolerance;       /* above: the run is RUN_INVALID */
+};
+
+struct run_result {
+    enum run_status status;
+    char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
+
+    int64_t makespan_ps;
+    int nrank, nstage;
+    char stage_name[RUN_MAX_STAGES][24];
+    struct stage_time *stage;  /* (nrank x nstage), in the run's arena */
+    int64_t *finish_ps;        /* (nrank) when each rank ended, in the run's arena */
+
+    int nbaseline;
+    struct baseline baseline[RUN_MAX_BASELINES];
+    int nerror;
+    struct error_check error[RUN_MAX_ERRORS];
+
+    int64_t messages, bytes;   /* sent, all ranks */
+    int64_t events;            /* dispatched by the simulator */
+    int64_t ties;              /* events that shared their time with the one before */
+    int64_t switches;          /* of fibers */
+    uint64_t digest;           /* of all matched messages and clocks: same input, same digest */
+
+    int64_t nspan;
+    struct span *span;         /* in the run's arena, NULL unless recorded */
+    int nlink;
+    struct link_load *link;    /* in the run's arena, NULL unless recorded */
+
+    int64_t stack_peak_bytes;  /* deepest fiber stack */
+    double host_s;             /* wall time of the simulation proper; the only host-dependent numbers here */
+    double host_total_s;       /* with model, references and checks */
+    int64_t host_peak_bytes;
+};
+
+#endif

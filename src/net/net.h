@@ -1,0 +1,67 @@
+/* net.h - what every network level provides: messages in, arrival times out.
+ *
+ * Contract with the virtual processors: net_send is called with an injection-ready time that is never earlier than
+ * the time of the event being dispatched. The level answers through `deliver`, either at once (the time is known:
+ * loggp) or from an event. `arrival` is when the tail is in the destination's memory, before o_r. All nodes and
+ * links are reached through arguments; there is no global state. Semantics of the levels: docs/network.md. */
+#ifndef NET_NET_H
+#define NET_NET_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "measure/run_result.h"
+#include "sim/sim.h"
+#include "spec/machine_spec.h"
+
+struct topology;
+struct net;
+
+/* One message on its way; embedded in the mailbox's own struct, which stays in place until deliver. */
+struct net_message {
+    int src, dst;            /* nodes (not ranks, not routers) */
+    int64_t bytes;           /* payload >= 0 */
+    int64_t id;              /* unique and deterministic: breaks ties; (source, count) order */
+    sim_ps ready;            /* when the source may start injecting */
+    sim_ps injected;         /* out: when injection began */
+    sim_ps arrival;          /* out: when the tail arrived */
+    sim_ps uncontended;      /* out: when it would have arrived had no other message (of another rank) been in its way;
+                                the sender's own gap g and port are part of it, as in LogGP */
+};
+
+typedef void net_deliver_fn(void *context, struct net_message *m);
+
+struct net_type {
+    const char *name;
+    enum network_level level;
+    bool (*create)(struct net *n, struct err *e);
+    void (*send)(struct net *n, struct net_message *m);
+    bool (*stuck)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
+};
+
+/* net_create: the level of `m->network` over `t`.
+ *
+ *   m, t, s, a  borrowed for the life of the net; memory comes from a, events go to s
+ *   deliver     called once per message with `context`
+ *   want_links  record link_load
+ *
+ *   Returns NULL with ERR_CONFIG when the level cannot run on this machine (buffer too small, ...). */
+struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
+                       net_deliver_fn *deliver, void *context, bool want_links, struct err *e);
+
+/* net_send: hand over a message; see the contract above. m is borrowed until deliver. */
+void net_send(struct net *n, struct net_message *m);
+
+/* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
+sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
+
+/* net_stuck: true when messages are in the network but no event can move them; `text` (size bytes) then names the
+ * cycle of links. */
+bool net_stuck(const struct net *n, char *text, int size);
+
+/* net_links: the loads recorded so far, (*nlink) entries in the arena; 0 when not recorded. */
+const struct link_load *net_links(const struct net *n, int *nlink);
+
+#endif

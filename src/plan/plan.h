@@ -1,0 +1,64 @@
+/* plan.h - scenario and machine files, sweeps and overrides, resolved to an array of run_spec. Strings end here. */
+#ifndef PLAN_PLAN_H
+#define PLAN_PLAN_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "base/text.h"
+#include "spec/run_spec.h"
+
+struct plan_options {
+    const char *machine;        /* --machine NAME or file, NULL: the scenario's */
+    int nset;
+    const char *const *set;     /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
+};
+
+struct plan {
+    struct arena *arena;        /* owned; everything below lives in it */
+    char name[64];              /* stem of the scenario file */
+    const char *question;       /* the file's question, one line */
+    int nrun;
+    struct run_spec *run;       /* (nrun) in plan order */
+    int nfigure;
+    const char **figure;        /* (nfigure) figures that the scenario asks for */
+    int nunused;
+    const char **unused;        /* (nunused) "key: reason" of settings that act in no run of this plan */
+};
+
+/* plan_read: read scenario `name` (a path, or the stem of a file in scenarios/). Returns false with ERR_NO_INPUT,
+ * ERR_DATA (file and line) or ERR_CONFIG; *p is then empty. */
+bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e);
+
+/* plan_free: give everything back; accepts an empty plan. */
+void plan_free(struct plan *p);
+
+/* plan_check_file: validate a scenario or machine file (by its content) without running. */
+bool plan_check_file(const char *path, struct err *e);
+
+/* Where one value of a resolved machine comes from. */
+struct origin {
+    const char *key;            /* network.link.bandwidth */
+    const char *value;          /* as printed, with its unit */
+    const char *file;           /* path, "--set" or "default" */
+    int line;
+    const char *evidence;       /* P, PR, D, E or "" */
+    const char *source;         /* citation or arithmetic, "" */
+    double min, max;            /* published range in SI, both 0 when there is none */
+};
+
+/* plan_machine: read machine `name` (a path, or the stem of a file in machines/) with its bases resolved.
+ *
+ *   origin  out  (*norigin) entries in `a`, in field order; may be NULL */
+bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o, struct arena *a,
+                  struct origin **origin, int *norigin, struct err *e);
+
+/* plan_list: stems and titles of the files in machines/ ("machines") or scenarios/ ("scenarios"), sorted. */
+bool plan_list(const char *what, struct arena *a, const char ***stem, const char ***title, int *n, struct err *e);
+
+/* plan_data_dir: the folder that holds machines/, scenarios/ and plots/: $MIMDSIM_DATA, beside the build tree's
+ * binary, or the installed one. */
+const char *plan_data_dir(void);
+
+#endif

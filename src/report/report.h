@@ -1,0 +1,26 @@
+/* report.h - tables and figures out of the database; gnuplot's language lives in plots/ alone. */
+#ifndef REPORT_REPORT_H
+#define REPORT_REPORT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/err.h"
+#include "store/store.h"
+
+/* report_figure: draw figure `name` (plots/NAME.sql + plots/NAME.gp) from `s` into folder `dir` (made if missing):
+ * NAME.csv, NAME.gp, NAME.png, NAME.svg. `data_dir` holds plots/.
+ *
+ *   Returns false with ERR_NO_INPUT (no such figure: nearest name; no rows for it: what to run first), ERR_CREATE, or
+ *   ERR_UNAVAILABLE (gnuplot missing; the CSV and the script are there all the same). */
+bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e);
+
+/* report_figures: the names of all figures in data_dir/plots, sorted; returns how many; names owned by the caller
+ * (free each and the array). */
+int report_figures(const char *data_dir, char ***name);
+
+/* report_query: print the rows of `sql` as an aligned table (or as JSON, one document) on `out`. */
+bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json, FILE *out,
+                  struct err *e);
+
+#endif

@@ -1,0 +1,45 @@
+/* run.h - one run_spec in, one run_result out; campaigns of many on worker processes. */
+#ifndef RUN_RUN_H
+#define RUN_RUN_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "measure/run_result.h"
+#include "spec/run_spec.h"
+
+/* run_one: build the model, run the kernel on the machine, compare with the serial references, fill the baselines.
+ *
+ *   spec  in   resolved
+ *   a     in   memory of the result's arrays; scratch is released
+ *   out   out  always filled when true is returned; a wrong number gives status RUN_INVALID with its text
+ *
+ *   Returns false with ERR_CONFIG, ERR_DATA, ERR_NO_INPUT or ERR_INTERNAL when the run cannot be made. */
+bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e);
+
+/* What `mimdsim explain` shows of one run before it runs. */
+struct run_estimate {
+    int64_t nbody, nu;           /* bodies, degrees of freedom */
+    double messages, bytes, flops;
+    double host_s;               /* estimated wall time */
+    double host_bytes;           /* estimated memory */
+    int nomission;
+    struct omission {
+        char what[48], why[96];
+        bool exact;              /* proof class: bit-identical; otherwise bounded */
+    } omission[16];
+};
+
+/* run_explain: estimate one run without making it. Returns false as run_one. */
+bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e);
+
+/* run_done_fn: called in plan order with each result; return false to stop the campaign. */
+typedef bool run_done_fn(void *context, const struct run_spec *spec, const struct run_result *result);
+
+/* run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
+ * 1: in this process). Results are handed over in plan order, so the outcome does not depend on `workers`. */
+bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet,
+                  run_done_fn *done, void *context, struct err *e);
+
+#endif

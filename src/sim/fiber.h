@@ -1,0 +1,40 @@
+/* fiber.h - functions that can be left and entered again: stackful coroutines on one host thread.
+ *
+ * Stacks come from one mapping, reserved and not committed: only touched pages cost memory. Below each stack lies a
+ * guard page as long as the system allows more mappings, and a canary everywhere, checked when a fiber is left. */
+#ifndef SIM_FIBER_H
+#define SIM_FIBER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/err.h"
+
+struct fiber_pool;
+struct fiber;
+typedef void fiber_fn(void *argument);
+
+/* fiber_pool_create: room for `n` fibers with stacks of `stack_bytes` each (rounded up to pages).
+ * Returns NULL with ERR_INTERNAL when the address space cannot be had. */
+struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e);
+void fiber_pool_destroy(struct fiber_pool *p);
+
+/* fiber_start: make fiber number i (0 .. n-1) ready to run fn(argument) at its first fiber_enter. */
+struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argument);
+
+/* fiber_enter: run f until it leaves or returns; called from outside any fiber. True while f has not returned. */
+bool fiber_enter(struct fiber *f);
+
+/* fiber_leave: go back to the caller of fiber_enter; returns at the next fiber_enter. Called inside f. */
+void fiber_leave(struct fiber *f);
+
+/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole pages (by resident pages). */
+int64_t fiber_pool_stack_peak(const struct fiber_pool *p);
+
+/* fiber_pool_switches: number of fiber_enter calls so far. */
+int64_t fiber_pool_switches(const struct fiber_pool *p);
+
+/* fiber_backend: "fcontext" or "ucontext". */
+const char *fiber_backend(void);
+
+#endif

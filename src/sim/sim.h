@@ -1,0 +1,49 @@
+/* sim.h - simulated time, the event queue and the loop.
+ *
+ * Time is an integer number of picoseconds. Events are dispatched in the total order (time, lane, age): lane says
+ * what kind of thing happens (lower first: arrivals before starts before arbitration), age is the order of posting.
+ * An action may post events at the present time in the present or a later lane, never in the past (CHECK). */
+#ifndef SIM_SIM_H
+#define SIM_SIM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef int64_t sim_ps; /* simulated time [ps] */
+
+#define SIM_NEVER INT64_MAX
+#define SIM_PS_PER_S 1e12
+
+struct sim;
+typedef void sim_action(void *subject, uint64_t argument, sim_ps now);
+
+/* sim_create, sim_destroy: an empty simulation at time 0; the caller owns it. */
+struct sim *sim_create(void);
+void sim_destroy(struct sim *s);
+
+/* sim_at: call action(subject, argument, time) at `time`, in `lane` (0 .. 2^16-1). subject is borrowed until then.
+ *
+ *   key   second part of the lane: orders events of one lane at one time (for example resource and message number);
+ *         equal keys go by age. 0 .. 2^48-1. */
+void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action, void *subject,
+            uint64_t argument);
+
+/* sim_step: dispatch the earliest event; false when there is none. */
+bool sim_step(struct sim *s);
+
+/* sim_next_time: time of the earliest event, SIM_NEVER when there is none. */
+sim_ps sim_next_time(const struct sim *s);
+
+/* sim_now: time of the event being, or last, dispatched [ps]. */
+sim_ps sim_now(const struct sim *s);
+
+/* sim_events, sim_ties, sim_digest: events dispatched; those at the same time and lane as the one before; and the
+ * fingerprint of (time, lane, key) of all of them in order. */
+int64_t sim_events(const struct sim *s);
+int64_t sim_ties(const struct sim *s);
+uint64_t sim_digest(const struct sim *s);
+
+/* sim_from_seconds: nearest picosecond of a duration in seconds, >= 0 (CHECK: below 2^62 ps). */
+sim_ps sim_from_seconds(double seconds);
+
+#endif

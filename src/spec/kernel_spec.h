@@ -1,0 +1,34 @@
+/* kernel_spec.h - which parallel program runs on the virtual processors, in which variant. */
+#ifndef SPEC_KERNEL_SPEC_H
+#define SPEC_KERNEL_SPEC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum formulation { FORMULATION_PAPER, FORMULATION_DIRECT };
+enum solver { SOLVER_PCR_SYMMETRIC, SOLVER_PCR, SOLVER_CR, SOLVER_CR_PCR, SOLVER_PARTITION, SOLVER_THOMAS };
+enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
+enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
+enum part_solver { PART_PCR, PART_CR };
+enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
+
+struct kernel_spec {
+    char name[32];               /* "inverse", "forward", "dynamics" (both), "pingpong", ...: see room kernel */
+    enum formulation formulation;
+    enum solver solver;
+    enum part_solver part_solver; /* what solver partition uses on the interfaces */
+    enum operators operators;    /* dense: general 6x6 operators as the paper's code, structured: (r, p) pairs */
+    enum precision precision;
+    enum partition_rule partition;
+    bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2 */
+    int hybrid_levels;           /* cr-pcr: levels of CR before PCR */
+    int inner_refinements;       /* residual corrections with stored factors */
+    int outer_refinements;       /* corrections through inverse dynamics */
+    int steps;                   /* time steps; 0: one evaluation */
+    double step_size;            /* [s] */
+    int repeat;                  /* micro-benchmarks: repetitions */
+    int64_t message_bytes;       /* micro-benchmarks: size [B] */
+    int distance;                /* shift: rank distance */
+};
+
+#endif

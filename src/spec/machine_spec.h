@@ -1,0 +1,134 @@
+/* machine_spec.h - everything that is known of a machine: nodes, network, message software, placement, noise.
+ *
+ * Plain data in SI units, filled by room plan from machines/NAME.yaml and `--set`; its field table is in
+ * machine_spec.c. Semantics of the network numbers: room net, docs/network.md. */
+#ifndef SPEC_MACHINE_SPEC_H
+#define SPEC_MACHINE_SPEC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { MACHINE_MAX_DIMS = 8 };
+
+enum topology_family {
+    TOPOLOGY_CROSSBAR,  /* every node has one port; nothing shared but injection and ejection */
+    TOPOLOGY_TORUS,     /* k-ary n-cube of mixed radix, dimension-order routes */
+    TOPOLOGY_MESH,      /* the same without wrap links */
+    TOPOLOGY_HYPERCUBE, /* e-cube routes; `nodes_per_router` for bristled ones */
+    TOPOLOGY_BUS,       /* one shared resource */
+    TOPOLOGY_FULL_MESH, /* a link between every two routers */
+    TOPOLOGY_FAT_TREE,  /* k-ary n-tree */
+    TOPOLOGY_DRAGONFLY, /* groups of routers, all-to-all inside and between groups */
+    TOPOLOGY_GRAPH      /* routers and links given in the file */
+};
+
+enum tie_rule {
+    TIE_POSITIVE, /* half-way round a ring: always + */
+    TIE_PARITY    /* + from an even coordinate, - from an odd one */
+};
+
+enum dragonfly_routing { ROUTE_MINIMAL, ROUTE_VALIANT };
+
+struct topology_spec {
+    enum topology_family family;
+    int ndim;                       /* torus, mesh: number of dimensions; hypercube: 1, dims[0] = log2(routers) */
+    int dims[MACHINE_MAX_DIMS];     /* radix of each dimension, dimension 0 fastest; fat tree: {arity, levels};
+                                       dragonfly: {terminals/router, routers/group, global links/router, groups};
+                                       crossbar, bus, full mesh: {routers} */
+    double dim_bandwidth[MACHINE_MAX_DIMS]; /* link rate of each dimension [B/s], 0: the link's */
+    int nodes_per_router;           /* >= 1 */
+    int processors_per_node;        /* >= 1 */
+    enum tie_rule tie;
+    enum dragonfly_routing routing;
+    bool xpress;                    /* 16-processor Origin: the extra links between opposite routers */
+    int nlink;                      /* graph: number of undirected links, 0 otherwise */
+    int (*link)[2];                 /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
+};
+
+/* What computing costs on one processor. A rate holds for small dense double-precision code. */
+struct node_spec {
+    double flop_rate;      /* additions and multiplications [flop/s] */
+    double clock;          /* [Hz], for the cycle counts below */
+    double div_cycles;     /* one division [cycles] */
+    double sqrt_cycles;    /* one square root [cycles] */
+    double trig_cycles;    /* one sine or cosine [cycles] */
+    double call_time;      /* overhead of one small operator call [s] */
+    double copy_bandwidth; /* memory copies [B/s] */
+};
+
+enum network_level { LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT, LEVEL_AUTO };
+enum arbitration { ARBITRATION_ROUND_ROBIN, ARBITRATION_FIRST_COME };
+
+/* The wire. Zero-load time of a message of b bytes over R = links + 1 resources after injection:
+ *   R hop_latency + serialisation(b) + end_latency, counted from its injection. */
+struct network_spec {
+    enum network_level level;
+    double link_bandwidth;      /* payload rate of one link and direction [B/s] */
+    double injection_bandwidth; /* node into network [B/s]; 0: the link's */
+    double ejection_bandwidth;  /* network into node [B/s]; 0: the link's */
+    double hop_latency;         /* router and wire, head of a message, per resource [s] (tau) */
+    double end_latency;         /* network interface, entry and exit together [s] */
+    double credit_latency;      /* a freed buffer to the sender upstream [s] (c) */
+    int64_t flit_bytes;         /* [B] */
+    int64_t packet_bytes;       /* largest payload of a packet [B]; 0: a message is one packet */
+    int64_t header_bytes;       /* added to each packet on the wire [B] */
+    int virtual_channels;       /* per link and direction, all classes together */
+    int buffer_flits;           /* per virtual channel [flits] */
+    enum arbitration arbitration;
+};
+
+enum barrier_kind { BARRIER_SOFTWARE, BARRIER_HARDWARE };
+
+/* Message software, separate from the wire (LogGP's o and g live here). */
+struct software_spec {
+    double send_overhead;      /* o_s: processor time to send [s] */
+    double recv_overhead;      /* o_r: processor time to receive [s] */
+    double send_copy;          /* processor time per byte sent [s/B] */
+    double recv_copy;          /* processor time per byte received [s/B] */
+    double gap;                /* g: least time between two injections of one node [s] */
+    double gap_per_byte;       /* G of the network interface [s/B]; the slower of this and the wire rules */
+    int64_t eager_bytes;       /* larger messages use rendezvous [B]; -1: all eager */
+    double rendezvous_latency; /* software time added per hand-shake [s] */
+    bool kernel_server;        /* one shared server per machine handles every message (TCP loopback) */
+    double kernel_time;        /* its service time per message end [s] */
+    double kernel_per_byte;    /* and per byte [s/B] */
+    enum barrier_kind barrier;
+    double barrier_time;       /* hardware barrier, last arrival to release [s] */
+    double shared_latency;     /* channel within a node: latency [s] */
+    double shared_bandwidth;   /* and rate [B/s]; 0: messages within a node use the network's software path */
+};
+
+enum placement_kind {
+    PLACEMENT_LINEAR, PLACEMENT_SNAKE, PLACEMENT_GRAY, PLACEMENT_RANDOM, PLACEMENT_LIST
+};
+enum spread_kind { SPREAD_BLOCK, SPREAD_CYCLIC };
+
+struct placement_spec {
+    enum placement_kind kind;
+    enum spread_kind spread;  /* ranks over the processors of a node */
+    uint64_t seed;            /* random */
+    int nlist;
+    int *list;                /* list: (nlist) processor of each rank, borrowed */
+};
+
+struct noise_spec {
+    double compute_cv;        /* coefficient of variation of each computation, 0: off */
+    double background_load;   /* fraction of each link's time taken by others, 0: off */
+    int64_t background_bytes; /* size of a background message [B] */
+};
+
+struct machine_spec {
+    char name[64];            /* the file's stem */
+    char title[128];          /* for people */
+    struct topology_spec topology;
+    struct node_spec node;
+    struct network_spec network;
+    struct software_spec software;
+    struct placement_spec placement;
+    struct noise_spec noise;
+};
+
+/* machine_spec_processors: how many ranks the machine can hold. */
+int64_t machine_spec_processors(const struct machine_spec *m);
+
+#endif

@@ -1,0 +1,31 @@
+/* run_spec.h - everything that one run depends on, resolved; nothing writes it after the plan. */
+#ifndef SPEC_RUN_SPEC_H
+#define SPEC_RUN_SPEC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "spec/kernel_spec.h"
+#include "spec/machine_spec.h"
+#include "spec/model_spec.h"
+
+/* What to record beyond the totals. None of these changes a simulated time. */
+struct record_spec {
+    bool spans;  /* who did what from when to when (timeline) */
+    bool links;  /* per-link busy time and queueing */
+};
+
+struct run_spec {
+    char scenario[64];       /* stem of the scenario file */
+    struct machine_spec machine;
+    struct model_spec model;
+    struct kernel_spec kernel;
+    struct record_spec record;
+    int nrank;               /* P */
+    uint64_t seed;           /* of noise; the model has its own */
+    int rep;                 /* repetition number, 0-based */
+    char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
+    const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
+};
+
+#endif
