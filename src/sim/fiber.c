@@ -1,0 +1,242 @@
+/* fiber.c - stacks from one reserved mapping; switching by Boost.Context's assembly or by ucontext. */
+#include "config.h"
+
+#include "sim/fiber.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "base/check.h"
+
+#ifdef SANITIZERS
+#include <sanitizer/common_interface_defs.h>
+#endif
+
+#ifdef HAVE_FCONTEXT
+/* The C interface of Boost.Context's assembly, which its own headers declare for C++ only. */
+struct transfer {
+    void *context;
+    void *data;
+};
+struct transfer jump_fcontext(void *to, void *data);
+void *make_fcontext(void *stack_top, size_t size, void (*entry)(struct transfer));
+#else
+#include <ucontext.h>
+#endif
+
+enum { COLOURS = 8, COLOUR_BYTES = 128 };
+#define CANARY UINT64_C(0x5afec0de5afec0de)
+
+struct fiber {
+    struct fiber_pool *pool;
+    fiber_fn *fn;
+    void *argument;
+    char *stack;   /* lowest byte; the canary lies here */
+    bool finished;
+#ifdef HAVE_FCONTEXT
+    void *context; /* of the fiber while it is left */
+    void *outside; /* of the host while the fiber runs */
+#else
+    ucontext_t context, outside;
+#endif
+#ifdef SANITIZERS
+    void *fake_fiber, *fake_outside;
+    const void *outside_stack;
+    size_t outside_size;
+#endif
+};
+
+struct fiber_pool {
+    struct fiber *fiber; /* (n), owned */
+    char *base;          /* the mapping */
+    size_t stride;       /* stack and guard page */
+    size_t stack_bytes, page;
+    int n, nguard;
+    int64_t switches;
+};
+
+static int mapping_limit(void)
+{
+    int limit = 65530;
+    FILE *f = fopen("/proc/sys/vm/max_map_count", "r");
+    if (!f) return limit;
+    if (fscanf(f, "%d", &limit) != 1) limit = 65530;
+    fclose(f);
+    return limit;
+}
+
+struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
+{
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    size_t stack = ((size_t)stack_bytes + page - 1) / page * page, stride = stack + page;
+    char *base = mmap(NULL, stride * (size_t)n, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
+    if (base == MAP_FAILED) {
+        err_set(e, ERR_INTERNAL, "cannot reserve %zu MiB of address space for the stacks of %d virtual processors: %s",
+                stride * (size_t)n >> 20, n, strerror(errno));
+        return NULL;
+    }
+    madvise(base, stride * (size_t)n, MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
+    struct fiber_pool *p = calloc(1, sizeof *p);
+    CHECK(p);
+    p->fiber = calloc((size_t)n, sizeof *p->fiber);
+    CHECK(p->fiber);
+    p->base = base;
+    p->stride = stride;
+    p->stack_bytes = stack;
+    p->page = page;
+    p->n = n;
+    /* Each guard splits the mapping in two more; leave half of the system's limit to everybody else. */
+    int most = mapping_limit() / 4;
+    for (p->nguard = 0; p->nguard < n && p->nguard < most; p->nguard++)
+        if (mprotect(base + stride * (size_t)p->nguard, page, PROT_NONE) != 0) break;
+    return p;
+}
+
+void fiber_pool_destroy(struct fiber_pool *p)
+{
+    if (!p) return;
+    munmap(p->base, p->stride * (size_t)p->n);
+    free(p->fiber);
+    free(p);
+}
+
+#ifdef SANITIZERS
+static void sanitizer_enter(struct fiber *f)
+{
+    __sanitizer_start_switch_fiber(&f->fake_outside, f->stack, f->pool->stack_bytes);
+}
+static void sanitizer_entered(struct fiber *f)
+{
+    __sanitizer_finish_switch_fiber(f->fake_fiber, &f->outside_stack, &f->outside_size);
+}
+static void sanitizer_leave(struct fiber *f)
+{
+    __sanitizer_start_switch_fiber(f->finished ? NULL : &f->fake_fiber, f->outside_stack, f->outside_size);
+}
+static void sanitizer_left(struct fiber *f) { __sanitizer_finish_switch_fiber(f->fake_outside, NULL, NULL); }
+#else
+static inline void sanitizer_enter(struct fiber *f) { (void)f; }
+static inline void sanitizer_entered(struct fiber *f) { (void)f; }
+static inline void sanitizer_leave(struct fiber *f) { (void)f; }
+static inline void sanitizer_left(struct fiber *f) { (void)f; }
+#endif
+
+#ifdef HAVE_FCONTEXT
+static void entry(struct transfer t)
+{
+    struct fiber *f = t.data;
+    f->outside = t.context;
+    sanitizer_entered(f);
+    f->fn(f->argument);
+    f->finished = true;
+    sanitizer_leave(f);
+    jump_fcontext(f->outside, f);
+    CHECK(!"a finished fiber was entered");
+}
+
+static void prepare(struct fiber *f, char *top)
+{
+    f->context = make_fcontext(top, (size_t)(top - f->stack), entry);
+}
+
+static inline void switch_in(struct fiber *f) { f->context = jump_fcontext(f->context, f).context; }
+
+static inline void switch_out(struct fiber *f) { f->outside = jump_fcontext(f->outside, f).context; }
+
+const char *fiber_backend(void) { return "fcontext"; }
+#else
+static void entry(unsigned high, unsigned low)
+{
+    struct fiber *f = (struct fiber *)((uintptr_t)high << 32 | low);
+    sanitizer_entered(f);
+    f->fn(f->argument);
+    f->finished = true;
+    sanitizer_leave(f);
+    setcontext(&f->outside);
+}
+
+static void prepare(struct fiber *f, char *top)
+{
+    getcontext(&f->context);
+    f->context.uc_stack.ss_sp = f->stack;
+    f->context.uc_stack.ss_size = (size_t)(top - f->stack);
+    f->context.uc_link = NULL;
+    uintptr_t address = (uintptr_t)f;
+    makecontext(&f->context, (void (*)(void))entry, 2, (unsigned)(address >> 32), (unsigned)address);
+}
+
+static inline void switch_in(struct fiber *f) { swapcontext(&f->outside, &f->context); }
+
+static inline void switch_out(struct fiber *f) { swapcontext(&f->context, &f->outside); }
+
+const char *fiber_backend(void) { return "ucontext"; }
+#endif
+
+struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argument)
+{
+    CHECK(i >= 0 && i < p->n);
+    struct fiber *f = &p->fiber[i];
+    *f = (struct fiber){.pool = p, .fn = fn, .argument = argument};
+    f->stack = p->base + p->stride * (size_t)i + p->page;
+    /* Stacks lie a power of two apart; shifted tops keep their hot lines out of the same cache sets. */
+    char *top = f->stack + p->stack_bytes - (size_t)(i % COLOURS) * COLOUR_BYTES;
+    if (i >= p->nguard) *(uint64_t *)f->stack = CANARY;
+    prepare(f, top);
+    return f;
+}
+
+static inline void check_canary(const struct fiber *f)
+{
+    const struct fiber_pool *p = f->pool;
+    if (p->nguard == p->n || f - p->fiber < p->nguard) return;
+    CHECK(*(const uint64_t *)f->stack == CANARY);
+}
+
+bool fiber_enter(struct fiber *f)
+{
+    CHECK(!f->finished);
+    f->pool->switches++;
+    sanitizer_enter(f);
+    switch_in(f);
+    sanitizer_left(f);
+    check_canary(f);
+    return !f->finished;
+}
+
+void fiber_leave(struct fiber *f)
+{
+    sanitizer_leave(f);
+    switch_out(f);
+    sanitizer_entered(f);
+}
+
+static size_t resident_depth(const unsigned char *resident, size_t npage)
+{
+    size_t lowest = 0;
+    while (lowest < npage && !(resident[lowest] & 1)) lowest++;
+    return npage - lowest;
+}
+
+int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
+{
+    size_t npage = p->stack_bytes / p->page, deepest = 0;
+    unsigned char *resident = malloc(npage);
+    CHECK(resident);
+    int stride = p->n > 4096 ? p->n / 4096 : 1; /* a sample of a large pool: one system call each */
+    for (int i = 0; i < p->n; i += stride) {
+        /* The canary's own page is touched where there is no guard. */
+        size_t skip = i >= p->nguard ? 1 : 0;
+        if (mincore(p->base + p->stride * (size_t)i + p->page, p->stack_bytes, resident) != 0) continue;
+        size_t depth = resident_depth(resident + skip, npage - skip);
+        if (depth > deepest) deepest = depth;
+    }
+    free(resident);
+    return (int64_t)(deepest * p->page);
+}
+
+int64_t fiber_pool_switches(const struct fiber_pool *p) { return p->switches; }

@@ -1,0 +1,70 @@
+/* sim.c - the clock and the loop. */
+#include "sim/sim.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/check.h"
+#include "base/digest.h"
+#include "sim/event_queue.h"
+
+enum { KEY_BITS = 48 };
+
+struct sim {
+    struct event_queue queue;
+    sim_ps now;
+    uint64_t last_order; /* of the event dispatched last */
+    uint64_t digest;
+    int64_t events, ties;
+};
+
+struct sim *sim_create(void)
+{
+    struct sim *s = calloc(1, sizeof *s);
+    CHECK(s);
+    event_queue_init(&s->queue);
+    s->digest = DIGEST_START;
+    return s;
+}
+
+void sim_destroy(struct sim *s)
+{
+    if (!s) return;
+    event_queue_done(&s->queue);
+    free(s);
+}
+
+void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action, void *subject,
+            uint64_t argument)
+{
+    CHECK(time >= s->now);
+    CHECK(lane < 65536 && key >> KEY_BITS == 0);
+    struct event e = {time, (uint64_t)lane << KEY_BITS | key, action, subject, argument};
+    event_queue_push(&s->queue, &e);
+}
+
+bool sim_step(struct sim *s)
+{
+    struct event e;
+    if (!event_queue_pop(&s->queue, &e)) return false;
+    s->ties += s->events > 0 && e.time == s->now && (e.order ^ s->last_order) >> KEY_BITS == 0;
+    s->events++;
+    s->now = e.time;
+    s->last_order = e.order;
+    s->digest = digest_mix(digest_mix(s->digest, (uint64_t)e.time), e.order);
+    e.action(e.subject, e.argument, e.time);
+    return true;
+}
+
+sim_ps sim_next_time(const struct sim *s) { return s->queue.count ? s->queue.heap[0].time : SIM_NEVER; }
+sim_ps sim_now(const struct sim *s) { return s->now; }
+int64_t sim_events(const struct sim *s) { return s->events; }
+int64_t sim_ties(const struct sim *s) { return s->ties; }
+uint64_t sim_digest(const struct sim *s) { return s->digest; }
+
+sim_ps sim_from_seconds(double seconds)
+{
+    double ps = seconds * SIM_PS_PER_S;
+    CHECK(ps >= 0 && ps < 0x1p62);
+    return (sim_ps)(ps + 0.5);
+}
