@@ -29,13 +29,12 @@ void *make_fcontext(void *stack_top, size_t size, void (*entry)(struct transfer)
 #endif
 
 enum { COLOURS = 8, COLOUR_BYTES = 128 };
-#define CANARY UINT64_C(0x5afec0de5afec0de)
 
 struct fiber {
     struct fiber_pool *pool;
     fiber_fn *fn;
     void *argument;
-    char *stack;   /* lowest byte; the canary lies here */
+    char *stack;   /* lowest byte; the guard or spare page lies below */
     bool finished;
 #ifdef HAVE_FCONTEXT
     void *context; /* of the fiber while it is left */
@@ -136,7 +135,7 @@ static void entry(struct transfer t)
     f->finished = true;
     sanitizer_leave(f);
     jump_fcontext(f->outside, f);
-    CHECK(!"a finished fiber was entered");
+    CHECK(f->pool == NULL); /* a finished fiber was entered */
 }
 
 static void prepare(struct fiber *f, char *top)
@@ -185,16 +184,8 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
     f->stack = p->base + p->stride * (size_t)i + p->page;
     /* Stacks lie a power of two apart; shifted tops keep their hot lines out of the same cache sets. */
     char *top = f->stack + p->stack_bytes - (size_t)(i % COLOURS) * COLOUR_BYTES;
-    if (i >= p->nguard) *(uint64_t *)f->stack = CANARY;
     prepare(f, top);
     return f;
-}
-
-static inline void check_canary(const struct fiber *f)
-{
-    const struct fiber_pool *p = f->pool;
-    if (p->nguard == p->n || f - p->fiber < p->nguard) return;
-    CHECK(*(const uint64_t *)f->stack == CANARY);
 }
 
 bool fiber_enter(struct fiber *f)
@@ -204,7 +195,6 @@ bool fiber_enter(struct fiber *f)
     sanitizer_enter(f);
     switch_in(f);
     sanitizer_left(f);
-    check_canary(f);
     return !f->finished;
 }
 
@@ -224,16 +214,19 @@ static size_t resident_depth(const unsigned char *resident, size_t npage)
 
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
 {
-    size_t npage = p->stack_bytes / p->page, deepest = 0;
-    unsigned char *resident = malloc(npage);
+    enum { BATCH = 1024 };
+    size_t npage = p->stride / p->page, deepest = 0;
+    unsigned char *resident = malloc(npage * BATCH);
     CHECK(resident);
-    int stride = p->n > 4096 ? p->n / 4096 : 1; /* a sample of a large pool: one system call each */
-    for (int i = 0; i < p->n; i += stride) {
-        /* The canary's own page is touched where there is no guard. */
-        size_t skip = i >= p->nguard ? 1 : 0;
-        if (mincore(p->base + p->stride * (size_t)i + p->page, p->stack_bytes, resident) != 0) continue;
-        size_t depth = resident_depth(resident + skip, npage - skip);
-        if (depth > deepest) deepest = depth;
+    for (int first = 0; first < p->n; first += BATCH) {
+        size_t n = (size_t)(p->n - first < BATCH ? p->n - first : BATCH);
+        if (mincore(p->base + p->stride * (size_t)first, p->stride * n, resident) != 0) break;
+        for (size_t k = 0; k < n; k++) {
+            const unsigned char *r = resident + k * npage;
+            CHECK(first + (int)k < p->nguard || !(r[0] & 1)); /* the spare page was touched: stack overflow */
+            size_t depth = resident_depth(r + 1, npage - 1);
+            if (depth > deepest) deepest = depth;
+        }
     }
     free(resident);
     return (int64_t)(deepest * p->page);

@@ -1,7 +1,7 @@
 /* fiber.h - functions that can be left and entered again: stackful coroutines on one host thread.
  *
  * Stacks come from one mapping, reserved and not committed: only touched pages cost memory. Below each stack lies a
- * guard page as long as the system allows more mappings, and a canary everywhere, checked when a fiber is left. */
+ * guard page as long as the system allows more mappings, and beyond that a spare page that must stay untouched. */
 #ifndef SIM_FIBER_H
 #define SIM_FIBER_H
 
@@ -28,7 +28,8 @@ bool fiber_enter(struct fiber *f);
 /* fiber_leave: go back to the caller of fiber_enter; returns at the next fiber_enter. Called inside f. */
 void fiber_leave(struct fiber *f);
 
-/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole pages (by resident pages). */
+/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages. CHECKs that no spare
+ * page was touched, which is how an overflow shows where there is no guard. */
 int64_t fiber_pool_stack_peak(const struct fiber_pool *p);
 
 /* fiber_pool_switches: number of fiber_enter calls so far. */
