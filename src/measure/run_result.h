@@ -63,6 +63,7 @@ struct run_result {
     enum run_status status;
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
 
+    int nbody, nu;             /* bodies and degrees of freedom of the model that was built; 0: no model */
     int64_t makespan_ps;
     int nrank, nstage;
     char stage_name[RUN_MAX_STAGES][24];

@@ -29,11 +29,55 @@ bool store_has(struct store *s, const struct run_spec *spec);
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, const char *left_out,
                struct err *e);
 
+/* One value of a row, as stored: non-finite reals become NULL. */
+struct store_value {
+    enum store_kind { STORE_NULL, STORE_INT, STORE_REAL, STORE_TEXT } kind;
+    int64_t integer;
+    double real;
+    const char *text;           /* borrowed; of a row read: valid until the row function returns */
+};
+
+/* store_null, store_int, store_real, store_text: a value of that kind; text may be NULL, which is SQL NULL. */
+struct store_value store_null(void);
+struct store_value store_int(int64_t v);
+struct store_value store_real(double v);
+struct store_value store_text(const char *v);
+
+/* store_insert: one row into `table` (schema.sql), replacing the row with the same key; a transaction of its own
+ * unless store_begin opened one.
+ *
+ *   name, value  in  (ncolumn <= 64) columns of the table; those left out get their default
+ *
+ *   Returns false with ERR_DATA (no such table or column, a value that the table forbids), ERR_BUSY or ERR_IO. */
+bool store_insert(struct store *s, const char *table, int ncolumn, const char *const *name,
+                  const struct store_value *value, struct err *e);
+
+/* store_delete: remove the rows of `table` where `column` equals `value` (a suite that is filled anew). */
+bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e);
+
+/* store_begin: open one transaction around several store_put, store_insert and store_delete; store_commit makes them
+ * last, store_rollback forgets them. They do not nest. */
+bool store_begin(struct store *s, struct err *e);
+bool store_commit(struct store *s, struct err *e);
+void store_rollback(struct store *s);
+
+/* store_run_id: the row of this identity in table run, 0 when it is not stored. */
+int64_t store_run_id(struct store *s, const struct run_spec *spec);
+
 /* store_select: run the query `sql` and hand each row to `row` as text values (NULL for SQL NULL) with the column
  * names; return false from `row` to stop. nparam texts are bound to ?1, ?2, ...
  * Returns false with ERR_DATA when the statement is wrong. */
 typedef bool store_row_fn(void *context, int ncolumn, const char *const *name, const char *const *value);
 bool store_select(struct store *s, const char *sql, int nparam, const char *const *param, store_row_fn *row,
                   void *context, struct err *e);
+
+/* store_query: as store_select, with each value in its own kind. `header`, when not NULL, is called once before the
+ * rows, also when there are none; then `value` is NULL. */
+typedef bool store_value_fn(void *context, int ncolumn, const char *const *name, const struct store_value *value);
+bool store_query(struct store *s, const char *sql, int nparam, const char *const *param, store_value_fn *header,
+                 store_value_fn *row, void *context, struct err *e);
+
+/* store_path: the file name it was opened with. */
+const char *store_path(const struct store *s);
 
 #endif
