@@ -1,0 +1,160 @@
+/* body.h - one body's constants and its local computations in the build's precision: all that a kernel needs.
+ *
+ * Internally a frame is turned so that its joint's axis is z (slot: x; universal: x, then y), spatial order is
+ * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
+ * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
+ * pass unchanged between model order and here. H and its complement W are orthonormal.
+ *
+ * Work: the functions do not count; joint_cost has what each does for a joint type. */
+#ifndef MECH_BODY_H
+#define MECH_BODY_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/work.h"
+#include "linalg/real.h"
+#include "linalg/spatial.h"
+#include "mech/model.h"
+
+struct body {
+    int parent;
+    enum model_joint joint;
+    int d, nq;              /* degrees of freedom; stored coordinates */
+    int q_at, u_at;         /* first of each in the model's arrays */
+    bool has_spring, turned;/* turned: the internal frame differs from the user's */
+    struct xform tree;      /* (E, t): joint frame -> parent's body frame, internal axes */
+    real pitch, unit;       /* helical: advance per radian and 1 / sqrt(1 + pitch^2) */
+    real m, s[3];           /* mass; centre of mass from the origin */
+    real jc[6];             /* inertia about the centre of mass */
+    struct inertia inertia; /* about the origin */
+    struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
+    real user[9];           /* user's body axes = user * internal axes */
+    real stiffness, rest, damping;
+};
+
+/* The motion subspace H (6 x d) and its complement W (6 x c), d + c = 6. */
+struct subspace {
+    int d, c;
+    const signed char *pick; /* (6) non-NULL: column k is unit vector pick[k]; first H's d columns, then W's c */
+    real col[36];            /* pick == NULL: column k at col + 6 k */
+};
+
+/* A body's configuration: its transform to the parent and its subspaces. */
+struct body_pose {
+    struct xform x;
+    struct subspace s;
+};
+
+/* What the functions below do for one body of a joint type, [flop] unless said. */
+struct joint_cost {
+    int place, place_trig, place_div; /* body_place */
+    int rate;                         /* body_rate */
+    int bias;                         /* body_bias */
+    int h, h_transposed;              /* subspace_h, subspace_h_transposed */
+    int w, w_transposed;              /* subspace_w, subspace_w_transposed */
+    int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
+};
+
+/* body_make: the constants of body i of m, in *b. bodies_make: of all of them, (nbody) in `a`; bodies equal to their
+ * predecessor cost nothing. */
+#define body_make REAL_NAME(body_make)
+void body_make(const struct model *m, int i, struct body *b);
+#define bodies_make REAL_NAME(bodies_make)
+struct body *bodies_make(const struct model *m, struct arena *a);
+
+/* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
+#define body_place REAL_NAME(body_place)
+void body_place(const struct body *b, const real *q, struct body_pose *pose);
+
+/* body_subspace: H and W alone, for a neighbour's joint; needs q only for universal, slot and point-plane. */
+#define body_subspace REAL_NAME(body_subspace)
+void body_subspace(const struct body *b, const real *q, struct subspace *s);
+
+/* body_rate: h = H u (6), the joint's relative velocity. */
+#define body_rate REAL_NAME(body_rate)
+void body_rate(const struct body_pose *pose, const real *u, real *h);
+
+/* body_bias: b (6), acceleration of the joint at u' = 0 seen from the parent's: physics (1.9), with kappa.
+ *
+ *   v   in   (>= 3) the body's own angular velocity
+ *   h   in   (6) H u from body_rate
+ *   u   in   (d) */
+#define body_bias REAL_NAME(body_bias)
+void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
+               real *bias);
+
+/* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3). BODY_GYRO_FLOP. */
+enum { BODY_GYRO_FLOP = 39, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 66 };
+static inline void body_gyro(const struct body *b, const real *w, real *f)
+{
+    /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs no digits. */
+    real t[3];
+    vec3_cross(t, w, b->s);
+    vec3_cross(t, w, t);
+    vec3_scale(f + 3, b->m, t);
+    sym3_mul_vec(t, b->jc, w);
+    vec3_cross(f, w, t);
+    vec3_cross_add(f, b->s, f + 3);
+}
+
+/* body_force: f = I a (6) for the classical acceleration a; BODY_FORCE_FLOP counts this and adding f to P. */
+static inline void body_force(const struct body *b, const real *a, real *f)
+{
+    real t[3];
+    vec3_copy(t, a + 3);
+    vec3_cross_add(t, a, b->s);
+    vec3_scale(f + 3, b->m, t);
+    sym3_mul_vec(f, b->jc, a);
+    vec3_cross_add(f, b->s, f + 3);
+}
+
+/* body_accelerate: a = Phi f (6), SYM6_MUL_FLOP; the body must have a Phi (model.has_phi). */
+static inline void body_accelerate(const struct body *b, const real *f, real *a) { sym6_mul(a, &b->phi, f); }
+
+/* body_load: the external wrench on body i in internal axes and order, from the user's [force; moment] in `fext`
+ * (6); zero when fext is NULL. */
+#define body_load REAL_NAME(body_load)
+void body_load(const struct body *b, const double *fext, real *f);
+
+/* body_spring: tau (d) += forces of the joint's spring and damper; nothing without has_spring. */
+#define body_spring REAL_NAME(body_spring)
+void body_spring(const struct body *b, const real *q, const real *u, real *tau);
+
+/* body_step: coordinates after the time h at constant u: q (nq) moves along the group by u h exactly where the joint
+ * allows it (quaternions by the exponential map), keeping quaternions normalised. */
+#define body_step REAL_NAME(body_step)
+void body_step(const struct body *b, real *q, const real *u, real h);
+
+/* body_qdot: qd (nq) = N(q) u, the derivative of the stored coordinates. */
+#define body_qdot REAL_NAME(body_qdot)
+void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
+
+/* joint_cost: by type, never NULL. The table is the same in every precision. */
+#define joint_cost REAL_NAME(joint_cost)
+const struct joint_cost *joint_cost(enum model_joint joint);
+
+/* subspace_h: y (6) += H x (d). subspace_w: y (6) += W x (c). */
+#define subspace_h REAL_NAME(subspace_h)
+void subspace_h(const struct subspace *s, const real *x, real *y);
+#define subspace_w REAL_NAME(subspace_w)
+void subspace_w(const struct subspace *s, const real *x, real *y);
+
+/* subspace_h_transposed: y (d) = H^T x (6). subspace_w_transposed: y (c) = W^T x (6). */
+#define subspace_h_transposed REAL_NAME(subspace_h_transposed)
+void subspace_h_transposed(const struct subspace *s, const real *x, real *y);
+#define subspace_w_transposed REAL_NAME(subspace_w_transposed)
+void subspace_w_transposed(const struct subspace *s, const real *x, real *y);
+
+/* subspace_column: column k of [H W] (0 .. 5) in y (6). */
+#define subspace_column REAL_NAME(subspace_column)
+void subspace_column(const struct subspace *s, int k, real *y);
+
+/* subspace_project: out (rows of A's part x columns of B's part, row-major) = part(A)^T M part(B) for a full 6x6 M.
+ *
+ *   a, a_w   in   subspace on the left; true: its W, false: its H
+ *   b, b_w   in   subspace on the right */
+#define subspace_project REAL_NAME(subspace_project)
+void subspace_project(const struct subspace *a, bool a_w, const real *m, const struct subspace *b, bool b_w, real *out);
+
+#endif
