@@ -1,0 +1,57 @@
+/* rendezvous.c - large messages: request to send, clear to send, data. Both ends' software reacts without waiting for
+ * its kernel (asynchronous progress), so a hand-shake costs two zero-byte trips and the machine's software time. */
+#include "base/check.h"
+#include "vp/vp.h"
+
+static void travel(struct message *m, struct vp *from, struct vp *to, int64_t bytes, sim_ps ready)
+{
+    m->net.src = from->node;
+    m->net.dst = to->node;
+    m->net.bytes = bytes;
+    m->net.ready = ready;
+    net_send(from->world->net, &m->net);
+}
+
+void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
+{
+    m->kind = MESSAGE_REQUEST_TO_SEND;
+    m->send = r;
+    if (r) *r = (struct comm_request){.bytes = m->bytes, .peer = m->to->comm.rank, .tag = m->tag,
+                                      .active = REQUEST_SENDING, .file = v->comm.file, .line = v->comm.line};
+    travel(m, v, m->to, 0, v->clock);
+}
+
+void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
+{
+    (void)r;
+    m->delay += m->net.arrival - m->net.uncontended;
+    m->kind = MESSAGE_CLEAR_TO_SEND;
+    travel(m, m->to, m->from, 0, now + m->to->world->software.rendezvous);
+}
+
+static void cleared(struct message *m)
+{
+    struct comm_request *s = m->send;
+    m->delay += m->net.arrival - m->net.uncontended;
+    m->kind = MESSAGE_DATA;
+    if (s) {
+        s->active = REQUEST_SENT;
+        s->detail = (void *)(intptr_t)m->net.arrival;
+        if (m->from->waiting == s) world_wake(m->from->world, m->from);
+    }
+    travel(m, m->from, m->to, m->bytes, m->net.arrival);
+}
+
+void rendezvous_deliver(struct message *m)
+{
+    if (m->kind == MESSAGE_CLEAR_TO_SEND) {
+        cleared(m);
+        return;
+    }
+    CHECK(m->kind == MESSAGE_DATA && m->receive);
+    struct comm_request *r = m->receive;
+    m->net.uncontended -= m->delay;
+    r->active = REQUEST_MATCHED;
+    r->detail = m;
+    if (m->to->waiting == r) world_wake(m->to->world, m->to);
+}

@@ -1,0 +1,79 @@
+/* stuck.c - nothing can happen any more: who waits for whom. */
+#include <stdio.h>
+#include <string.h>
+
+#include "vp/vp.h"
+
+static const char *base_name(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path ? path : "?";
+}
+
+static int peer_of(const struct vp *v)
+{
+    return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer : -1;
+}
+
+static int describe(const struct vp *v, char *s, int size)
+{
+    const char *stage = v->world->result->stage_name[v->stage];
+    const struct comm_request *r = v->waiting;
+    switch (v->waiting_for) {
+    case WAITING_RECEIVE:
+        return snprintf(s, size, "rank %d in %s waits to receive %lld bytes, tag %d, from rank %d (%s:%d)",
+                        v->comm.rank, stage, (long long)r->bytes, r->tag, r->peer, base_name(r->file), r->line);
+    case WAITING_SEND:
+        return snprintf(s, size, "rank %d in %s waits for rank %d to take %lld bytes, tag %d (%s:%d)", v->comm.rank,
+                        stage, r->peer, (long long)r->bytes, r->tag, base_name(r->file), r->line);
+    case WAITING_BARRIER:
+        return snprintf(s, size, "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
+                        v->comm.rank, stage, base_name(v->comm.file), v->comm.line, v->world->barrier_count,
+                        v->world->nrank);
+    default:
+        return snprintf(s, size, "rank %d in %s waits for the kernel server", v->comm.rank, stage);
+    }
+}
+
+static struct vp *first_blocked(struct world *w)
+{
+    for (int i = 0; i < w->nrank; i++)
+        if (w->vp[i].waiting_for != WAITING_NOTHING) return &w->vp[i];
+    return NULL;
+}
+
+/* A rank on the cycle that starts from `v`, or the end of the chain when it leads to a finished rank or a barrier. */
+static struct vp *walk_into_cycle(struct world *w, struct vp *v)
+{
+    for (int steps = 0; steps < w->nrank; steps++) {
+        int peer = peer_of(v);
+        if (peer < 0 || w->vp[peer].waiting_for == WAITING_NOTHING) return v;
+        v = &w->vp[peer];
+    }
+    return v;
+}
+
+void stuck_explain(struct world *w)
+{
+    char *text = w->result->text;
+    int size = (int)sizeof w->result->text, used = 0;
+    if (net_stuck(w->net, text, size)) return;
+    struct vp *start = walk_into_cycle(w, first_blocked(w)), *v = start;
+    used += snprintf(text, size, "deadlock: ");
+    for (int k = 0; k < 8 && used < size; k++) {
+        used += describe(v, text + used, size - used);
+        int peer = peer_of(v);
+        if (peer < 0 || used >= size) return;
+        if (w->vp[peer].waiting_for == WAITING_NOTHING) {
+            snprintf(text + used, size - used, ", and rank %d has finished", peer);
+            return;
+        }
+        v = &w->vp[peer];
+        if (v == start) {
+            snprintf(text + used, size - used, ": a cycle of %d", k + 1);
+            return;
+        }
+        used += snprintf(text + used, size - used, "; ");
+    }
+    if (used < size) snprintf(text + used, size - used, "and so on");
+}

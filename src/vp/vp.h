@@ -1,0 +1,171 @@
+/* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
+ *
+ * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; mailbox.c matches messages;
+ * rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links; stuck.c
+ * explains deadlocks. */
+#ifndef VP_VP_H
+#define VP_VP_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "base/random.h"
+#include "comm/comm.h"
+#include "machine/node_cost.h"
+#include "machine/placement.h"
+#include "machine/topology.h"
+#include "measure/run_result.h"
+#include "net/net.h"
+#include "sim/fiber.h"
+#include "sim/sim.h"
+#include "spec/run_spec.h"
+#include "vp/world.h"
+
+struct world;
+struct message;
+
+/* Lanes of the events that this room posts (the network's own lie between them). */
+enum { LANE_SERVER = 0x0100, LANE_BACKGROUND = 0x0101 };
+
+enum waiting_for { WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER };
+
+/* States of comm_request.active. */
+enum { REQUEST_DONE, REQUEST_POSTED, REQUEST_MATCHED, REQUEST_SENDING, REQUEST_SENT };
+
+struct vp {
+    struct comm comm;              /* first: a kernel's comm is its vp */
+    struct world *world;
+    sim_ps clock;
+    struct stage_time *stages;     /* (nstage + 1) this rank's row in the result */
+    int stage;
+    enum waiting_for waiting_for;
+    struct comm_request *waiting;  /* the request it waits for */
+    struct comm_request *posted, **posted_end;       /* receives without a message, in order */
+    struct message *unexpected, **unexpected_end;    /* messages without a receive, in order */
+    uint32_t sent;                 /* messages so far: the lower half of their numbers */
+    int node, processor;
+    uint64_t digest;               /* of what it received and when */
+    sim_ps server_start;           /* when the kernel server began with it */
+    sim_ps finish;                 /* clock at its end */
+    struct fiber *fiber;
+    struct random noise;
+};
+
+enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA, MESSAGE_BACKGROUND };
+
+struct message {
+    struct net_message net;        /* first */
+    struct message *next;
+    struct vp *from, *to;
+    struct comm_request *send, *receive; /* rendezvous: both ends' requests */
+    int64_t bytes;                 /* of the kernel's data */
+    sim_ps sent;                   /* when the send began; for spans */
+    sim_ps delay;                  /* rendezvous: contention of the hand-shake */
+    int tag;
+    uint16_t size_class;
+    uint16_t kind;
+    char data[];
+};
+
+enum { MESSAGE_CLASSES = 65 };
+
+/* Durations of the message software [ps], from software_spec. */
+struct software_cost {
+    sim_ps send_overhead, recv_overhead, rendezvous, kernel_time, barrier, shared_latency;
+    double send_byte, recv_byte, kernel_byte, shared_byte; /* [ps/B] */
+};
+
+struct world {
+    const struct machine_spec *machine;
+    const struct record_spec *record;
+    struct run_result *result;
+    struct arena *arena;           /* of the result */
+    struct arena *scratch;         /* of the run */
+    struct sim *sim;
+    struct net *net;
+    struct topology *topology;
+    struct placement placement;
+    struct fiber_pool *fibers;
+    struct vp *vp;                 /* (nrank) */
+    int nrank, nstage, nfinished;
+    struct software_cost software;
+    struct node_cost node_cost;
+    bool shared_channel, eager_only, noisy;
+
+    int *ready;                    /* (nrank) ring of ranks that can go on */
+    int ready_head, ready_count;
+
+    struct message *free_message[MESSAGE_CLASSES];
+
+    int barrier_count;             /* hardware barrier: ranks inside */
+    sim_ps barrier_latest, barrier_release;
+
+    sim_ps server_free;            /* kernel server */
+    int64_t span_capacity;
+
+    world_program *program;
+    void *context;
+};
+
+/* --- world.c --- */
+
+/* world_wake: put a rank that waits at the end of the ready ring. */
+void world_wake(struct world *w, struct vp *v);
+
+/* world_span: record [begin, end) of `v` when spans are recorded; neighbours of one kind are joined. */
+void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message);
+
+/* --- vp_comm.c --- */
+
+/* vp_comm_type: comm.h as a virtual processor implements it. */
+extern const struct comm_type vp_comm_type;
+
+/* vp_block: leave the fiber until somebody wakes `v`. */
+void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);
+
+/* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
+ * stage's wait and contention. No effect when the clock is later. */
+void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended);
+
+/* --- mailbox.c --- */
+
+/* message_take: a message with room for `bytes` bytes, zeroed head; message_give: back to the pool. */
+struct message *message_take(struct world *w, int64_t bytes);
+void message_give(struct world *w, struct message *m);
+
+/* mailbox_post: bind `r` to the first message that matches, or append it to the posted receives. */
+void mailbox_post(struct vp *v, struct comm_request *r);
+
+/* mailbox_deliver: bind `m` to the first posted receive that matches, or keep it as unexpected. */
+void mailbox_deliver(struct vp *v, struct message *m);
+
+/* --- rendezvous.c --- */
+
+/* rendezvous_send: the first step of a message too large to be sent eagerly. */
+void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r);
+
+/* rendezvous_matched: the receiver has bound a request to send. `now`: the later of posting and arrival. */
+void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now);
+
+/* rendezvous_deliver: a clear-to-send or the data have arrived. */
+void rendezvous_deliver(struct message *m);
+
+/* --- server.c --- */
+
+/* server_pass: be served by the machine's one kernel server for a message end of `bytes`; blocks, charges waiting to
+ * contention, and returns the service time that is still to be charged as overhead. */
+sim_ps server_pass(struct vp *v, int64_t bytes);
+
+/* --- background.c --- */
+
+/* background_start: begin the seeded traffic of others on the links, when the machine has it; it ends with the ranks.
+ * Random messages between random nodes, Poisson in time, so many that the mean load of a link is as asked. */
+void background_start(struct world *w, uint64_t seed);
+
+/* --- stuck.c --- */
+
+/* stuck_explain: the wait-for cycle, and the network's if it is the network, into the result's text. */
+void stuck_explain(struct world *w);
+
+#endif

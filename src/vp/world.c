@@ -1,0 +1,203 @@
+/* world.c - build a machine for one run, let its ranks go, collect what they did. */
+#include "vp/world.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/digest.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "vp/vp.h"
+
+enum { STACK_BYTES = 64 * 1024 };
+
+void world_wake(struct world *w, struct vp *v)
+{
+    int at = w->ready_head + w->ready_count++;
+    CHECK(w->ready_count <= w->nrank);
+    w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
+}
+
+void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message)
+{
+    struct world *w = v->world;
+    struct run_result *r = w->result;
+    if (begin == end && message < 0) return;
+    if (r->nspan == w->span_capacity) {
+        int64_t capacity = w->span_capacity ? 2 * w->span_capacity : 4096;
+        struct span *grown = TAKE(w->arena, capacity, struct span);
+        if (r->nspan) memcpy(grown, r->span, (size_t)r->nspan * sizeof *grown);
+        r->span = grown;
+        w->span_capacity = capacity;
+    }
+    r->span[r->nspan++] = (struct span){.rank = v->comm.rank, .stage = v->stage, .kind = kind, .begin_ps = begin,
+                                        .end_ps = end, .peer = peer, .bytes = bytes, .message = message};
+}
+
+static void deliver(void *context, struct net_message *nm)
+{
+    struct world *w = context;
+    struct message *m = (struct message *)nm;
+    switch ((enum message_kind)m->kind) {
+    case MESSAGE_EAGER:
+    case MESSAGE_REQUEST_TO_SEND: mailbox_deliver(m->to, m); break;
+    case MESSAGE_CLEAR_TO_SEND:
+    case MESSAGE_DATA: rendezvous_deliver(m); break;
+    case MESSAGE_BACKGROUND: message_give(w, m); break;
+    }
+}
+
+static struct software_cost software_cost_make(const struct software_spec *s)
+{
+    return (struct software_cost){
+        .send_overhead = sim_from_seconds(s->send_overhead),
+        .recv_overhead = sim_from_seconds(s->recv_overhead),
+        .rendezvous = sim_from_seconds(s->rendezvous_latency),
+        .kernel_time = sim_from_seconds(s->kernel_time),
+        .barrier = sim_from_seconds(s->barrier_time),
+        .shared_latency = sim_from_seconds(s->shared_latency),
+        .send_byte = s->send_copy * SIM_PS_PER_S,
+        .recv_byte = s->recv_copy * SIM_PS_PER_S,
+        .kernel_byte = s->kernel_per_byte * SIM_PS_PER_S,
+        .shared_byte = s->shared_bandwidth > 0 ? SIM_PS_PER_S / s->shared_bandwidth : 0,
+    };
+}
+
+static void rank_main(void *argument)
+{
+    struct vp *v = argument;
+    struct world *w = v->world;
+    w->program(&v->comm, w->context);
+    v->finish = v->clock;
+    w->nfinished++;
+}
+
+static void make_ranks(struct world *w, uint64_t seed)
+{
+    int row = w->nstage + 1;
+    w->vp = TAKE(w->scratch, w->nrank, struct vp);
+    w->ready = TAKE(w->scratch, w->nrank, int);
+    w->result->stage = TAKE(w->arena, (size_t)w->nrank * (size_t)row, struct stage_time);
+    w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
+    for (int i = 0; i < w->nrank; i++) {
+        struct vp *v = &w->vp[i];
+        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank};
+        v->world = w;
+        v->stages = w->result->stage + (size_t)i * (size_t)row;
+        v->posted_end = &v->posted;
+        v->unexpected_end = &v->unexpected;
+        v->node = w->placement.node[i];
+        v->processor = w->placement.processor[i];
+        v->digest = DIGEST_START;
+        if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
+        v->fiber = fiber_start(w->fibers, i, rank_main, v);
+        world_wake(w, v);
+    }
+}
+
+/* Ranks run ahead until they wait; only then is it safe to let simulated time pass. */
+static void loop(struct world *w)
+{
+    do {
+        while (w->ready_count) {
+            struct vp *v = &w->vp[w->ready[w->ready_head]];
+            if (++w->ready_head == w->nrank) w->ready_head = 0;
+            w->ready_count--;
+            fiber_enter(v->fiber);
+        }
+    } while (sim_step(w->sim));
+}
+
+static void collect(struct world *w)
+{
+    struct run_result *r = w->result;
+    uint64_t digest = digest_mix(DIGEST_START, sim_digest(w->sim));
+    for (int i = 0; i < w->nrank; i++) {
+        const struct vp *v = &w->vp[i];
+        r->finish_ps[i] = v->finish;
+        if (v->finish > r->makespan_ps) r->makespan_ps = v->finish;
+        digest = digest_mix(digest_mix(digest, v->digest), (uint64_t)v->finish);
+    }
+    for (int i = 0; i < w->nrank; i++) {
+        struct stage_time *row = w->vp[i].stages;
+        row[w->nstage].wait_ps += r->makespan_ps - r->finish_ps[i];
+        for (int k = 0; k < w->nstage; k++) {
+            r->messages += row[k].messages;
+            r->bytes += row[k].bytes;
+        }
+    }
+    r->digest = digest;
+    r->events = sim_events(w->sim);
+    r->ties = sim_ties(w->sim);
+    r->switches = fiber_pool_switches(w->fibers);
+    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
+}
+
+static void copy_links(struct world *w)
+{
+    int n;
+    const struct link_load *l = net_links(w->net, &n);
+    if (!n) return;
+    w->result->link = TAKE(w->arena, n, struct link_load);
+    memcpy(w->result->link, l, (size_t)n * sizeof *l);
+    w->result->nlink = n;
+}
+
+static void name_stages(struct run_result *r, int nstage, const char *const *name)
+{
+    CHECK(nstage >= 1 && nstage < RUN_MAX_STAGES);
+    for (int k = 0; k < nstage; k++) text_copy(r->stage_name[k], sizeof r->stage_name[k], name[k]);
+    text_copy(r->stage_name[nstage], sizeof r->stage_name[nstage], "end");
+    r->nstage = nstage + 1;
+}
+
+static bool build(struct world *w, struct err *e)
+{
+    const struct machine_spec *m = w->machine;
+    w->topology = topology_create(&m->topology, w->scratch, e);
+    if (!w->topology) return false;
+    if (!placement_create(&w->placement, m, w->topology, w->nrank, w->scratch, e)) return false;
+    w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
+    if (!w->net) return false;
+    w->fibers = fiber_pool_create(w->nrank, STACK_BYTES, e);
+    return w->fibers != NULL;
+}
+
+static void run(struct world *w, uint64_t seed)
+{
+    struct run_result *r = w->result;
+    double begin = host_seconds();
+    make_ranks(w, seed);
+    background_start(w, seed);
+    loop(w);
+    r->host_s = host_seconds() - begin;
+    if (w->nfinished == w->nrank) {
+        collect(w);
+        copy_links(w);
+        return;
+    }
+    r->status = RUN_DEADLOCK;
+    stuck_explain(w);
+}
+
+bool world_run(const struct machine_spec *m, int nrank, const struct record_spec *record, uint64_t seed, int nstage,
+               const char *const *stage_name, world_program *program, void *context, struct arena *a,
+               struct run_result *out, struct err *e)
+{
+    struct world w = {
+        .machine = m, .record = record, .result = out, .arena = a, .scratch = arena_create(), .sim = sim_create(),
+        .nrank = nrank, .nstage = nstage, .software = software_cost_make(&m->software),
+        .node_cost = node_cost_make(&m->node), .shared_channel = m->software.shared_bandwidth > 0,
+        .eager_only = m->software.eager_bytes < 0, .noisy = m->noise.compute_cv > 0,
+        .program = program, .context = context,
+    };
+    out->nrank = nrank;
+    name_stages(out, nstage, stage_name);
+    bool ok = build(&w, e);
+    if (ok) run(&w, seed);
+    fiber_pool_destroy(w.fibers);
+    sim_destroy(w.sim);
+    arena_destroy(w.scratch);
+    return ok;
+}
