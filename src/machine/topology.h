@@ -18,9 +18,21 @@ struct hop {
     int vc_class;  /* dateline class to use on it, 0 .. nclass-1 */
 };
 
+/* A walk along one route: begun by topology_start, advanced by topology_next. Plain data, may be copied. */
+struct route_cursor {
+    int router;    /* where the head is */
+    int target;    /* the destination's router */
+    int stage;     /* of the family: dimension, level, leg */
+    int left;      /* of the family: steps left in this stage */
+    int step, at;  /* of the family: direction, coordinate */
+    int via;       /* of the family: intermediate group or router, -1: none */
+};
+
 struct topology {
     const struct topology_spec *spec; /* borrowed */
     int nnode, nrouter, nlink;        /* links are directed */
+    int nodes_per_router;             /* nodes i nodes_per_router .. on router i */
+    int nport;                        /* largest number of links into a router; injection ports are numbered from here */
     int nclass;                       /* virtual-channel classes that its routes need to be free of deadlock */
     int max_hops;                     /* longest route in links */
     const struct topology_type *type;
@@ -34,6 +46,10 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
  * `choice` selects among equally good random routes where the family has them (Valiant), else ignored. */
 int topology_route(const struct topology *t, int src, int dst, uint64_t choice, struct hop *route);
 
+/* topology_start, topology_next: the same route step by step. topology_next returns false when the walk is over. */
+struct route_cursor topology_start(const struct topology *t, int src, int dst, uint64_t choice);
+bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h);
+
 /* topology_distance: number of links of that route without writing it. */
 int topology_distance(const struct topology *t, int src, int dst);
 
@@ -43,6 +59,9 @@ void topology_link_ends(const struct topology *t, int link, int *from, int *to, 
 
 /* topology_link_bandwidth: rate of a link relative to the machine's link rate (1 unless the file says otherwise). */
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth);
+
+/* topology_injection_port: number of node `node`'s input port at its router, after those of all links. */
+int topology_injection_port(const struct topology *t, int node);
 
 /* topology_router_of: the router of node `node`. */
 int topology_router_of(const struct topology *t, int node);

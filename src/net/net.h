@@ -19,9 +19,14 @@
 struct topology;
 struct net;
 
+/* Lanes of the levels' events: deliveries and freed resources, starts of messages, arriving heads, arbitration.
+ * Who calls net_send with ready == sim_now must itself be in a lane <= NET_LANE_START. */
+enum { NET_LANE_FREE = 16, NET_LANE_START = 32, NET_LANE_HEAD = 48, NET_LANE_ARBITRATE = 64 };
+
 /* One message on its way; embedded in the mailbox's own struct, which stays in place until deliver. */
 struct net_message {
     int src, dst;            /* nodes (not ranks, not routers) */
+    int processor;           /* of the source node that sends: the own messages of `uncontended` are its */
     int64_t bytes;           /* payload >= 0 */
     int64_t id;              /* unique and deterministic: breaks ties; (source, count) order */
     sim_ps ready;            /* when the source may start injecting */

@@ -1,0 +1,98 @@
+/* topology.c - nodes on routers, and the walk along routes, over all families.
+ *
+ * Node i hangs on router i / nodes_per_router as its local port i mod nodes_per_router. */
+#include "machine/topology.h"
+
+#include "base/check.h"
+#include "machine/topology_internal.h"
+
+static const struct topology_type *const types[] = {
+    [TOPOLOGY_CROSSBAR] = &topology_crossbar,   [TOPOLOGY_TORUS] = &topology_torus,
+    [TOPOLOGY_MESH] = &topology_mesh,           [TOPOLOGY_HYPERCUBE] = &topology_hypercube,
+    [TOPOLOGY_BUS] = &topology_bus,             [TOPOLOGY_FULL_MESH] = &topology_full_mesh,
+    [TOPOLOGY_FAT_TREE] = &topology_fat_tree,   [TOPOLOGY_DRAGONFLY] = &topology_dragonfly,
+    [TOPOLOGY_GRAPH] = &topology_graph,
+};
+
+struct topology *topology_create(const struct topology_spec *s, struct arena *a, struct err *e)
+{
+    struct topology *t = TAKE(a, 1, struct topology);
+    CHECK((unsigned)s->family < sizeof types / sizeof *types);
+    t->spec = s;
+    t->type = types[s->family];
+    t->nclass = 1;
+    t->nodes_per_router = s->nodes_per_router;
+    if (s->nodes_per_router < 1 || s->processors_per_node < 1) {
+        err_set(e, ERR_CONFIG, "topology %s: nodes_per_router and processors_per_node must be at least 1",
+                t->type->name);
+        return NULL;
+    }
+    if (!t->type->create(t, a, e)) return NULL;
+    if (t->nnode == 0) {
+        int64_t nnode = (int64_t)t->nrouter * t->nodes_per_router;
+        if (nnode > INT32_MAX / s->processors_per_node) {
+            err_set(e, ERR_CONFIG, "topology %s: %lld nodes are more than can be numbered", t->type->name,
+                    (long long)nnode);
+            return NULL;
+        }
+        t->nnode = (int)nnode;
+    }
+    return t;
+}
+
+int topology_router_of(const struct topology *t, int node)
+{
+    return t->nodes_per_router == 1 ? node : node / t->nodes_per_router;
+}
+
+int topology_injection_port(const struct topology *t, int node)
+{
+    return t->nport + node % t->nodes_per_router;
+}
+
+struct route_cursor topology_start(const struct topology *t, int src, int dst, uint64_t choice)
+{
+    struct route_cursor c = {.router = topology_router_of(t, src), .target = topology_router_of(t, dst), .via = -1};
+    t->type->start(t, choice, &c);
+    return c;
+}
+
+bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h)
+{
+    return t->type->next(t, c, h);
+}
+
+int topology_route(const struct topology *t, int src, int dst, uint64_t choice, struct hop *route)
+{
+    struct route_cursor c = topology_start(t, src, dst, choice);
+    int n = 0;
+    struct hop h;
+    while (t->type->next(t, &c, &h)) {
+        CHECK(n < t->max_hops);
+        route[n++] = h;
+    }
+    return n;
+}
+
+int topology_distance(const struct topology *t, int src, int dst)
+{
+    if (t->type->distance) return t->type->distance(t, topology_router_of(t, src), topology_router_of(t, dst));
+    struct route_cursor c = topology_start(t, src, dst, 0);
+    struct hop h;
+    int n = 0;
+    while (t->type->next(t, &c, &h)) n++;
+    return n;
+}
+
+void topology_link_ends(const struct topology *t, int link, int *from, int *to, int *port)
+{
+    CHECK(link >= 0 && link < t->nlink);
+    t->type->ends(t, link, from, to, port);
+}
+
+double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth)
+{
+    int dim = t->type->rate_dim ? t->type->rate_dim(t, link) : -1;
+    double rate = dim >= 0 && dim < MACHINE_MAX_DIMS ? t->spec->dim_bandwidth[dim] : 0;
+    return rate > 0 && link_bandwidth > 0 ? rate / link_bandwidth : 1;
+}

@@ -1,0 +1,25 @@
+/* topology_internal.h - what a topology family provides to topology.c.
+ *
+ * A route is walked by a cursor, so that nobody needs to hold a whole route of a large machine. */
+#ifndef MACHINE_TOPOLOGY_INTERNAL_H
+#define MACHINE_TOPOLOGY_INTERNAL_H
+
+#include "machine/topology.h"
+
+struct topology_type {
+    const char *name;
+    /* fill nrouter, nlink, nclass, nport, max_hops and state of *t from t->spec; memory from a */
+    bool (*create)(struct topology *t, struct arena *a, struct err *e);
+    /* c->router and c->target are routers, already set: prepare the walk */
+    void (*start)(const struct topology *t, uint64_t choice, struct route_cursor *c);
+    /* c->router != c->target or the walk is not over: one step */
+    bool (*next)(const struct topology *t, struct route_cursor *c, struct hop *h);
+    int (*distance)(const struct topology *t, int from, int to); /* routers; NULL: walk and count */
+    void (*ends)(const struct topology *t, int link, int *from, int *to, int *port);
+    int (*rate_dim)(const struct topology *t, int link); /* which dim_bandwidth holds for it; -1: none */
+};
+
+extern const struct topology_type topology_crossbar, topology_torus, topology_mesh, topology_hypercube, topology_bus,
+    topology_full_mesh, topology_fat_tree, topology_dragonfly, topology_graph;
+
+#endif

@@ -1,0 +1,167 @@
+/* topology_torus.c - tori and meshes of any dimensions and mixed radix, dimension-order routes by coordinates.
+ *
+ * Nothing is tabulated. In dimension d (stride s, radix k) a line of routers has m links each way, m = k on a torus
+ * and k - 1 on a mesh; the link that leaves router r upwards, or on a mesh arrives at r from above, has number
+ *     base[d] + (down ? lines m : 0) + r - (k - m) s floor(r / (s k)),
+ * which leaves no gaps. The dateline class is 1 while the wrap link of the present dimension is still to be crossed. */
+#include "base/check.h"
+#include "machine/topology_internal.h"
+
+struct torus {
+    int ndim;
+    bool wraps;
+    enum tie_rule tie;
+    unsigned radix[MACHINE_MAX_DIMS], stride[MACHINE_MAX_DIMS];
+    unsigned per_line[MACHINE_MAX_DIMS]; /* links of a line in one direction */
+    int base[MACHINE_MAX_DIMS + 1];      /* first link of each dimension */
+    int count[MACHINE_MAX_DIMS];         /* links of a dimension in one direction */
+};
+
+/* hops from coordinate x to y in dimension d: positive upwards, negative downwards */
+static int torus_offset(const struct torus *g, int d, int x, int y)
+{
+    int diff = y - x;
+    if (!g->wraps || diff == 0) return diff;
+    int k = (int)g->radix[d];
+    int up = diff < 0 ? diff + k : diff;
+    if (2 * up != k) return 2 * up < k ? up : up - k;
+    return g->tie == TIE_POSITIVE || x % 2 == 0 ? up : -up;
+}
+
+static bool torus_shape(struct torus *g, struct topology *t, struct err *e)
+{
+    const struct topology_spec *s = t->spec;
+    int64_t nrouter = 1, nlink = 0;
+    if (s->ndim < 1 || s->ndim > MACHINE_MAX_DIMS)
+        return err_set(e, ERR_CONFIG, "topology %s: %d dimensions; expected 1 to %d", t->type->name, s->ndim,
+                       MACHINE_MAX_DIMS);
+    for (int d = 0; d < s->ndim; d++) {
+        if (s->dims[d] < 1)
+            return err_set(e, ERR_CONFIG, "topology %s: radix %d in dimension %d; expected at least 1", t->type->name,
+                           s->dims[d], d);
+        g->stride[d] = (unsigned)nrouter;
+        g->radix[d] = (unsigned)s->dims[d];
+        nrouter *= s->dims[d];
+        if (nrouter * s->nodes_per_router > INT32_MAX / (2 * s->ndim))
+            return err_set(e, ERR_CONFIG, "topology %s: more routers than can be numbered", t->type->name);
+    }
+    for (int d = 0; d < s->ndim; d++) {
+        g->per_line[d] = g->wraps && g->radix[d] > 1 ? g->radix[d] : g->radix[d] - 1;
+        g->base[d] = (int)nlink;
+        g->count[d] = (int)(nrouter / s->dims[d] * g->per_line[d]);
+        nlink += 2 * (int64_t)g->count[d];
+        t->max_hops += (int)(g->wraps ? g->radix[d] / 2 : g->radix[d] - 1);
+    }
+    g->ndim = s->ndim;
+    g->base[s->ndim] = (int)nlink;
+    t->nrouter = (int)nrouter;
+    t->nlink = (int)nlink;
+    return true;
+}
+
+static bool torus_make(struct topology *t, struct arena *a, bool wraps, struct err *e)
+{
+    struct torus *g = TAKE(a, 1, struct torus);
+    g->wraps = wraps;
+    g->tie = t->spec->tie;
+    t->state = g;
+    if (!torus_shape(g, t, e)) return false;
+    t->nport = 2 * g->ndim;
+    t->nclass = wraps ? 2 : 1;
+    return true;
+}
+
+static bool torus_create(struct topology *t, struct arena *a, struct err *e) { return torus_make(t, a, true, e); }
+static bool mesh_create(struct topology *t, struct arena *a, struct err *e) { return torus_make(t, a, false, e); }
+
+/* enter the first dimension >= c->stage in which the coordinates differ */
+static void torus_turn(const struct torus *g, struct route_cursor *c)
+{
+    for (int d = c->stage; d < g->ndim; d++) {
+        unsigned k = g->radix[d], s = g->stride[d];
+        int x = (int)((unsigned)c->router / s % k), y = (int)((unsigned)c->target / s % k);
+        int offset = torus_offset(g, d, x, y);
+        if (offset == 0) continue;
+        c->stage = d;
+        c->at = x;
+        c->left = offset < 0 ? -offset : offset;
+        c->step = offset < 0 ? -1 : 1;
+        return;
+    }
+    c->left = 0;
+}
+
+static void torus_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
+{
+    (void)choice;
+    if (c->router != c->target) torus_turn(t->state, c);
+}
+
+static int torus_link(const struct torus *g, int d, int lower, bool down)
+{
+    int link = g->base[d] + lower + (down ? g->count[d] : 0);
+    if (g->per_line[d] != g->radix[d]) link -= (int)(g->stride[d] * ((unsigned)lower / (g->stride[d] * g->radix[d])));
+    return link;
+}
+
+static bool torus_next(const struct topology *t, struct route_cursor *c, struct hop *h)
+{
+    const struct torus *g = t->state;
+    if (c->left == 0) return false;
+    int d = c->stage, k = (int)g->radix[d], s = (int)g->stride[d];
+    bool down = c->step < 0, wraps = g->wraps && (down ? c->at - c->left < 0 : c->at + c->left >= k);
+    h->vc_class = wraps;
+    h->link = torus_link(g, d, down && !g->wraps ? c->router - s : c->router, down);
+    int to = c->at + c->step;
+    if (to == k || to < 0) to -= c->step * k;
+    c->router += (to - c->at) * s;
+    c->at = to;
+    if (--c->left == 0 && c->router != c->target) {
+        c->stage++;
+        torus_turn(g, c);
+    }
+    return true;
+}
+
+static int torus_distance(const struct topology *t, int from, int to)
+{
+    const struct torus *g = t->state;
+    unsigned p = (unsigned)from, q = (unsigned)to;
+    int hops = 0;
+    for (int d = 0; d < g->ndim; d++) {
+        int offset = torus_offset(g, d, (int)(p % g->radix[d]), (int)(q % g->radix[d]));
+        hops += offset < 0 ? -offset : offset;
+        p /= g->radix[d];
+        q /= g->radix[d];
+    }
+    return hops;
+}
+
+static int torus_rate_dim(const struct topology *t, int link)
+{
+    const struct torus *g = t->state;
+    int d = 0;
+    while (link >= g->base[d + 1]) d++;
+    return d;
+}
+
+static void torus_ends(const struct topology *t, int link, int *from, int *to, int *port)
+{
+    const struct torus *g = t->state;
+    int d = torus_rate_dim(t, link);
+    unsigned i = (unsigned)(link - g->base[d]), s = g->stride[d], k = g->radix[d], m = g->per_line[d];
+    bool down = i >= (unsigned)g->count[d];
+    if (down) i -= (unsigned)g->count[d];
+    unsigned x = i / s % m, line = i / s / m * s * k + i % s;
+    unsigned next = down && g->wraps ? (x + k - 1) % k : (x + 1) % k;
+    int a = (int)(line + x * s), b = (int)(line + next * s);
+    bool swap = down && !g->wraps; /* numbered by its lower end */
+    *from = swap ? b : a;
+    *to = swap ? a : b;
+    *port = 2 * d + (down ? 0 : 1); /* going down one comes from the + neighbour */
+}
+
+const struct topology_type topology_torus = {"torus",    torus_create,   torus_start, torus_next,
+                                             torus_distance, torus_ends, torus_rate_dim};
+const struct topology_type topology_mesh = {"mesh",     mesh_create,    torus_start, torus_next,
+                                            torus_distance, torus_ends, torus_rate_dim};

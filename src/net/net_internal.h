@@ -1,0 +1,121 @@
+/* net_internal.h - what the levels share: resources, their rates, sizes on the wire, accounts and delivery.
+ *
+ * A message passes resources h = 0 .. R: its node's injection port, its links, the ejection port of the destination;
+ * R = links + 1. Its head crosses resource h at x_h, x_0 >= ready and x_{h+1} >= x_h + tau, and its tail is delivered
+ * at x_R + tail + end, where tail is the time of all its flits but the first at the slowest rate of the route. With
+ * nothing in the way that is ready + R tau + tail + end on every level. Without flits in the spec a flit is a byte.
+ * All times are integer picoseconds, converted once by net_create. */
+#ifndef NET_NET_INTERNAL_H
+#define NET_NET_INTERNAL_H
+
+#include "base/check.h"
+#include "machine/topology.h"
+#include "net/net.h"
+
+/* How fast a resource moves flits. */
+struct net_rate {
+    sim_ps flit;   /* time of one flit [ps], exact; 0 when a flit is a byte */
+    double byte;   /* time of one byte [ps], used when flit is 0 */
+};
+
+/* net_rate_time: time that `flits` flits take at rate r. */
+static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
+{
+    return r.flit ? flits * r.flit : (sim_ps)((double)flits * r.byte + 0.5);
+}
+
+/* net_rate_slower: the slower of two rates. */
+static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b)
+{
+    return a.byte >= b.byte ? a : b;
+}
+
+struct net {
+    const struct net_type *type;
+    const struct machine_spec *machine; /* borrowed */
+    const struct topology *topology;    /* borrowed */
+    struct sim *sim;                    /* borrowed */
+    struct arena *arena;                /* borrowed */
+    net_deliver_fn *deliver;
+    void *context;
+
+    sim_ps tau, end, credit, gap;       /* hop, end and credit latency, the software's gap g [ps] */
+    int64_t flit_bytes;                 /* >= 1 */
+    struct net_rate injection, ejection, link; /* injection includes the interface's gap per byte */
+    struct net_rate *link_rate;         /* (nlink), NULL when all links have the rate `link` */
+    int nnode, nlink, nresource;
+
+    bool port_private;                  /* sends of one node come in the order of their ready times */
+    int64_t in_flight;                  /* messages accepted and not yet delivered */
+    struct link_load *load;             /* (nresource), NULL unless wanted */
+    void *state;                        /* of the level */
+};
+
+extern const struct net_type net_loggp, net_link, net_packet, net_flit, net_auto;
+
+/* Resources are numbered: injection ports of nodes, then links, then ejection ports. */
+static inline int net_injection(const struct net *n, int node) { (void)n; return node; }
+static inline int net_resource(const struct net *n, int link) { return n->nnode + link; }
+static inline int net_ejection(const struct net *n, int node) { return n->nnode + n->nlink + node; }
+static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }
+static inline bool net_is_ejection(const struct net *n, int resource) { return resource >= n->nnode + n->nlink; }
+
+/* net_resource_rate: the rate of a resource. */
+static inline struct net_rate net_resource_rate(const struct net *n, int resource)
+{
+    if (net_is_injection(n, resource)) return n->injection;
+    if (net_is_ejection(n, resource)) return n->ejection;
+    return n->link_rate ? n->link_rate[resource - n->nnode] : n->link;
+}
+
+/* net_packets: how many packets carry `bytes` of payload (>= 1); net_packet_flits: the flits of packet `index` of
+ * them, header included (>= 1); net_flits: the flits of all together. */
+int64_t net_packets(const struct net *n, int64_t bytes);
+int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index);
+int64_t net_flits(const struct net *n, int64_t bytes);
+
+/* net_choice: the number that selects among random routes, a hash of the message's id. */
+uint64_t net_choice(const struct net_message *m);
+
+/* net_route: the resources of m's whole way, injection first, ejection last, into route[max_hops + 2] (`link` holds
+ * resource numbers); returns R. *slowest becomes the slowest rate of the route. */
+int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest);
+
+/* net_slowest: the slowest rate of m's route, *nhop its number of links. */
+struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop);
+
+/* net_head_port: the input port through which a message that comes over `resource` enters the next router. */
+int net_head_port(const struct net *n, int resource);
+
+/* net_port_busy: how long the injection port of a node is taken by `flits` flits: the gap g after the last one. */
+static inline sim_ps net_port_busy(const struct net *n, int64_t flits)
+{
+    sim_ps flit = net_rate_time(n->injection, 1);
+    return net_rate_time(n->injection, flits - 1) + (n->gap > flit ? n->gap : flit);
+}
+
+/* net_arrive: hand m over, its three times filled in. */
+static inline void net_arrive(struct net *n, struct net_message *m)
+{
+    n->in_flight--;
+    n->deliver(n->context, m);
+}
+
+/* net_account: resource was used for `busy` by a message (or a part of it: messages 0) that waited `queue` for it. */
+static inline void net_account(struct net *n, int resource, int messages, int64_t bytes, sim_ps busy, sim_ps queue)
+{
+    if (!n->load) return;
+    struct link_load *l = &n->load[resource];
+    l->messages += messages;
+    l->bytes += bytes;
+    l->busy_ps += busy;
+    l->queue_ps += queue;
+}
+
+/* net_event_key: order of events of one lane and time: by input port, then message. */
+static inline uint64_t net_event_key(int port, int64_t id)
+{
+    return (uint64_t)(port & 0xffffff) << 24 | (uint64_t)(id & 0xffffff);
+}
+
+#endif
