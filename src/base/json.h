@@ -10,6 +10,7 @@ struct json {
     FILE *out;      /* borrowed */
     int depth;
     unsigned char first[64]; /* per depth: nothing written yet */
+    char closer[64];         /* per depth: the bracket that ends it */
     bool key_open;  /* a key was written, its value is next */
 };
 
@@ -22,7 +23,8 @@ void json_array(struct json *j);
 void json_end(struct json *j);
 void json_key(struct json *j, const char *key);
 
-/* values: text (escaped), integer, real (17 significant digits, null when not finite), truth, null. */
+/* values: text (escaped), integer, real (as few digits as read back to the same double,
+ * null when not finite), truth, null. */
 void json_text(struct json *j, const char *s);
 void json_int(struct json *j, int64_t v);
 void json_real(struct json *j, double v);

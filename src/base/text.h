@@ -7,8 +7,9 @@
 
 #include "base/err.h"
 
-/* text_nearest: the name among `names` (n of them) with the smallest edit distance to `word`, ignoring case;
- * NULL when none is close enough to be a likely misspelling (distance > 1 + length/3). */
+/* text_nearest: the name among `names` (n of them) with the smallest edit distance to `word` (a swap of two
+ * neighbours counts one), ignoring case, the first of equals; NULL when none is close enough to be a likely
+ * misspelling (distance > 1 + length/3). */
 const char *text_nearest(const char *word, const char *const *names, int n);
 
 /* A growing text on the heap; start from {0}, end with text_free. */
@@ -32,5 +33,8 @@ bool text_read_file(struct text *t, const char *path, struct err *e);
 
 /* text_copy: copy s into buffer[size], truncating; always NUL-terminated. */
 void text_copy(char *buffer, size_t size, const char *s);
+
+/* text_real: x with as few digits (15 to 17) as read back to the same double. */
+void text_real(char buffer[32], double x);
 
 #endif

@@ -25,6 +25,8 @@ enum unit {
     UNIT_STIFFNESS,     /* N m/rad */
     UNIT_DAMPING,       /* N m s/rad */
     UNIT_TORQUE,        /* N m */
+    UNIT_FORCE,         /* N */
+    UNIT_ANGULAR_ACCELERATION, /* rad/s^2 */
     UNIT_KINDS
 };
 

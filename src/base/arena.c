@@ -1,0 +1,187 @@
+/* arena.c - a bump allocator over mapped blocks.
+ *
+ * Blocks come from mmap, so a large array costs only the pages that are touched, and fresh pages are zero already:
+ * `dirty` remembers how far a block was ever used, and only below it must a new take be cleared by hand. Blocks
+ * double in size, so the number of system calls is logarithmic in what a run needs. After a release the next block is
+ * kept for the next take: a loop around a mark near a block's end does not map and unmap each time round.
+ *
+ * Under the address sanitizer what was released is poisoned and takes are kept apart, so that overruns and uses
+ * after release are seen, and the blocks are roots of the leak detector. */
+#include "base/arena.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "base/check.h"
+
+#if defined __has_feature
+#if __has_feature(address_sanitizer)
+#define ARENA_ASAN 1
+#endif
+#endif
+#ifdef __SANITIZE_ADDRESS__
+#define ARENA_ASAN 1
+#endif
+#ifdef ARENA_ASAN
+#include <sanitizer/asan_interface.h>
+#include <sanitizer/lsan_interface.h>
+#define POISON(p, n) ASAN_POISON_MEMORY_REGION(p, n)
+#define UNPOISON(p, n) ASAN_UNPOISON_MEMORY_REGION(p, n)
+#define ROOT_ADD(p, n) __lsan_register_root_region(p, n)
+#define ROOT_REMOVE(p, n) __lsan_unregister_root_region(p, n)
+enum { GAP = 64 };
+#else
+#define POISON(p, n) ((void)(p), (void)(n))
+#define UNPOISON(p, n) ((void)(p), (void)(n))
+#define ROOT_ADD(p, n) ((void)(p), (void)(n))
+#define ROOT_REMOVE(p, n) ((void)(p), (void)(n))
+enum { GAP = 0 };
+#endif
+
+enum { ALIGN = 64, FIRST_BLOCK = 1 << 18, LARGEST_BLOCK = 1 << 28, PAGE = 4096 };
+
+/* The head of a block lies in its own first bytes; takes start at ALIGN. */
+struct block {
+    struct block *below; /* the block filled before this one */
+    size_t capacity;     /* bytes of the whole mapping */
+    size_t used;         /* next free offset from the block's start, a multiple of ALIGN */
+    size_t dirty;        /* bytes beyond this offset were never handed out: still zero */
+    size_t before;       /* bytes in use in the blocks below */
+};
+_Static_assert(sizeof(struct block) <= ALIGN, "the head of a block fits in front of its first take");
+
+struct arena {
+    struct block *top;   /* the block in use, NULL at first */
+    struct block *spare; /* one empty block kept after a release, or NULL */
+    size_t next;         /* size of the next block */
+    size_t peak;
+};
+
+struct arena *arena_create(void)
+{
+    struct arena *a = calloc(1, sizeof *a);
+    CHECK(a != NULL && "out of memory");
+    a->next = FIRST_BLOCK;
+    return a;
+}
+
+static void block_unmap(struct block *b)
+{
+    if (!b) return;
+    ROOT_REMOVE(b, b->capacity);
+    UNPOISON(b, b->dirty);
+    munmap(b, b->capacity);
+}
+
+void arena_destroy(struct arena *a)
+{
+    if (!a) return;
+    block_unmap(a->spare);
+    while (a->top) {
+        struct block *below = a->top->below;
+        block_unmap(a->top);
+        a->top = below;
+    }
+    free(a);
+}
+
+/* block_map: an empty block with room for `size` bytes after its head. */
+static struct block *block_map(struct arena *a, size_t size)
+{
+    size_t capacity = (ALIGN + size + PAGE - 1) / PAGE * PAGE;
+    if (capacity < a->next) capacity = a->next;
+    if (a->next < LARGEST_BLOCK) a->next *= 2;
+    struct block *b =
+        mmap(NULL, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    CHECK(b != MAP_FAILED && "out of memory");
+    ROOT_ADD(b, capacity);
+    *b = (struct block){.capacity = capacity, .used = ALIGN, .dirty = ALIGN};
+    return b;
+}
+
+/* arena_grow: make a block with `size` free bytes the top. */
+static struct block *arena_grow(struct arena *a, size_t size)
+{
+    struct block *b = a->spare;
+    a->spare = NULL;
+    if (b && b->capacity - ALIGN < size) {
+        block_unmap(b);
+        b = NULL;
+    }
+    if (!b) b = block_map(a, size);
+    b->below = a->top;
+    b->before = a->top ? a->top->before + a->top->used - ALIGN : 0;
+    a->top = b;
+    return b;
+}
+
+void *arena_take(struct arena *a, size_t size)
+{
+    CHECK(size < SIZE_MAX / 2);
+    size_t room = (size + ALIGN - 1) / ALIGN * ALIGN + GAP;
+    struct block *b = a->top;
+    if (!b || b->capacity - b->used < room) b = arena_grow(a, room);
+    char *p = (char *)b + b->used;
+    if (b->used < b->dirty) {
+        size_t old = b->dirty - b->used;
+        UNPOISON(p, old < size ? old : size);
+        memset(p, 0, old < size ? old : size);
+    }
+    POISON(p + size, room - size);
+    b->used += room;
+    if (b->dirty < b->used) b->dirty = b->used;
+    size_t in_use = b->before + b->used - ALIGN;
+    if (in_use > a->peak) a->peak = in_use;
+    return p;
+}
+
+char *arena_text(struct arena *a, const char *s)
+{
+    size_t n = strlen(s) + 1;
+    return memcpy(arena_take(a, n), s, n);
+}
+
+struct arena_mark arena_mark(struct arena *a)
+{
+    return (struct arena_mark){a->top, a->top ? a->top->used : 0};
+}
+
+/* arena_drop_top: take the top block off, and keep the larger of it and the spare one. */
+static void arena_drop_top(struct arena *a)
+{
+    struct block *b = a->top, *kept = a->spare;
+    a->top = b->below;
+    if (kept && kept->capacity >= b->capacity) {
+        block_unmap(b);
+        return;
+    }
+    block_unmap(kept);
+    if (b->capacity > LARGEST_BLOCK) { /* too large to sit on: its pages go back to the host */
+        a->spare = NULL;
+        block_unmap(b);
+        return;
+    }
+    b->used = ALIGN;
+    POISON((char *)b + ALIGN, b->dirty - ALIGN);
+    a->spare = b;
+}
+
+void arena_release(struct arena *a, struct arena_mark m)
+{
+    while (a->top != m.block) {
+        CHECK(a->top != NULL && "the mark is of this arena and was not released before");
+        arena_drop_top(a);
+    }
+    if (!a->top) return;
+    CHECK(m.used <= a->top->used);
+    POISON((char *)a->top + m.used, a->top->used - m.used);
+    a->top->used = m.used;
+}
+
+size_t arena_peak(const struct arena *a)
+{
+    return a->peak;
+}

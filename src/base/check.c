@@ -1,0 +1,30 @@
+/* check.c - the last words before abort: place, condition, and what the run in progress says of itself. */
+#include "base/check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct check_note {
+    void (*describe)(void *context, char *buffer, int size);
+    void *context;
+};
+
+/* The only writable datum outside a run: without it, base would have to know the clock in order to print it. */
+static _Thread_local struct check_note check_note;
+
+void check_note_set(void (*describe)(void *context, char *buffer, int size), void *context)
+{
+    check_note = (struct check_note){describe, context};
+}
+
+void check_failed(const char *file, int line, const char *cond)
+{
+    char note[512] = "";
+    struct check_note told = check_note;
+    check_note = (struct check_note){0}; /* a failing describe must not come back here for ever */
+    if (told.describe) told.describe(told.context, note, (int)sizeof note);
+    fflush(stdout);
+    fprintf(stderr, "mimdsim: internal error at %s:%d: CHECK(%s) failed%s%s\n", file, line, cond, note[0] ? "; " : "",
+            note);
+    abort();
+}

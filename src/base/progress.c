@@ -1,0 +1,74 @@
+/* progress.c - one line of progress on stderr, and the host's clock and memory. */
+#include "base/progress.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double PATIENCE = 1.0;        /* s without a word */
+static const double TTY_INTERVAL = 0.1;    /* s between lines on a terminal */
+static const double FILE_INTERVAL = 10.0;  /* s between lines elsewhere */
+
+double host_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+long host_peak_bytes(void)
+{
+    /* VmHWM is this program's own; ru_maxrss would include what the parent held before exec. */
+    char line[128];
+    long kib = -1;
+    FILE *in = fopen("/proc/self/status", "r");
+    while (in && kib < 0 && fgets(line, sizeof line, in))
+        if (strncmp(line, "VmHWM:", 6) == 0) kib = strtol(line + 6, NULL, 10);
+    if (in) fclose(in);
+    if (kib >= 0) return kib * 1024;
+    struct rusage use;
+    getrusage(RUSAGE_SELF, &use);
+    return use.ru_maxrss * 1024;
+}
+
+struct progress progress_make(const char *what, double total, bool quiet)
+{
+    struct progress p = {.what = what, .total = total, .quiet = quiet, .tty = isatty(STDERR_FILENO)};
+    p.start = host_seconds();
+    p.last = p.start;
+    return p;
+}
+
+/* span_text: a host time for people: "42 s", "3 min 20 s", "2 h 5 min". */
+static void span_text(double s, char buffer[32])
+{
+    long n = s < 1e9 ? (long)(s + 0.5) : 1000000000;
+    if (n < 60) snprintf(buffer, 32, "%ld s", n);
+    else if (n < 3600) snprintf(buffer, 32, "%ld min %ld s", n / 60, n % 60);
+    else snprintf(buffer, 32, "%ld h %ld min", n / 3600, n / 60 % 60);
+}
+
+void progress_show(struct progress *p, double done)
+{
+    if (p->quiet) return;
+    double now = host_seconds(), spent = now - p->start;
+    double due = !p->tty ? p->last + FILE_INTERVAL : p->shown ? p->last + TTY_INTERVAL : p->start + PATIENCE;
+    if (now < due) return;
+    double rate = done / spent;
+    char left[32] = "unknown time";
+    if (rate > 0) span_text((p->total - done) / rate, left);
+    fprintf(stderr, "%s%s: %.0f %% (%.4g of %.4g, %.3g/s), %s left%s", p->tty ? "\r" : "", p->what,
+            100 * done / p->total, done, p->total, rate, left, p->tty ? "\033[K" : "\n");
+    fflush(stderr);
+    p->last = now;
+    p->shown = true;
+}
+
+void progress_end(struct progress *p)
+{
+    if (p->shown && p->tty) fputs("\r\033[K", stderr);
+    p->shown = false;
+}

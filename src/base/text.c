@@ -1,0 +1,134 @@
+/* text.c - strings: nearest valid name, growing buffer, whole files. */
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+
+enum { NEAREST_MAX = 64 }; /* longer words are no misspelt keys */
+
+static int min3(int a, int b, int c)
+{
+    int m = a < b ? a : b;
+    return m < c ? m : c;
+}
+
+static bool same_letter(char a, char b)
+{
+    return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+/* edit_distance: insertions, deletions, replacements and swaps of neighbours (optimal string alignment). */
+static int edit_distance(const char *a, size_t na, const char *b, size_t nb)
+{
+    int row[3][NEAREST_MAX + 1];
+    for (size_t j = 0; j <= nb; j++) row[0][j] = (int)j;
+    for (size_t i = 1; i <= na; i++) {
+        int *now = row[i % 3], *last = row[(i + 2) % 3], *before = row[(i + 1) % 3];
+        now[0] = (int)i;
+        for (size_t j = 1; j <= nb; j++) {
+            now[j] = min3(last[j] + 1, now[j - 1] + 1, last[j - 1] + !same_letter(a[i - 1], b[j - 1]));
+            bool swap = i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) && same_letter(a[i - 2], b[j - 1]);
+            if (swap && before[j - 2] + 1 < now[j]) now[j] = before[j - 2] + 1;
+        }
+    }
+    return row[na % 3][nb];
+}
+
+const char *text_nearest(const char *word, const char *const *names, int n)
+{
+    size_t length = strlen(word);
+    if (length > NEAREST_MAX) return NULL;
+    int best = 2 + (int)length / 3; /* one more than the largest allowed */
+    const char *nearest = NULL;
+    for (int k = 0; k < n; k++) {
+        size_t other = strlen(names[k]);
+        if (other > NEAREST_MAX) continue;
+        int d = edit_distance(word, length, names[k], other);
+        if (d < best) {
+            best = d;
+            nearest = names[k];
+        }
+    }
+    return nearest;
+}
+
+/* text_reserve: room for n more bytes and a NUL. */
+static void text_reserve(struct text *t, size_t n)
+{
+    size_t need = t->length + n + 1;
+    if (need <= t->capacity) return;
+    size_t capacity = t->capacity ? t->capacity : 128;
+    while (capacity < need) capacity *= 2;
+    t->s = realloc(t->s, capacity);
+    CHECK(t->s != NULL && "out of memory");
+    t->capacity = capacity;
+}
+
+void text_add(struct text *t, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    int n = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    CHECK(n >= 0);
+    text_reserve(t, (size_t)n);
+    va_start(args, format);
+    vsnprintf(t->s + t->length, (size_t)n + 1, format, args);
+    va_end(args);
+    t->length += (size_t)n;
+}
+
+void text_add_bytes(struct text *t, const char *s, size_t n)
+{
+    text_reserve(t, n);
+    if (n > 0) memcpy(t->s + t->length, s, n);
+    t->length += n;
+    t->s[t->length] = '\0';
+}
+
+void text_free(struct text *t)
+{
+    free(t->s);
+    *t = (struct text){0};
+}
+
+bool text_read_file(struct text *t, const char *path, struct err *e)
+{
+    t->length = 0;
+    FILE *in = fopen(path, "rb");
+    if (!in) return err_set_at(e, ERR_NO_INPUT, path, 0, "cannot open: %s", strerror(errno));
+    size_t n;
+    do { /* a directory opens well and fails in the first read */
+        text_reserve(t, 65536);
+        n = fread(t->s + t->length, 1, 65536, in);
+        t->length += n;
+    } while (n == 65536);
+    t->s[t->length] = '\0';
+    int failure = ferror(in) ? errno : 0;
+    fclose(in);
+    if (failure) return err_set_at(e, ERR_IO, path, 0, "cannot read: %s", strerror(failure));
+    return true;
+}
+
+void text_copy(char *buffer, size_t size, const char *s)
+{
+    CHECK(size > 0);
+    size_t n = strlen(s);
+    if (n > size - 1) n = size - 1;
+    memmove(buffer, s, n);
+    buffer[n] = '\0';
+}
+
+void text_real(char buffer[32], double x)
+{
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(buffer, 32, "%.*g", digits, x);
+        if (strtod(buffer, NULL) == x) return;
+    }
+}
