@@ -21,6 +21,7 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
     t->spec = s;
     t->type = types[s->family];
     t->nclass = 1;
+    t->fixed_routes = true;
     t->nodes_per_router = s->nodes_per_router;
     if (s->nodes_per_router < 1 || s->processors_per_node < 1) {
         err_set(e, ERR_CONFIG, "topology %s: nodes_per_router and processors_per_node must be at least 1",

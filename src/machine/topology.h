@@ -16,6 +16,7 @@
 struct hop {
     int link;      /* 0 .. nlink-1 */
     int vc_class;  /* dateline class to use on it, 0 .. nclass-1 */
+    int port;      /* the input port at the router that it leads to, as of topology_link_ends */
 };
 
 /* A walk along one route: begun by topology_start, advanced by topology_next. Plain data, may be copied. */
@@ -35,6 +36,7 @@ struct topology {
     int nport;                        /* largest number of links into a router; injection ports are numbered from here */
     int nclass;                       /* virtual-channel classes that its routes need to be free of deadlock */
     int max_hops;                     /* longest route in links */
+    bool fixed_routes;                /* a route depends on its ends alone, not on `choice` */
     const struct topology_type *type;
     void *state;                      /* of the family */
 };

@@ -45,11 +45,13 @@ static bool hypercube_next(const struct topology *t, struct route_cursor *c, str
     h->vc_class = 0;
     if (g->xpress && diff == all) {
         h->link = (g->ndim << g->ndim) + c->router;
+        h->port = g->ndim;
         c->router = c->target;
         return true;
     }
     int d = __builtin_ctz(diff);
     h->link = c->router * g->ndim + d;
+    h->port = d;
     c->router ^= 1 << d;
     return true;
 }

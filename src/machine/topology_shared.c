@@ -34,7 +34,7 @@ static bool crossbar_next(const struct topology *t, struct route_cursor *c, stru
     (void)t;
     if (c->left == 0) return false;
     c->left = 0;
-    *h = (struct hop){0, 0};
+    *h = (struct hop){0, 0, 0};
     return true;
 }
 
@@ -82,6 +82,7 @@ static bool full_mesh_next(const struct topology *t, struct route_cursor *c, str
 {
     if (c->router == c->target) return false;
     h->link = c->router * (t->nrouter - 1) + c->target - (c->target > c->router);
+    h->port = c->router - (c->router > c->target);
     h->vc_class = 0;
     c->router = c->target;
     return true;

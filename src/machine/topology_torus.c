@@ -111,6 +111,7 @@ static bool torus_next(const struct topology *t, struct route_cursor *c, struct 
     int d = c->stage, k = (int)g->radix[d], s = (int)g->stride[d];
     bool down = c->step < 0, wraps = g->wraps && (down ? c->at - c->left < 0 : c->at + c->left >= k);
     h->vc_class = wraps;
+    h->port = 2 * d + !down;
     h->link = torus_link(g, d, down && !g->wraps ? c->router - s : c->router, down);
     int to = c->at + c->step;
     if (to == k || to < 0) to -= c->step * k;

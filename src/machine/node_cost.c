@@ -1,0 +1,19 @@
+/* node_cost.c - rates and cycles of a node as picoseconds per operation. */
+#include "machine/node_cost.h"
+
+static double cycles_ps(double cycles, double clock)
+{
+    return clock > 0 ? cycles / clock * 1e12 : 0;
+}
+
+struct node_cost node_cost_make(const struct node_spec *s)
+{
+    return (struct node_cost){
+        .flop = s->flop_rate > 0 ? 1e12 / s->flop_rate : 0,
+        .div = cycles_ps(s->div_cycles, s->clock),
+        .sqrt = cycles_ps(s->sqrt_cycles, s->clock),
+        .trig = cycles_ps(s->trig_cycles, s->clock),
+        .byte = s->copy_bandwidth > 0 ? 1e12 / s->copy_bandwidth : 0,
+        .call = s->call_time * 1e12,
+    };
+}

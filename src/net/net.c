@@ -1,0 +1,189 @@
+/* net.c - makes a net of a level: converts the machine's numbers to picoseconds once, sizes messages, forms the
+ * closed form of the empty network. */
+#include <string.h>
+
+#include "base/random.h"
+#include "net/net_internal.h"
+
+static const struct net_type *const levels[] = {
+    [LEVEL_LOGGP] = &net_loggp,
+    [LEVEL_LINK] = &net_link,
+};
+
+static struct net_rate rate_make(const struct network_spec *w, double bandwidth, double least_s_per_byte)
+{
+    double s_per_byte = bandwidth > 0 ? 1 / bandwidth : 0;
+    if (s_per_byte < least_s_per_byte) s_per_byte = least_s_per_byte;
+    struct net_rate r = {0, s_per_byte * SIM_PS_PER_S};
+    if (w->flit_bytes > 0) {
+        r.flit = (sim_ps)((double)w->flit_bytes * r.byte + 0.5);
+        if (r.flit == 0 && r.byte > 0) r.flit = 1;
+        r.byte = (double)r.flit / (double)w->flit_bytes;
+    }
+    return r;
+}
+
+/* rates of single links, only where the file gives dimensions their own */
+static void link_rates_make(struct net *n, const struct network_spec *w)
+{
+    bool own = false;
+    for (int d = 0; d < MACHINE_MAX_DIMS; d++) own = own || n->topology->spec->dim_bandwidth[d] > 0;
+    if (!own) return;
+    n->link_rate = TAKE(n->arena, n->nlink > 0 ? n->nlink : 1, struct net_rate);
+    for (int l = 0; l < n->nlink; l++) {
+        double factor = topology_link_bandwidth(n->topology, l, w->link_bandwidth);
+        n->link_rate[l] = rate_make(w, factor * w->link_bandwidth, 0);
+    }
+}
+
+static void loads_make(struct net *n)
+{
+    n->load = TAKE(n->arena, n->nresource, struct link_load);
+    for (int i = 0; i < n->nresource; i++) {
+        struct link_load *l = &n->load[i];
+        int port;
+        l->from = l->to = l->node = -1;
+        if (net_is_injection(n, i)) {
+            l->node = i;
+            l->to = topology_router_of(n->topology, i);
+        } else if (net_is_ejection(n, i)) {
+            l->node = i - n->nnode - n->nlink;
+            l->from = topology_router_of(n->topology, l->node);
+        } else {
+            topology_link_ends(n->topology, i - n->nnode, &l->from, &l->to, &port);
+        }
+    }
+}
+
+static bool sizes_fit(const struct topology *t, struct err *e)
+{
+    if (2 * (int64_t)t->nnode + t->nlink <= INT32_MAX) return true;
+    return err_set(e, ERR_CONFIG, "the network has %d nodes and %d links, more than can be numbered", t->nnode, t->nlink);
+}
+
+struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
+                       net_deliver_fn *deliver, void *context, bool want_links, struct err *e)
+{
+    const struct network_spec *w = &m->network;
+    struct net *n = TAKE(a, 1, struct net);
+    CHECK((unsigned)w->level < sizeof levels / sizeof *levels && levels[w->level]);
+    if (!sizes_fit(t, e)) return NULL;
+    *n = (struct net){.type = levels[w->level], .machine = m, .topology = t, .sim = s, .arena = a,
+                      .deliver = deliver, .context = context};
+    n->nnode = t->nnode;
+    n->nlink = t->nlink;
+    n->nresource = 2 * t->nnode + t->nlink;
+    n->tau = sim_from_seconds(w->hop_latency);
+    n->end = sim_from_seconds(w->end_latency);
+    n->credit = sim_from_seconds(w->credit_latency);
+    n->gap = sim_from_seconds(m->software.gap);
+    n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
+    n->link = rate_make(w, w->link_bandwidth, 0);
+    n->injection = rate_make(w, w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth,
+                             m->software.gap_per_byte);
+    n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
+    link_rates_make(n, w);
+    n->port_private = t->spec->processors_per_node == 1 && m->software.eager_bytes < 0;
+    if (want_links) loads_make(n);
+    return n->type->create(n, e) ? n : NULL;
+}
+
+void net_send(struct net *n, struct net_message *m)
+{
+    n->in_flight++;
+    n->type->send(n, m);
+}
+
+int64_t net_packets(const struct net *n, int64_t bytes)
+{
+    int64_t most = n->machine->network.packet_bytes;
+    return most > 0 && bytes > most ? (bytes + most - 1) / most : 1;
+}
+
+static int64_t wire_flits(const struct net *n, int64_t payload)
+{
+    int64_t flits = (payload + n->machine->network.header_bytes + n->flit_bytes - 1) / n->flit_bytes;
+    return flits > 0 ? flits : 1;
+}
+
+int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index)
+{
+    int64_t most = n->machine->network.packet_bytes, packets = net_packets(n, bytes);
+    CHECK(index >= 0 && index < packets);
+    return wire_flits(n, index < packets - 1 ? most : bytes - (packets - 1) * most * (packets > 1));
+}
+
+int64_t net_flits(const struct net *n, int64_t bytes)
+{
+    int64_t most = n->machine->network.packet_bytes;
+    if (most <= 0 || bytes <= most) return wire_flits(n, bytes);
+    int64_t full = (bytes + most - 1) / most - 1;
+    return full * wire_flits(n, most) + wire_flits(n, bytes - full * most);
+}
+
+uint64_t net_choice(const struct net_message *m)
+{
+    uint64_t z = ((uint64_t)m->id + 1) * 0x9e3779b97f4a7c15u; /* splitmix64 */
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest)
+{
+    struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    struct net_rate slow = net_rate_slower(n->injection, n->ejection);
+    int h = 0;
+    route[h++] = (struct hop){net_injection(n, m->src), 0, topology_injection_port(n->topology, m->src)};
+    while (topology_next(n->topology, &c, &route[h])) {
+        int link = route[h].link;
+        slow = net_rate_slower(slow, n->link_rate ? n->link_rate[link] : n->link);
+        route[h++].link = net_resource(n, link);
+    }
+    route[h] = (struct hop){net_ejection(n, m->dst), 0, 0};
+    *slowest = slow;
+    return h;
+}
+
+struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop)
+{
+    struct net_rate slow = net_rate_slower(n->injection, n->ejection);
+    if (!n->link_rate && n->topology->fixed_routes) {
+        *nhop = topology_distance(n->topology, m->src, m->dst);
+        return *nhop > 0 ? net_rate_slower(slow, n->link) : slow;
+    }
+    struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    struct hop h;
+    for (*nhop = 0; topology_next(n->topology, &c, &h); ++*nhop)
+        slow = net_rate_slower(slow, n->link_rate ? n->link_rate[h.link] : n->link);
+    return slow;
+}
+
+int net_head_port(const struct net *n, int resource)
+{
+    int from, to, port;
+    if (net_is_injection(n, resource)) return topology_injection_port(n->topology, resource);
+    CHECK(!net_is_ejection(n, resource));
+    topology_link_ends(n->topology, resource - n->nnode, &from, &to, &port);
+    return port;
+}
+
+sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)
+{
+    struct net_message m = {.src = src, .dst = dst, .bytes = bytes};
+    int nhop;
+    struct net_rate slow = net_slowest(n, &m, &nhop);
+    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, bytes) - 1) + n->end;
+}
+
+bool net_stuck(const struct net *n, char *text, int size)
+{
+    if (n->in_flight == 0 || !n->type->stuck) return false;
+    return n->type->stuck(n, text, size);
+}
+
+const struct link_load *net_links(const struct net *n, int *nlink)
+{
+    *nlink = n->load ? n->nresource : 0;
+    return n->load;
+}

@@ -1,0 +1,140 @@
+/* net_link.c - message-level cut-through: every resource serves one message at a time, first come first served.
+ *
+ * When a message's head arrives at resource h at time t, it crosses at x_h = max(t, free_h), and free_h becomes
+ * x_h + S, whatever happens downstream: buffers are unbounded, nobody blocks the one behind. The head is at the next
+ * resource at x_h + tau. A resource is never taken before the head is there: reserving a whole path at injection
+ * mis-orders messages and is worse than no contention at all. Heads that arrive together go by input port, then id.
+ *
+ * Events: one per link and one for the ejection port, which already knows the arrival. The injection port of a node
+ * with one sender needs none. */
+#include "net/net_internal.h"
+
+/* A message on its way. */
+struct flight {
+    struct net_message *m;
+    struct route_cursor cursor;
+    int resource;        /* where the head arrives next */
+    int port;            /* through which it arrives there */
+    int64_t flits;
+    struct net_rate slow;/* slowest rate of the route */
+    struct flight *next; /* in the pool of unused ones */
+};
+
+struct link_level {
+    sim_ps *free;        /* (nresource) from when on */
+    sim_ps *own_port;    /* (nnode x processors) injection port had no other processor of the node sent anything */
+    int nprocessor;
+    struct flight *pool;
+};
+
+static bool link_create(struct net *n, struct err *e)
+{
+    (void)e;
+    struct link_level *g = TAKE(n->arena, 1, struct link_level);
+    g->nprocessor = n->topology->spec->processors_per_node;
+    g->free = TAKE(n->arena, n->nresource, sim_ps);
+    g->own_port = g->nprocessor == 1 ? g->free : TAKE(n->arena, (int64_t)n->nnode * g->nprocessor, sim_ps);
+    n->state = g;
+    return true;
+}
+
+static struct flight *flight_take(struct net *n)
+{
+    enum { CHUNK = 256 };
+    struct link_level *g = n->state;
+    if (!g->pool) {
+        struct flight *chunk = TAKE(n->arena, CHUNK, struct flight);
+        for (int i = 0; i < CHUNK; i++) chunk[i].next = i + 1 < CHUNK ? &chunk[i + 1] : NULL;
+        g->pool = chunk;
+    }
+    struct flight *f = g->pool;
+    g->pool = f->next;
+    return f;
+}
+
+static void flight_return(struct net *n, struct flight *f)
+{
+    struct link_level *g = n->state;
+    f->next = g->pool;
+    g->pool = f;
+}
+
+/* the message takes `resource` at `now` or when it is free; returns when */
+static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, sim_ps now, sim_ps busy)
+{
+    struct link_level *g = n->state;
+    sim_ps at = now > g->free[resource] ? now : g->free[resource];
+    g->free[resource] = at + busy;
+    net_account(n, resource, 1, m->bytes, busy, at - now);
+    return at;
+}
+
+static void head_arrives(void *subject, uint64_t argument, sim_ps now);
+
+/* the head left its resource at x: it is at the next one tau later */
+static void head_sent(struct net *n, struct flight *f, sim_ps x)
+{
+    struct hop h;
+    int port = f->port;
+    if (topology_next(n->topology, &f->cursor, &h)) {
+        f->resource = net_resource(n, h.link);
+        f->port = h.port;
+    } else {
+        f->resource = net_ejection(n, f->m->dst);
+    }
+    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->m->id), head_arrives, n, (uintptr_t)f);
+}
+
+static void head_arrives(void *subject, uint64_t argument, sim_ps now)
+{
+    struct net *n = subject;
+    struct flight *f = (struct flight *)(uintptr_t)argument;
+    sim_ps busy = net_rate_time(net_resource_rate(n, f->resource), f->flits);
+    sim_ps x = resource_take(n, f->resource, f->m, now, busy);
+    if (!net_is_ejection(n, f->resource)) {
+        head_sent(n, f, x);
+        return;
+    }
+    struct net_message *m = f->m;
+    m->arrival = x + net_rate_time(f->slow, f->flits - 1) + n->end;
+    flight_return(n, f);
+    net_arrive(n, m);
+}
+
+static void link_inject(struct net *n, struct net_message *m)
+{
+    struct link_level *g = n->state;
+    struct flight *f = flight_take(n);
+    int nhop;
+    f->m = m;
+    f->flits = net_flits(n, m->bytes);
+    f->slow = net_slowest(n, m, &nhop);
+    f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    f->port = topology_injection_port(n->topology, m->src);
+    sim_ps busy = net_port_busy(n, f->flits), own = 0;
+    if (g->nprocessor > 1) {
+        sim_ps *port = &g->own_port[m->src * g->nprocessor + m->processor];
+        own = m->ready > *port ? m->ready : *port;
+        *port = own + busy;
+    }
+    m->injected = resource_take(n, net_injection(n, m->src), m, m->ready, busy);
+    if (g->nprocessor == 1) own = m->injected;
+    m->uncontended = own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + n->end;
+    head_sent(n, f, m->injected);
+}
+
+static void link_start(void *subject, uint64_t argument, sim_ps now)
+{
+    (void)now;
+    link_inject(subject, (struct net_message *)(uintptr_t)argument);
+}
+
+static void link_send(struct net *n, struct net_message *m)
+{
+    if (n->port_private)
+        link_inject(n, m);
+    else
+        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), link_start, n, (uintptr_t)m);
+}
+
+const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, NULL};

@@ -1,0 +1,162 @@
+/* traffic.c - replay of message lists: starts what is ready, counts down dependencies as messages arrive.
+ *
+ * Messages without dependencies are started one event ahead, in the order (time, number), so that the queue holds
+ * what is in the network and not the whole list. */
+#include "net/traffic.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+
+struct replay {
+    const struct traffic *q;
+    struct net *net;
+    struct sim *sim;
+    struct net_message *message; /* (nmessage) */
+    sim_ps *ready;               /* (nmessage) latest of time and arrivals + delay so far */
+    int *waits;                  /* (nmessage) dependencies that have not arrived */
+    int *out_first, *out;        /* who depends on m */
+    int *initial;                /* messages without dependencies by (time, number) */
+    int ninitial, next_initial;
+    struct traffic_result *result;
+};
+
+struct start {
+    sim_ps time;
+    int message;
+};
+
+static int start_order(const void *a, const void *b)
+{
+    const struct start *p = a, *q = b;
+    if (p->time != q->time) return p->time < q->time ? -1 : 1;
+    return p->message < q->message ? -1 : 1;
+}
+
+static void start_message(void *subject, uint64_t argument, sim_ps now);
+
+static void start_at(struct replay *r, int m)
+{
+    sim_at(r->sim, r->ready[m], NET_LANE_START, (uint64_t)m, start_message, r, (uint64_t)m);
+}
+
+static void start_message(void *subject, uint64_t argument, sim_ps now)
+{
+    struct replay *r = subject;
+    int m = (int)argument;
+    if (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m) start_at(r, r->initial[r->next_initial++]);
+    r->message[m].ready = now;
+    net_send(r->net, &r->message[m]);
+}
+
+static void message_arrived(void *context, struct net_message *msg)
+{
+    struct replay *r = context;
+    struct traffic_result *out = r->result;
+    int m = (int)msg->id;
+    out->arrived++;
+    if (msg->arrival > out->makespan) out->makespan = msg->arrival;
+    if (out->arrival) out->arrival[m] = msg->arrival;
+    if (out->injected) out->injected[m] = msg->injected;
+    if (out->uncontended) out->uncontended[m] = msg->uncontended;
+    if (!r->out_first) return;
+    for (int i = r->out_first[m]; i < r->out_first[m + 1]; i++) {
+        int later = r->out[i];
+        sim_ps ready = msg->arrival + r->q->delay[later];
+        if (ready > r->ready[later]) r->ready[later] = ready;
+        if (--r->waits[later] == 0) start_at(r, later);
+    }
+}
+
+static bool traffic_check(const struct traffic *q, const struct topology *t, struct err *e)
+{
+    for (int m = 0; m < q->nmessage; m++) {
+        if (q->src[m] < 0 || q->src[m] >= t->nnode || q->dst[m] < 0 || q->dst[m] >= t->nnode)
+            return err_set(e, ERR_DATA, "message %d goes from node %d to node %d; the network has nodes 0 to %d", m,
+                           q->src[m], q->dst[m], t->nnode - 1);
+        if (q->bytes[m] < 0 || q->time[m] < 0 || (q->delay && q->delay[m] < 0))
+            return err_set(e, ERR_DATA, "message %d has a negative size, time or delay", m);
+        if (!q->dep_first) continue;
+        for (int i = q->dep_first[m]; i < q->dep_first[m + 1]; i++)
+            if (q->dep[i] < 0 || q->dep[i] >= q->nmessage || q->dep[i] == m)
+                return err_set(e, ERR_DATA, "message %d depends on message %d, which does not exist or is itself", m,
+                               q->dep[i]);
+    }
+    return true;
+}
+
+/* the inverse of the dependencies, and how many each message waits for */
+static void dependents_make(struct replay *r, struct arena *a)
+{
+    const struct traffic *q = r->q;
+    int n = q->nmessage;
+    r->waits = TAKE(a, n + 1, int);
+    if (!q->dep_first) return;
+    r->out_first = TAKE(a, n + 2, int);
+    r->out = TAKE(a, q->dep_first[n] + 1, int);
+    for (int i = 0; i < q->dep_first[n]; i++) r->out_first[q->dep[i] + 2]++;
+    for (int m = 0; m < n; m++) r->out_first[m + 2] += r->out_first[m + 1];
+    for (int m = 0; m < n; m++) {
+        r->waits[m] = q->dep_first[m + 1] - q->dep_first[m];
+        for (int i = q->dep_first[m]; i < q->dep_first[m + 1]; i++) r->out[r->out_first[q->dep[i] + 1]++] = m;
+    }
+}
+
+static void initial_make(struct replay *r, struct arena *a)
+{
+    int n = r->q->nmessage;
+    struct start *s = TAKE(a, n + 1, struct start);
+    for (int m = 0; m < n; m++)
+        if (r->waits[m] == 0) s[r->ninitial++] = (struct start){r->q->time[m], m};
+    qsort(s, (size_t)r->ninitial, sizeof *s, start_order);
+    r->initial = TAKE(a, r->ninitial + 1, int);
+    for (int i = 0; i < r->ninitial; i++) r->initial[i] = s[i].message;
+}
+
+static void replay_make(struct replay *r, struct arena *a)
+{
+    const struct traffic *q = r->q;
+    int n = q->nmessage;
+    r->message = TAKE(a, n + 1, struct net_message);
+    r->ready = TAKE(a, n + 1, sim_ps);
+    for (int m = 0; m < n; m++) {
+        r->message[m] = (struct net_message){.src = q->src[m], .dst = q->dst[m], .bytes = q->bytes[m], .id = m};
+        r->ready[m] = q->time[m];
+        if (r->result->arrival) r->result->arrival[m] = SIM_NEVER;
+        if (r->result->injected) r->result->injected[m] = SIM_NEVER;
+        if (r->result->uncontended) r->result->uncontended[m] = SIM_NEVER;
+    }
+    dependents_make(r, a);
+    initial_make(r, a);
+}
+
+static void replay_run(struct replay *r)
+{
+    struct traffic_result *out = r->result;
+    if (r->ninitial > 0) start_at(r, r->initial[r->next_initial++]);
+    while (sim_step(r->sim)) continue;
+    out->events = sim_events(r->sim);
+    out->digest = sim_digest(r->sim);
+    out->link = net_links(r->net, &out->nlink);
+    out->deadlock = out->arrived < r->q->nmessage;
+    if (out->deadlock && !net_stuck(r->net, out->text, (int)sizeof out->text))
+        strcpy(out->text, "messages wait for each other");
+}
+
+bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t, struct arena *a,
+                 bool want_links, struct traffic_result *out, struct err *e)
+{
+    if (!traffic_check(q, t, e)) return false;
+    out->makespan = 0;
+    out->arrived = 0;
+    out->text[0] = '\0';
+    struct replay r = {.q = q, .sim = sim_create(), .result = out};
+    r.net = net_create(m, t, r.sim, a, message_arrived, &r, want_links, e);
+    if (r.net) {
+        replay_make(&r, a);
+        replay_run(&r);
+    }
+    sim_destroy(r.sim);
+    return r.net != NULL;
+}
