@@ -31,4 +31,7 @@ struct kernel_spec {
     int distance;                /* shift: rank distance */
 };
 
+/* kernel_spec_needs_model: false for the message benchmarks. */
+bool kernel_spec_needs_model(const struct kernel_spec *k);
+
 #endif

@@ -34,7 +34,7 @@ struct topology_spec {
     int ndim;                       /* torus, mesh: number of dimensions; hypercube: 1, dims[0] = log2(routers) */
     int dims[MACHINE_MAX_DIMS];     /* radix of each dimension, dimension 0 fastest; fat tree: {arity, levels};
                                        dragonfly: {terminals/router, routers/group, global links/router, groups};
-                                       crossbar, bus, full mesh: {routers} */
+                                       crossbar, bus, full mesh, graph: {routers} */
     double dim_bandwidth[MACHINE_MAX_DIMS]; /* link rate of each dimension [B/s], 0: the link's */
     int nodes_per_router;           /* >= 1 */
     int processors_per_node;        /* >= 1 */
@@ -89,6 +89,10 @@ struct software_spec {
     double gap_per_byte;       /* G of the network interface [s/B]; the slower of this and the wire rules */
     int64_t eager_bytes;       /* larger messages use rendezvous [B]; -1: all eager */
     double rendezvous_latency; /* software time added per hand-shake [s] */
+    double eager_copy;         /* receiver's time per byte of a message that came eagerly, beside recv_copy [s/B] */
+    int64_t short_bytes;       /* messages up to this size are short [B]; 0: none is */
+    double short_saving;       /* short: part of send_overhead that is not paid [s] */
+    double short_copy;         /* short: as eager_copy and in its place [s/B] */
     bool kernel_server;        /* one shared server per machine handles every message (TCP loopback) */
     double kernel_time;        /* its service time per message end [s] */
     double kernel_per_byte;    /* and per byte [s/B] */
@@ -128,7 +132,8 @@ struct machine_spec {
     struct noise_spec noise;
 };
 
-/* machine_spec_processors: how many ranks the machine can hold. */
+/* machine_spec_processors: how many ranks the machine can hold: routers x nodes_per_router x processors_per_node. A fat
+ * tree has arity^levels nodes and a dragonfly terminals x routers x groups, whatever nodes_per_router says. */
 int64_t machine_spec_processors(const struct machine_spec *m);
 
 #endif

@@ -1,0 +1,208 @@
+/* field.c - single values: text to their place in a struct and back.
+ *
+ * Printing uses the shortest text that reads back to the same bits, so a printed configuration is an identity. */
+#include "spec/field.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "spec/field_list.h"
+
+static bool refuse(char *why, int size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+static bool refuse(char *why, int size, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(why, (size_t)size, format, args);
+    va_end(args);
+    return false;
+}
+
+/* A bound for messages: counts without, quantities with their unit. */
+static void print_bound(const struct field *f, double value, char *buffer, int size)
+{
+    if (f->kind == FIELD_REAL || f->kind == FIELD_REALS || f->unit == UNIT_BYTES)
+        units_print(value, f->unit, buffer, size);
+    else
+        snprintf(buffer, (size_t)size, "%.0f", value);
+}
+
+bool field_in_range(const struct field *f, double value, char *why, int size)
+{
+    if (value >= f->min && value <= f->max) return true;
+    char low[48], high[48];
+    print_bound(f, f->min, low, (int)sizeof low);
+    print_bound(f, f->max, high, (int)sizeof high);
+    bool has_low = isfinite(f->min), has_high = isfinite(f->max) && fabs(f->max) < 1e15;
+    if (has_low && has_high) return refuse(why, size, "out of range; expected %s to %s", low, high);
+    if (has_low) return refuse(why, size, "out of range; expected at least %s", low);
+    return refuse(why, size, "out of range; expected at most %s", high);
+}
+
+bool field_int_parse(const char *text, int64_t *value, char *why, int size)
+{
+    char *end;
+    errno = 0;
+    long long v = strtoll(text, &end, 10);
+    while (isspace((unsigned char)*end)) end++;
+    if (end == text || *end != '\0') return refuse(why, size, "not a whole number; expected one such as '16'");
+    if (errno == ERANGE) return refuse(why, size, "out of range of 64-bit whole numbers");
+    *value = v;
+    return true;
+}
+
+static bool set_real(const struct field *f, double *place, const char *text, char *why, int size)
+{
+    double v;
+    if (!units_parse(text, f->unit, &v, why, size) || !field_in_range(f, v, why, size)) return false;
+    *place = v;
+    return true;
+}
+
+static bool set_int(const struct field *f, int *place, const char *text, char *why, int size)
+{
+    int64_t v;
+    if (!field_int_parse(text, &v, why, size) || !field_in_range(f, (double)v, why, size)) return false;
+    *place = (int)v;
+    return true;
+}
+
+/* A size may be given in any byte unit but has to be a whole number of bytes. */
+static bool set_int64(const struct field *f, int64_t *place, const char *text, char *why, int size)
+{
+    if (f->unit == UNIT_NONE) {
+        int64_t v;
+        if (!field_int_parse(text, &v, why, size) || !field_in_range(f, (double)v, why, size)) return false;
+        *place = v;
+        return true;
+    }
+    if (f->min < 0 && strcmp(text, "unlimited") == 0) {
+        *place = -1;
+        return true;
+    }
+    double v;
+    if (!units_parse(text, f->unit, &v, why, size)) return false;
+    if (v < 0) return refuse(why, size, "a size cannot be negative");
+    if (!field_in_range(f, v, why, size)) return false;
+    if (v != floor(v)) return refuse(why, size, "not a whole number of bytes");
+    *place = (int64_t)v;
+    return true;
+}
+
+static bool set_seed(uint64_t *place, const char *text, char *why, int size)
+{
+    char *end;
+    errno = 0;
+    unsigned long long v = strtoull(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno == ERANGE)
+        return refuse(why, size, "not a seed; expected a whole number from 0 to 2^64-1");
+    *place = v;
+    return true;
+}
+
+static bool set_bool(bool *place, const char *text, char *why, int size)
+{
+    static const char *const yes[] = {"true", "yes", "on"}, *const no[] = {"false", "no", "off"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, yes[i]) == 0) return *place = true, true;
+        if (strcmp(text, no[i]) == 0) return *place = false, true;
+    }
+    return refuse(why, size, "expected 'true' or 'false'");
+}
+
+static bool set_choice(const struct field *f, int *place, const char *text, char *why, int size)
+{
+    int n = 0, at = 0;
+    for (; f->choice[n] != NULL; n++)
+        if (strcmp(f->choice[n], text) == 0) return *place = n, true;
+    at = snprintf(why, (size_t)size, "expected one of");
+    for (int i = 0; i < n && at < size; i++)
+        at += snprintf(why + at, (size_t)(size - at), "%s %s", i > 0 ? "," : "", f->choice[i]);
+    const char *near = text_nearest(text, f->choice, n);
+    if (near != NULL && at < size) snprintf(why + at, (size_t)(size - at), "; did you mean '%s'?", near);
+    return false;
+}
+
+static bool set_text(const struct field *f, char *place, const char *text, char *why, int size)
+{
+    size_t length = strlen(text);
+    if (length >= (size_t)f->capacity) return refuse(why, size, "too long; at most %d bytes", f->capacity - 1);
+    for (const char *s = text; *s != '\0'; s++)
+        if ((unsigned char)*s < 0x20) return refuse(why, size, "control characters are not allowed in a name");
+    memset(place, 0, (size_t)f->capacity);
+    memcpy(place, text, length);
+    return true;
+}
+
+bool field_set(const struct field *f, void *base, const char *text, struct arena *a, char *why, int size)
+{
+    void *place = (char *)base + f->offset;
+    switch (f->kind) {
+    case FIELD_REAL: return set_real(f, place, text, why, size);
+    case FIELD_INT: return set_int(f, place, text, why, size);
+    case FIELD_INT64: return set_int64(f, place, text, why, size);
+    case FIELD_SEED: return set_seed(place, text, why, size);
+    case FIELD_BOOL: return set_bool(place, text, why, size);
+    case FIELD_CHOICE: return set_choice(f, place, text, why, size);
+    case FIELD_TEXT: return set_text(f, place, text, why, size);
+    case FIELD_INTS: return field_ints_set(f, base, text, why, size);
+    case FIELD_REALS: return field_reals_set(f, base, text, why, size);
+    case FIELD_INT_LIST: return field_int_list_set(f, base, text, a, why, size);
+    case FIELD_PAIR_LIST: return field_pair_list_set(f, base, text, a, why, size);
+    }
+    CHECK(!"a field kind without a reader");
+    return false;
+}
+
+void field_defaults(const struct field_table *t, void *base, struct arena *a)
+{
+    char why[160];
+    memset(base, 0, t->size);
+    for (int i = 0; i < t->nfield; i++)
+        if (t->field[i].fallback != NULL)
+            CHECK(field_set(&t->field[i], base, t->field[i].fallback, a, why, (int)sizeof why));
+}
+
+static void print_real(double v, enum unit unit, struct text *out)
+{
+    char buffer[64];
+    units_print(v, unit, buffer, (int)sizeof buffer);
+    text_add(out, "%s", buffer);
+}
+
+static void print_int64(const struct field *f, int64_t v, struct text *out)
+{
+    if (f->unit == UNIT_NONE)
+        text_add(out, "%" PRId64, v);
+    else if (v < 0)
+        text_add(out, "unlimited");
+    else
+        print_real((double)v, f->unit, out);
+}
+
+void field_print(const struct field *f, const void *base, struct text *out)
+{
+    const char *place = (const char *)base + f->offset;
+    const int *ints = (const int *)(const void *)place;
+    switch (f->kind) {
+    case FIELD_REAL: print_real(*(const double *)(const void *)place, f->unit, out); return;
+    case FIELD_INT: text_add(out, "%d", *ints); return;
+    case FIELD_INT64: print_int64(f, *(const int64_t *)(const void *)place, out); return;
+    case FIELD_SEED: text_add(out, "%" PRIu64, *(const uint64_t *)(const void *)place); return;
+    case FIELD_BOOL: text_add(out, "%s", *(const bool *)place ? "true" : "false"); return;
+    case FIELD_CHOICE: text_add(out, "%s", f->choice[*ints]); return;
+    case FIELD_TEXT: text_add(out, "%s", place); return;
+    case FIELD_INTS:
+    case FIELD_REALS:
+    case FIELD_INT_LIST:
+    case FIELD_PAIR_LIST: field_list_print(f, base, out); return;
+    }
+    CHECK(!"a field kind without a printer");
+}

@@ -1,0 +1,104 @@
+/* field_tables.c - all tables of a run: looked up, printed as the canonical configuration, and as the manual. */
+#include <math.h>
+#include <string.h>
+
+#include "spec/spec_fields.h"
+
+static const struct field_table *const tables[] = {&run_table, &machine_table, &model_table, &kernel_table};
+
+const struct field_table *const *field_tables(int *n)
+{
+    *n = (int)(sizeof tables / sizeof *tables);
+    return tables;
+}
+
+int field_find(const struct field_table *t, const char *key)
+{
+    for (int i = 0; i < t->nfield; i++)
+        if (strcmp(t->field[i].key, key) == 0) return i;
+    return -1;
+}
+
+const struct field *field_find_full(const char *key, const struct field_table **table)
+{
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+        size_t length = strlen(tables[i]->prefix);
+        bool dotted = length > 0 && strncmp(key, tables[i]->prefix, length) == 0 && key[length] == '.';
+        if (length > 0 && !dotted) continue;
+        int row = field_find(tables[i], key + length + dotted);
+        if (row < 0) continue;
+        *table = tables[i];
+        return &tables[i]->field[row];
+    }
+    return NULL;
+}
+
+void fields_print(const struct field_table *t, const void *base, bool labels, struct text *out)
+{
+    for (int i = 0; i < t->nfield; i++) {
+        if (t->field[i].label && !labels) continue;
+        text_add(out, "%s%s%s = ", t->prefix, t->prefix[0] != '\0' ? "." : "", t->field[i].key);
+        field_print(&t->field[i], base, out);
+        text_add_bytes(out, "\n", 1);
+    }
+}
+
+void fields_config(const struct run_spec *run, struct text *out)
+{
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+        fields_print(tables[i], (const char *)run + tables[i]->offset, false, out);
+}
+
+static const char *kind_name(const struct field *f)
+{
+    switch (f->kind) {
+    case FIELD_REAL: return units_name(f->unit);
+    case FIELD_INT: return "a whole number";
+    case FIELD_INT64: return f->unit == UNIT_BYTES ? "a size" : "a whole number";
+    case FIELD_SEED: return "a whole number below 2^64";
+    case FIELD_BOOL: return "true or false";
+    case FIELD_CHOICE: return "one of";
+    case FIELD_TEXT: return "text";
+    case FIELD_INTS:
+    case FIELD_INT_LIST: return "a list of whole numbers";
+    case FIELD_REALS: return "a list, each";
+    case FIELD_PAIR_LIST: return "a list of pairs";
+    }
+    return "";
+}
+
+static void document_range(const struct field *f, FILE *out)
+{
+    char bound[64];
+    bool number = f->kind == FIELD_REAL || f->kind == FIELD_REALS || f->kind == FIELD_INT || f->kind == FIELD_INT64;
+    if (!number) return;
+    enum unit unit = f->unit;
+    units_print(f->min, unit, bound, (int)sizeof bound);
+    fprintf(out, ", %s", bound);
+    units_print(f->max, unit, bound, (int)sizeof bound);
+    fprintf(out, " to %s", bound);
+}
+
+static void document_field(const struct field_table *t, const struct field *f, FILE *out)
+{
+    fprintf(out, "- `%s%s%s`: %s.", t->prefix, t->prefix[0] != '\0' ? "." : "", f->key, f->doc);
+    fprintf(out, " *%s%s", kind_name(f), f->kind == FIELD_REALS ? " " : "");
+    if (f->kind == FIELD_REALS) fprintf(out, "%s", units_name(f->unit));
+    for (int i = 0; f->choice != NULL && f->choice[i] != NULL; i++) fprintf(out, "%s %s", i > 0 ? "," : "", f->choice[i]);
+    document_range(f, out);
+    if (f->fallback == NULL)
+        fprintf(out, "; has to be given*\n");
+    else if (f->fallback[0] == '\0')
+        fprintf(out, "*\n");
+    else
+        fprintf(out, "; default %s*\n", f->fallback);
+}
+
+void fields_document(FILE *out)
+{
+    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+        const struct field_table *t = tables[i];
+        fprintf(out, "%s## `%s`: %s\n\n", i > 0 ? "\n" : "", t->prefix[0] != '\0' ? t->prefix : "run", t->doc);
+        for (int j = 0; j < t->nfield; j++) document_field(t, &t->field[j], out);
+    }
+}

@@ -1,0 +1,111 @@
+/* kernel_spec.c - the settings of the parallel program. */
+#include "spec/kernel_spec.h"
+
+#include <string.h>
+
+#include "spec/spec_fields.h"
+
+#define AT(member) .offset = offsetof(struct kernel_spec, member)
+
+static const char *const formulations[] = {"paper", "direct", NULL};
+static const char *const solvers[] = {"pcr-symmetric", "pcr", "cr", "cr-pcr", "partition", "thomas", NULL};
+static const char *const part_solvers[] = {"pcr", "cr", NULL};
+static const char *const operators[] = {"structured", "dense", NULL};
+static const char *const precisions[] = {"double", "float", "quad", NULL};
+static const char *const partitions[] = {"block", "balanced", NULL};
+static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "alltoall", "barrier", "hot-spot",
+                                         "hotspot", "shift", "xor", "allreduce", "broadcast", "halo", "bench"};
+
+bool kernel_spec_needs_model(const struct kernel_spec *k)
+{
+    for (size_t i = 0; i < sizeof benchmarks / sizeof *benchmarks; i++)
+        if (strcmp(k->name, benchmarks[i]) == 0) return false;
+    return true;
+}
+
+static const char *idle_without_model(const struct run_spec *r)
+{
+    return kernel_spec_needs_model(&r->kernel) ? NULL : "this kernel only sends messages and computes nothing";
+}
+
+static const char *idle_with_model(const struct run_spec *r)
+{
+    return kernel_spec_needs_model(&r->kernel) ? "only the message benchmarks have it" : NULL;
+}
+
+static const char *idle_without_forward(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics solves no system" : NULL;
+}
+
+static const char *idle_unless_partition(const struct run_spec *r)
+{
+    const char *why = idle_without_forward(r);
+    if (why != NULL) return why;
+    return r->kernel.solver == SOLVER_PARTITION ? NULL : "kernel.solver is not 'partition'";
+}
+
+static const char *idle_unless_hybrid(const struct run_spec *r)
+{
+    const char *why = idle_without_forward(r);
+    if (why != NULL) return why;
+    return r->kernel.solver == SOLVER_CR_PCR ? NULL : "kernel.solver is not 'cr-pcr'";
+}
+
+static const char *idle_without_steps(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return r->kernel.steps > 0 ? NULL : "kernel.steps is 0: one evaluation";
+}
+
+static const char *idle_unless_shift(const struct run_spec *r)
+{
+    const char *why = idle_with_model(r);
+    if (why != NULL) return why;
+    bool moves = strcmp(r->kernel.name, "shift") == 0 || strcmp(r->kernel.name, "xor") == 0 ||
+                 strcmp(r->kernel.name, "pingpong") == 0;
+    return moves ? NULL : "this benchmark has no distance";
+}
+
+static const struct field fields[] = {
+    {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 32, .fallback = "dynamics",
+     .doc = "the program; see `mimdsim kernels`"},
+    {.key = "formulation", .kind = FIELD_CHOICE, AT(formulation), .choice = formulations, .fallback = "paper",
+     .idle = idle_without_forward, .doc = "forward dynamics: the paper's constraint system or the direct one"},
+    {.key = "solver", .kind = FIELD_CHOICE, AT(solver), .choice = solvers, .fallback = "pcr-symmetric",
+     .idle = idle_without_forward, .doc = "of the block tridiagonal system"},
+    {.key = "part_solver", .kind = FIELD_CHOICE, AT(part_solver), .choice = part_solvers, .fallback = "pcr",
+     .idle = idle_unless_partition, .doc = "of the interfaces between the parts of solver 'partition'"},
+    {.key = "operators", .kind = FIELD_CHOICE, AT(operators), .choice = operators, .fallback = "structured",
+     .idle = idle_without_model, .doc = "6x6 operators in full, as the paper's code, or as rotation and offset"},
+    {.key = "precision", .kind = FIELD_CHOICE, AT(precision), .choice = precisions, .fallback = "double",
+     .idle = idle_without_model, .doc = "of the arithmetic"},
+    {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
+     .idle = idle_without_model, .doc = "bodies over ranks: equal counts, or equal work"},
+    {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
+     .idle = idle_without_model, .doc = "inverse dynamics: composite transforms incoming, or the paper's outgoing ones"},
+    {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
+     .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},
+    {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100, .fallback = "0",
+     .idle = idle_without_forward, .doc = "corrections of the solution by its residual"},
+    {.key = "outer_refinements", .kind = FIELD_INT, AT(outer_refinements), .min = 0, .max = 100, .fallback = "0",
+     .idle = idle_without_forward, .doc = "corrections of the accelerations by inverse dynamics"},
+    {.key = "steps", .kind = FIELD_INT, AT(steps), .min = 0, .max = 1 << 30, .fallback = "0",
+     .idle = idle_without_model, .doc = "time steps, 0: one evaluation"},
+    {.key = "step_size", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(step_size), .min = 1e-18, .max = 1e3,
+     .fallback = "1 ms", .idle = idle_without_steps, .doc = "of a time step"},
+    {.key = "repeat", .kind = FIELD_INT, AT(repeat), .min = 1, .max = 1 << 30, .fallback = "1",
+     .idle = idle_with_model, .doc = "benchmarks: repetitions within a run"},
+    {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0, .max = 1e12,
+     .fallback = "0 B", .idle = idle_with_model, .doc = "benchmarks: size of a message"},
+    {.key = "distance", .kind = FIELD_INT, AT(distance), .min = 0, .max = 1 << 30, .fallback = "1",
+     .idle = idle_unless_shift, .doc = "benchmarks: how many ranks away the partner is"},
+};
+
+const struct field_table kernel_table = {
+    .prefix = "kernel", .doc = "the parallel program", .offset = offsetof(struct run_spec, kernel),
+    .size = sizeof(struct kernel_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+};

@@ -1,0 +1,280 @@
+/* machine_spec.c - the settings of a machine, and how many processors it has. */
+#include "spec/machine_spec.h"
+
+#include <math.h>
+
+#include "spec/spec_fields.h"
+
+#define AT(member) .offset = offsetof(struct machine_spec, member)
+#define COUNT(member) .count = offsetof(struct machine_spec, member)
+
+static const char *const families[] = {"crossbar",  "torus",    "mesh",      "hypercube", "bus",
+                                       "full-mesh", "fat-tree", "dragonfly", "graph",     NULL};
+static const char *const ties[] = {"positive", "parity", NULL};
+static const char *const routings[] = {"minimal", "valiant", NULL};
+static const char *const levels[] = {"loggp", "link", "packet", "flit", "auto", NULL};
+static const char *const arbitrations[] = {"round-robin", "first-come", NULL};
+static const char *const barriers[] = {"software", "hardware", NULL};
+static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
+static const char *const spreads[] = {"block", "cyclic", NULL};
+
+static const char *idle_unless_ring(const struct run_spec *r)
+{
+    return r->machine.topology.family == TOPOLOGY_TORUS ? NULL : "only a torus has two equally long ways round";
+}
+
+static const char *idle_unless_dragonfly(const struct run_spec *r)
+{
+    return r->machine.topology.family == TOPOLOGY_DRAGONFLY ? NULL : "only a dragonfly chooses its routing";
+}
+
+static const char *idle_unless_hypercube(const struct run_spec *r)
+{
+    return r->machine.topology.family == TOPOLOGY_HYPERCUBE ? NULL : "only a hypercube has Xpress links";
+}
+
+static const char *idle_unless_graph(const struct run_spec *r)
+{
+    return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only the family 'graph' takes its links from the file";
+}
+
+static const char *idle_at_loggp(const struct run_spec *r)
+{
+    return r->machine.network.level == LEVEL_LOGGP ? "level 'loggp' has no buffers and no shared links" : NULL;
+}
+
+/* Packets, flits and buffers: what only the levels that know them can use. */
+static const char *idle_above_packets(const struct run_spec *r)
+{
+    enum network_level level = r->machine.network.level;
+    if (level == LEVEL_LOGGP) return "level 'loggp' moves whole messages";
+    return level == LEVEL_LINK ? "level 'link' moves whole messages" : NULL;
+}
+
+static const char *idle_unless_server(const struct run_spec *r)
+{
+    return r->machine.software.kernel_server ? NULL : "software.kernel.server is off";
+}
+
+static const char *idle_unless_eager_limit(const struct run_spec *r)
+{
+    return r->machine.software.eager_bytes >= 0 ? NULL : "software.eager.limit is unlimited: no message shakes hands";
+}
+
+static const char *idle_unless_short(const struct run_spec *r)
+{
+    return r->machine.software.short_bytes > 0 ? NULL : "software.short.limit is 0: no message is short";
+}
+
+static const char *idle_unless_hardware_barrier(const struct run_spec *r)
+{
+    return r->machine.software.barrier == BARRIER_HARDWARE ? NULL : "software.barrier.kind is not 'hardware'";
+}
+
+static const char *idle_unless_shared(const struct run_spec *r)
+{
+    return r->machine.software.shared_bandwidth > 0 ? NULL : "software.shared.bandwidth is 0: no channel within a node";
+}
+
+static const char *idle_unless_several(const struct run_spec *r)
+{
+    return r->machine.topology.processors_per_node > 1 ? NULL : "a node has one processor";
+}
+
+static const char *idle_unless_shared_node(const struct run_spec *r)
+{
+    const char *why = idle_unless_several(r);
+    return why != NULL ? why : idle_unless_shared(r);
+}
+
+static const char *idle_unless_random(const struct run_spec *r)
+{
+    return r->machine.placement.kind == PLACEMENT_RANDOM ? NULL : "placement.kind is not 'random'";
+}
+
+static const char *idle_unless_list(const struct run_spec *r)
+{
+    return r->machine.placement.kind == PLACEMENT_LIST ? NULL : "placement.kind is not 'list'";
+}
+
+static const char *idle_unless_background(const struct run_spec *r)
+{
+    return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
+}
+
+static const struct field fields[] = {
+    {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
+     .doc = "name in tables and figures; the file's stem unless set"},
+    {.key = "title", .kind = FIELD_TEXT, AT(title), .capacity = 128, .fallback = "", .label = true,
+     .doc = "one line for people"},
+
+    {.key = "topology.family", .kind = FIELD_CHOICE, AT(topology.family), .choice = families,
+     .doc = "how routers are joined"},
+    {.key = "topology.dims", .kind = FIELD_INTS, AT(topology.dims), COUNT(topology.ndim),
+     .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
+     .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; fat-tree: [arity, levels]; "
+            "dragonfly: [terminals per router, routers per group, global links per router, groups]; others: [routers]"},
+    {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH, AT(topology.dim_bandwidth),
+     .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
+     .doc = "link rate of each dimension (fat-tree: of each level from the nodes up; dragonfly: local, global), "
+            "0: network.link.bandwidth"},
+    {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1, .max = 4096,
+     .fallback = "1", .doc = "nodes on each router"},
+    {.key = "topology.processors_per_node", .kind = FIELD_INT, AT(topology.processors_per_node), .min = 1,
+     .max = 4096, .fallback = "1", .doc = "processors that share a node's port to the network"},
+    {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
+     .idle = idle_unless_ring, .doc = "half-way round a ring: always up, or up from even coordinates only"},
+    {.key = "topology.routing", .kind = FIELD_CHOICE, AT(topology.routing), .choice = routings,
+     .fallback = "minimal", .idle = idle_unless_dragonfly, .doc = "dragonfly: shortest route or through a random group"},
+    {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
+     .idle = idle_unless_hypercube, .doc = "further links between opposite routers (Origin2000 with 16 processors)"},
+    {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
+     .max = 1 << 24, .fallback = "[]", .idle = idle_unless_graph, .doc = "graph: router pairs, each joined both ways"},
+
+    {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate), .min = 1, .max = 1e18,
+     .doc = "additions and multiplications of small dense double-precision code"},
+    {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1, .max = 1e13,
+     .doc = "processor clock, for the cycle counts below"},
+    {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0, .max = 1e6,
+     .fallback = "0 cycles", .doc = "one division"},
+    {.key = "node.sqrt", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.sqrt_cycles), .min = 0, .max = 1e6,
+     .fallback = "0 cycles", .doc = "one square root"},
+    {.key = "node.trig", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.trig_cycles), .min = 0, .max = 1e6,
+     .fallback = "0 cycles", .doc = "one sine or cosine"},
+    {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0, .max = 1,
+     .fallback = "0 s", .doc = "overhead of one call of a small operator"},
+    {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(node.copy_bandwidth), .min = 0,
+     .max = 1e15, .fallback = "0 B/s", .doc = "memory to memory copies of the program (packing), 0: free"},
+
+    {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels, .fallback = "link",
+     .doc = "how finely the network is simulated"},
+    {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.link_bandwidth),
+     .min = 1, .max = 1e15, .doc = "payload rate of one link and direction"},
+    {.key = "network.injection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     AT(network.injection_bandwidth), .min = 0, .max = 1e15, .fallback = "0 B/s",
+     .doc = "node into network, 0: the link's rate"},
+    {.key = "network.ejection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.ejection_bandwidth),
+     .min = 0, .max = 1e15, .fallback = "0 B/s", .doc = "network into node, 0: the link's rate"},
+    {.key = "network.hop_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.hop_latency), .min = 0,
+     .max = 1, .fallback = "0 s", .doc = "router and wire, head of a message, per router passed"},
+    {.key = "network.end_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.end_latency), .min = 0,
+     .max = 1, .fallback = "0 s", .doc = "network interfaces, entry and exit together"},
+    {.key = "network.credit_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.credit_latency), .min = 0,
+     .max = 1, .fallback = "0 s", .idle = idle_above_packets, .doc = "a freed buffer becoming known upstream"},
+    {.key = "network.flit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.flit_bytes), .min = 1, .max = 1 << 20,
+     .fallback = "8 B", .idle = idle_above_packets, .doc = "unit of flow control"},
+    {.key = "network.packet", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.packet_bytes), .min = 0,
+     .max = 1 << 30, .fallback = "0 B", .idle = idle_above_packets,
+     .doc = "largest payload of a packet, 0 B: a message is one packet"},
+    {.key = "network.header", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.header_bytes), .min = 0,
+     .max = 1 << 20, .fallback = "0 B", .idle = idle_above_packets, .doc = "added to each packet on the wire"},
+    {.key = "network.virtual_channels", .kind = FIELD_INT, AT(network.virtual_channels), .min = 1, .max = 64,
+     .fallback = "1", .idle = idle_above_packets, .doc = "per link and direction, all classes together"},
+    {.key = "network.buffer", .kind = FIELD_INT, AT(network.buffer_flits), .min = 1, .max = 1 << 24, .fallback = "16",
+     .idle = idle_above_packets, .doc = "flits that a virtual channel can hold"},
+    {.key = "network.arbitration", .kind = FIELD_CHOICE, AT(network.arbitration), .choice = arbitrations,
+     .fallback = "round-robin", .idle = idle_above_packets, .doc = "who gets a link that several wait for"},
+
+    {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.send_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .doc = "processor time to send a message (LogGP's o)"},
+    {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.send_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B", .doc = "processor time per byte sent"},
+    {.key = "software.recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.recv_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .doc = "processor time to receive a message"},
+    {.key = "software.recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.recv_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B", .doc = "processor time per byte received"},
+    {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0, .max = 10,
+     .fallback = "0 s", .doc = "least time between two messages of one node (LogGP's g)"},
+    {.key = "software.gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.gap_per_byte),
+     .min = 0, .max = 1, .fallback = "0 s/B",
+     .doc = "G of interface and protocol (LogGP); the slower of this and the wire rules"},
+    {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.short_bytes), .min = 0,
+     .max = 1 << 30, .fallback = "0 B", .doc = "messages up to this size are short"},
+    {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.short_saving), .min = 0,
+     .max = 1, .fallback = "0 s", .idle = idle_unless_short, .doc = "send overhead that a short message is spared"},
+    {.key = "software.short.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.short_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B", .idle = idle_unless_short,
+     .doc = "receiver's time per byte of a short message, beside software.recv.copy"},
+    {.key = "software.eager.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.eager_bytes), .min = -1,
+     .max = 1e15, .fallback = "unlimited", .doc = "longer messages shake hands first (rendezvous)"},
+    {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.eager_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B",
+     .doc = "receiver's time per byte of an eager message that is not short, beside software.recv.copy"},
+    {.key = "software.rendezvous.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.rendezvous_latency),
+     .min = 0, .max = 10, .fallback = "0 s", .idle = idle_unless_eager_limit,
+     .doc = "software time that a hand-shake adds"},
+    {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server), .fallback = "false",
+     .doc = "every message end passes one server of the whole machine (TCP loopback)"},
+    {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = idle_unless_server, .doc = "its service time for one message end"},
+    {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.kernel_per_byte),
+     .min = 0, .max = 1, .fallback = "0 s/B", .idle = idle_unless_server, .doc = "and per byte"},
+    {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
+     .fallback = "software", .doc = "barrier built from messages or by the machine"},
+    {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = idle_unless_hardware_barrier, .doc = "last arrival to release"},
+    {.key = "software.shared.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.shared_latency), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = idle_unless_shared_node, .doc = "channel within a node: latency"},
+    {.key = "software.shared.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(software.shared_bandwidth),
+     .min = 0, .max = 1e15, .fallback = "0 B/s", .idle = idle_unless_several,
+     .doc = "and rate, 0: messages within a node take the network's software path"},
+
+    {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements, .fallback = "linear",
+     .doc = "order in which ranks fill the nodes"},
+    {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads, .fallback = "block",
+     .idle = idle_unless_several, .doc = "ranks over the processors of a node: fill one node first, or one rank each"},
+    {.key = "placement.seed", .kind = FIELD_SEED, AT(placement.seed), .fallback = "1", .idle = idle_unless_random,
+     .doc = "of the random order"},
+    {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist), .min = 0,
+     .max = 1 << 30, .fallback = "[]", .idle = idle_unless_list, .doc = "processor of each rank"},
+
+    {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
+     .fallback = "0 %", .doc = "standard deviation of each computation over its mean"},
+    {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
+     .max = 0.95, .fallback = "0 %", .idle = idle_at_loggp, .doc = "part of each link's time taken by other jobs"},
+    {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(noise.background_bytes), .min = 1,
+     .max = 1 << 30, .fallback = "1024 B", .idle = idle_unless_background, .doc = "size of their messages"},
+};
+
+const struct field_table machine_table = {
+    .prefix = "machine", .doc = "the machine: nodes, network, message software, placement, noise", .offset = offsetof(struct run_spec, machine),
+    .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+};
+
+/* Product of the first n dimensions, capped far above what can be simulated. */
+static int64_t product(const int *dims, int n)
+{
+    int64_t p = 1;
+    for (int i = 0; i < n; i++) p = p > INT64_C(1) << 40 ? p : p * dims[i];
+    return p;
+}
+
+static int64_t power(int64_t base, int exponent)
+{
+    int64_t p = 1;
+    for (int i = 0; i < exponent && p < INT64_C(1) << 40; i++) p *= base;
+    return p;
+}
+
+static int64_t router_count(const struct topology_spec *t)
+{
+    switch (t->family) {
+    case TOPOLOGY_TORUS:
+    case TOPOLOGY_MESH: return product(t->dims, t->ndim);
+    case TOPOLOGY_HYPERCUBE: return power(2, t->dims[0]);
+    case TOPOLOGY_FAT_TREE: return power(t->dims[0], t->dims[1]);
+    case TOPOLOGY_DRAGONFLY: return (int64_t)t->dims[0] * t->dims[1] * t->dims[3];
+    case TOPOLOGY_CROSSBAR:
+    case TOPOLOGY_BUS:
+    case TOPOLOGY_FULL_MESH:
+    case TOPOLOGY_GRAPH: return t->dims[0];
+    }
+    return 0;
+}
+
+int64_t machine_spec_processors(const struct machine_spec *m)
+{
+    const struct topology_spec *t = &m->topology;
+    bool own_nodes = t->family == TOPOLOGY_FAT_TREE || t->family == TOPOLOGY_DRAGONFLY;
+    return router_count(t) * (own_nodes ? 1 : t->nodes_per_router) * t->processors_per_node;
+}

@@ -1,0 +1,123 @@
+/* model_spec.c - the settings of a multibody scene. */
+#include "spec/model_spec.h"
+
+#include "spec/spec_fields.h"
+
+#define AT(member) .offset = offsetof(struct model_spec, member)
+
+static const char *const generators[] = {"serial-chain", "comb", "star", "random-tree", "dendrimer", "ring",
+                                         "four-bar", "polymer", "urdf", "vector", NULL};
+static const char *const joints[] = {"fixed", "revolute", "prismatic", "helical", "cylindrical", "universal",
+                                     "spherical", "planar", "slot", "point-plane", "floating", "mixed", NULL};
+static const char *const bases[] = {"fixed", "moving", "floating", NULL};
+static const char *const inertias[] = {"uniform", "random", NULL};
+static const char *const poses[] = {"straight", "folded", "coiled", "random", NULL};
+static const char *const axes[] = {"parallel", "twisted", NULL};
+
+static bool from_file(const struct run_spec *r)
+{
+    return r->model.generator == MODEL_URDF || r->model.generator == MODEL_VECTOR;
+}
+
+static const char *idle_without_model(const struct run_spec *r)
+{
+    return kernel_spec_needs_model(&r->kernel) ? NULL : "this kernel only sends messages and has no model";
+}
+
+/* Sizes, shapes and joints of generated models. */
+static const char *idle_from_file(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return from_file(r) ? "the model's file says it" : NULL;
+}
+
+static const char *idle_from_vector(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return r->model.generator == MODEL_VECTOR ? "the vector file says it" : NULL;
+}
+
+static const char *idle_unless_file(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return from_file(r) ? NULL : "model.generator makes the model without a file";
+}
+
+static const char *idle_unless_branching(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    bool branches = r->model.generator == MODEL_COMB || r->model.generator == MODEL_DENDRIMER;
+    return branches ? NULL : "only a comb and a dendrimer have it";
+}
+
+static const char *idle_unless_random(const struct run_spec *r)
+{
+    const char *why = idle_from_file(r);
+    if (why != NULL) return why;
+    return r->model.inertia == INERTIA_RANDOM ? NULL : "model.inertia is not 'random'";
+}
+
+static const char *idle_unless_moving(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return r->model.base == BASE_MOVING ? NULL : "model.base is not 'moving'";
+}
+
+static const struct field fields[] = {
+    {.key = "generator", .kind = FIELD_CHOICE, AT(generator), .choice = generators, .fallback = "serial-chain",
+     .idle = idle_without_model, .doc = "kind of system, or the kind of file that describes it"},
+    {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16", .idle = idle_from_file,
+     .doc = "number of bodies"},
+    {.key = "joint", .kind = FIELD_CHOICE, AT(joint), .choice = joints, .fallback = "revolute",
+     .idle = idle_from_file, .doc = "joint of every body"},
+    {.key = "base", .kind = FIELD_CHOICE, AT(base), .choice = bases, .fallback = "fixed", .idle = idle_from_vector,
+     .doc = "what the first body hangs on"},
+    {.key = "inertia", .kind = FIELD_CHOICE, AT(inertia), .choice = inertias, .fallback = "uniform",
+     .idle = idle_from_file, .doc = "all bodies alike, or seeded random ones"},
+    {.key = "pose", .kind = FIELD_CHOICE, AT(pose), .choice = poses, .fallback = "random", .idle = idle_from_vector,
+     .doc = "joint positions"},
+    {.key = "axes", .kind = FIELD_CHOICE, AT(axes), .choice = axes, .fallback = "twisted", .idle = idle_from_file,
+     .doc = "joint axes: all parallel, or each turned against the one before"},
+    {.key = "length", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(length), .min = 1e-12, .max = 1e6,
+     .fallback = "1 m", .idle = idle_from_file, .doc = "of a link"},
+    {.key = "radius", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(radius), .min = 1e-13, .max = 1e6,
+     .fallback = "0.05 m", .idle = idle_from_file, .doc = "of a link"},
+    {.key = "mass", .kind = FIELD_REAL, .unit = UNIT_MASS, AT(mass), .min = 1e-30, .max = 1e12, .fallback = "1 kg",
+     .idle = idle_from_file, .doc = "of a link"},
+    {.key = "mass_ratio", .kind = FIELD_REAL, AT(mass_ratio), .min = 1, .max = 1e15, .fallback = "1",
+     .idle = idle_unless_random, .doc = "largest over smallest mass of random bodies"},
+    {.key = "gravity", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION, AT(gravity), .capacity = 3, .at_least = 3,
+     .min = -1e6, .max = 1e6, .fallback = "[0, 0, -9.81] m/s^2", .idle = idle_from_vector, .doc = "in the base frame"},
+    {.key = "base_acceleration.angular", .kind = FIELD_REALS, .unit = UNIT_ANGULAR_ACCELERATION,
+     AT(base_acceleration), .capacity = 3, .at_least = 3, .min = -1e9, .max = 1e9, .fallback = "[0, 0, 0] rad/s^2",
+     .idle = idle_unless_moving, .doc = "of a moving base"},
+    {.key = "base_acceleration.linear", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION,
+     .offset = offsetof(struct model_spec, base_acceleration) + 3 * sizeof(double), .capacity = 3, .at_least = 3,
+     .min = -1e9, .max = 1e9, .fallback = "[0, 0, 0] m/s^2", .idle = idle_unless_moving, .doc = "of a moving base"},
+    {.key = "rate", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(rate), .min = 0, .max = 1e9,
+     .fallback = "1 rad/s", .idle = idle_from_vector, .doc = "scale of the seeded random joint rates"},
+    {.key = "torque", .kind = FIELD_REAL, .unit = UNIT_TORQUE, AT(torque), .min = 0, .max = 1e15,
+     .fallback = "1 N m", .idle = idle_from_vector, .doc = "scale of the seeded random joint forces"},
+    {.key = "external_force", .kind = FIELD_REAL, .unit = UNIT_FORCE, AT(external_force), .min = 0, .max = 1e15,
+     .fallback = "0 N", .idle = idle_from_vector, .doc = "scale of seeded random wrenches on every body, 0: none"},
+    {.key = "stiffness", .kind = FIELD_REAL, .unit = UNIT_STIFFNESS, AT(stiffness), .min = 0, .max = 1e15,
+     .fallback = "0 N m/rad", .idle = idle_from_vector, .doc = "joint springs to the first pose, 0: none"},
+    {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
+     .fallback = "0 N m s/rad", .idle = idle_from_vector, .doc = "joint dampers, 0: none"},
+    {.key = "branch", .kind = FIELD_INT, AT(branch), .min = 1, .max = 1 << 20, .fallback = "2",
+     .idle = idle_unless_branching, .doc = "comb, dendrimer: children of a body"},
+    {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .idle = idle_from_vector,
+     .doc = "of everything random in the model"},
+    {.key = "path", .kind = FIELD_TEXT, AT(path), .capacity = 256, .fallback = "", .idle = idle_unless_file,
+     .doc = "URDF or vector file, relative to the scenario"},
+};
+
+const struct field_table model_table = {
+    .prefix = "model", .doc = "the multibody scene", .offset = offsetof(struct run_spec, model),
+    .size = sizeof(struct model_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+};

@@ -1,0 +1,26 @@
+/* run_spec.c - the settings of a run itself, and all tables together. */
+#include "spec/run_spec.h"
+
+#include <string.h>
+
+#include "base/check.h"
+#include "spec/spec_fields.h"
+
+#define AT(member) .offset = offsetof(struct run_spec, member)
+
+static const struct field fields[] = {
+    {.key = "scenario", .kind = FIELD_TEXT, AT(scenario), .capacity = 64, .fallback = "",
+     .doc = "the scenario file's stem"},
+    {.key = "ranks", .kind = FIELD_INT, AT(nrank), .min = 1, .max = 1 << 24, .fallback = "1",
+     .doc = "P, number of virtual processors; in a scenario also 'n': as many as bodies"},
+    {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .doc = "of noise and random routes"},
+    {.key = "record.links", .kind = FIELD_BOOL, AT(record.links), .fallback = "false",
+     .doc = "keep busy time and queueing of every link"},
+    {.key = "record.spans", .kind = FIELD_BOOL, AT(record.spans), .fallback = "false",
+     .doc = "keep who did what from when to when"},
+};
+
+const struct field_table run_table = {
+    .prefix = "", .doc = "the run itself", .offset = 0,
+    .size = sizeof(struct run_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+};
