@@ -1,0 +1,379 @@
+-- The database of mimdsim. Simulated times are integer picoseconds, sizes bytes; every column name ends in its unit.
+-- Tables are for programs, views (v_...) for people and figures. Non-finite numbers are NULL.
+
+CREATE TABLE meta (
+    key   TEXT PRIMARY KEY,
+    value TEXT
+) STRICT, WITHOUT ROWID;
+
+-- The programs that wrote rows here.
+CREATE TABLE build (
+    id       INTEGER PRIMARY KEY,
+    version  TEXT NOT NULL,
+    git      TEXT NOT NULL,
+    compiler TEXT NOT NULL,
+    flags    TEXT NOT NULL,
+    UNIQUE (version, git, compiler, flags)
+) STRICT;
+
+-- One row per run. Its identity, by which a campaign resumes, is (config_hash, seed, rep).
+CREATE TABLE run (
+    id               INTEGER PRIMARY KEY,
+    config_hash      TEXT NOT NULL,
+    seed             INTEGER NOT NULL,
+    rep              INTEGER NOT NULL,
+    scenario         TEXT NOT NULL,
+    machine          TEXT NOT NULL,
+    topology         TEXT NOT NULL,
+    level            TEXT NOT NULL,
+    placement        TEXT NOT NULL,
+    kernel           TEXT NOT NULL,
+    formulation      TEXT NOT NULL,
+    solver           TEXT NOT NULL,
+    part_solver      TEXT NOT NULL,
+    operators        TEXT NOT NULL,
+    precision        TEXT NOT NULL,
+    model            TEXT NOT NULL,
+    base             TEXT NOT NULL,
+    joint            TEXT NOT NULL,
+    n                INTEGER NOT NULL,  -- bodies
+    nu               INTEGER NOT NULL,  -- degrees of freedom, 0 when there is no model
+    P                INTEGER NOT NULL,  -- virtual processors
+    compute_noise_cv REAL,
+    background_load  REAL,
+    status           TEXT NOT NULL CHECK (status IN ('ok', 'invalid', 'deadlock', 'failed')),
+    text             TEXT NOT NULL,     -- why it is not ok
+    makespan_ps      INTEGER NOT NULL,
+    messages         INTEGER NOT NULL,
+    sent_bytes       INTEGER NOT NULL,
+    events           INTEGER NOT NULL,
+    ties             INTEGER NOT NULL,
+    switches         INTEGER NOT NULL,
+    digest           TEXT NOT NULL,     -- 16 hexadecimal digits
+    accounting_error_ps INTEGER NOT NULL, -- largest |sum of all parts - makespan| over the ranks; 0 is exact
+    finish_min_ps    INTEGER,           -- when the first and the last rank ended
+    finish_max_ps    INTEGER,
+    rank_compute_min_ps INTEGER,        -- computing of the least and the most loaded rank
+    rank_compute_max_ps INTEGER,
+    links            INTEGER NOT NULL,  -- link loads that were recorded, stored or not
+    host_s           REAL,
+    host_total_s     REAL,
+    host_peak_bytes  INTEGER,
+    stack_peak_bytes INTEGER,
+    left_out         TEXT NOT NULL,     -- what the plan left out, with reasons
+    config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash
+    build_id         INTEGER NOT NULL REFERENCES build (id),
+    created_utc      TEXT NOT NULL,
+    UNIQUE (config_hash, seed, rep)
+) STRICT;
+CREATE INDEX run_by_point ON run (machine, kernel, n, P);
+
+-- Every setting of every run; values are shared, so a sweep over anything can be pivoted.
+CREATE TABLE setting (
+    id    INTEGER PRIMARY KEY,
+    key   TEXT NOT NULL,
+    value TEXT NOT NULL,
+    UNIQUE (key, value)
+) STRICT;
+CREATE TABLE run_setting (
+    run_id     INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    setting_id INTEGER NOT NULL REFERENCES setting (id),
+    PRIMARY KEY (run_id, setting_id)
+) STRICT, WITHOUT ROWID;
+
+-- Where the time of each stage went, over all ranks of the run. total = compute + send + recv + wait + contention.
+CREATE TABLE stage (
+    run_id            INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    stage             INTEGER NOT NULL,
+    name              TEXT NOT NULL,
+    compute_sum_ps    INTEGER, compute_min_ps    INTEGER NOT NULL, compute_max_ps    INTEGER NOT NULL,
+    send_sum_ps       INTEGER, send_min_ps       INTEGER NOT NULL, send_max_ps       INTEGER NOT NULL,
+    recv_sum_ps       INTEGER, recv_min_ps       INTEGER NOT NULL, recv_max_ps       INTEGER NOT NULL,
+    wait_sum_ps       INTEGER, wait_min_ps       INTEGER NOT NULL, wait_max_ps       INTEGER NOT NULL,
+    contention_sum_ps INTEGER, contention_min_ps INTEGER NOT NULL, contention_max_ps INTEGER NOT NULL,
+    total_sum_ps      INTEGER, total_min_ps      INTEGER NOT NULL, total_max_ps      INTEGER NOT NULL,
+    messages          INTEGER NOT NULL,
+    sent_bytes        INTEGER NOT NULL,
+    flops             INTEGER NOT NULL,
+    divisions         INTEGER NOT NULL,
+    square_roots      INTEGER NOT NULL,
+    sines             INTEGER NOT NULL,
+    copied_bytes      INTEGER NOT NULL,
+    calls             INTEGER NOT NULL,
+    PRIMARY KEY (run_id, stage)
+) STRICT, WITHOUT ROWID;
+
+-- The same per rank, for runs of at most meta.rank_rows_limit ranks. A rank that did nothing in a stage has no row.
+CREATE TABLE rank_stage (
+    run_id        INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    rank          INTEGER NOT NULL,
+    stage         INTEGER NOT NULL,
+    compute_ps    INTEGER NOT NULL,
+    send_ps       INTEGER NOT NULL,
+    recv_ps       INTEGER NOT NULL,
+    wait_ps       INTEGER NOT NULL,
+    contention_ps INTEGER NOT NULL,
+    messages      INTEGER NOT NULL,
+    sent_bytes    INTEGER NOT NULL,
+    flops         INTEGER NOT NULL,
+    PRIMARY KEY (run_id, rank, stage)
+) STRICT, WITHOUT ROWID;
+
+-- Serial codes that the speedup is measured against: predicted time on one processor of the same machine.
+CREATE TABLE baseline (
+    run_id       INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    ordinal      INTEGER NOT NULL,
+    name         TEXT NOT NULL,
+    time_ps      INTEGER NOT NULL,
+    flops        INTEGER NOT NULL,
+    divisions    INTEGER NOT NULL,
+    square_roots INTEGER NOT NULL,
+    sines        INTEGER NOT NULL,
+    copied_bytes INTEGER NOT NULL,
+    calls        INTEGER NOT NULL,
+    PRIMARY KEY (run_id, ordinal)
+) STRICT, WITHOUT ROWID;
+
+-- Numbers of a run checked against independent references.
+CREATE TABLE error_check (
+    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    ordinal        INTEGER NOT NULL,
+    quantity       TEXT NOT NULL,
+    reference      TEXT NOT NULL,
+    relative_error REAL,               -- NULL: not finite
+    tolerance      REAL,
+    passed         INTEGER NOT NULL CHECK (passed IN (0, 1)),
+    PRIMARY KEY (run_id, ordinal)
+) STRICT, WITHOUT ROWID;
+
+-- Recorded loads of links; of very many only the meta.link_rows_limit busiest.
+CREATE TABLE link_load (
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    link        INTEGER NOT NULL,
+    from_router INTEGER,               -- NULL: injection of `node`
+    to_router   INTEGER,               -- NULL: ejection to `node`
+    node        INTEGER,
+    messages    INTEGER NOT NULL,
+    sent_bytes  INTEGER NOT NULL,
+    busy_ps     INTEGER NOT NULL,
+    queue_ps    INTEGER NOT NULL,
+    PRIMARY KEY (run_id, link)
+) STRICT, WITHOUT ROWID;
+
+-- The timeline of a small run, whole or not at all (meta.span_rows_limit); longer ones are files, in table trace.
+CREATE TABLE span (
+    run_id   INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    span     INTEGER NOT NULL,
+    rank     INTEGER NOT NULL,
+    stage    INTEGER NOT NULL,
+    kind     TEXT NOT NULL CHECK (kind IN ('compute', 'send', 'recv', 'wait', 'barrier')),
+    begin_ps INTEGER NOT NULL,
+    end_ps   INTEGER NOT NULL,
+    peer     INTEGER,
+    bytes    INTEGER NOT NULL,
+    message  INTEGER,                  -- pairs a send with its receive
+    PRIMARY KEY (run_id, span)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE trace (
+    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    path           TEXT NOT NULL,
+    format         TEXT NOT NULL,
+    sha256         TEXT NOT NULL,
+    size_bytes     INTEGER NOT NULL,
+    spans          INTEGER NOT NULL,
+    spans_left_out INTEGER NOT NULL,
+    PRIMARY KEY (run_id, path)
+) STRICT, WITHOUT ROWID;
+
+-- Comparison of a result with a value known from elsewhere: closed forms, stored cases, published figures.
+CREATE TABLE check_point (
+    id             INTEGER PRIMARY KEY,
+    suite          TEXT NOT NULL,
+    subject        TEXT NOT NULL,
+    quantity       TEXT NOT NULL,
+    at             TEXT NOT NULL,      -- where: "P=128", "4096 B"
+    unit           TEXT NOT NULL,
+    reference      REAL,
+    value          REAL,
+    relative_error REAL,
+    tolerance      REAL,
+    class          TEXT NOT NULL,      -- evidence: exact, P, PR, D, E, blind
+    verdict        TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),
+    source         TEXT NOT NULL,
+    UNIQUE (suite, subject, quantity, at)
+) STRICT;
+
+-- The claims of the paper. One row per claim and variant (serial baseline, operators, machine); variant '' is the
+-- claim's own verdict. `share` is the fraction of samples of the uncertain parameters in which it holds.
+CREATE TABLE claim (
+    id         TEXT NOT NULL,
+    variant    TEXT NOT NULL,
+    statement  TEXT NOT NULL,
+    test       TEXT NOT NULL,          -- formula over this database
+    unit       TEXT NOT NULL,
+    value      REAL,
+    threshold  REAL,
+    value_low  REAL,                   -- range over the samples
+    value_high REAL,
+    samples    INTEGER NOT NULL DEFAULT 0,
+    share      REAL,
+    verdict    TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),
+    note       TEXT NOT NULL DEFAULT '',
+    PRIMARY KEY (id, variant)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE claim_sample (
+    id      TEXT NOT NULL,
+    variant TEXT NOT NULL,
+    sample  INTEGER NOT NULL,
+    value   REAL,
+    holds   INTEGER CHECK (holds IN (0, 1)),
+    PRIMARY KEY (id, variant, sample)
+) STRICT, WITHOUT ROWID;
+-- The machine parameters that were drawn for a sample, in SI units.
+CREATE TABLE sample_setting (
+    sample INTEGER NOT NULL,
+    key    TEXT NOT NULL,
+    value  REAL,
+    PRIMARY KEY (sample, key)
+) STRICT, WITHOUT ROWID;
+
+-- Error against run time: one row per rung of a ladder (network, arithmetic, integration), failed ones too.
+CREATE TABLE ladder (
+    scenario       TEXT NOT NULL,
+    ladder         TEXT NOT NULL,
+    at             TEXT NOT NULL,      -- point of the scenario: "n=P=128"
+    method         TEXT NOT NULL,      -- a curve
+    rung           TEXT NOT NULL,      -- a point on it: level, step size, tolerance
+    ordinal        INTEGER NOT NULL,
+    quantity       TEXT NOT NULL,
+    reference      TEXT NOT NULL,
+    relative_error REAL,               -- NULL: failed, or not finite
+    host_s         REAL,
+    machine_ps     INTEGER,            -- predicted time on the machine
+    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),
+    text           TEXT NOT NULL DEFAULT '',
+    PRIMARY KEY (scenario, ladder, at, method, rung, quantity)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE ladder_choice (
+    scenario       TEXT NOT NULL,
+    ladder         TEXT NOT NULL,
+    at             TEXT NOT NULL,
+    quantity       TEXT NOT NULL,
+    tolerance      REAL NOT NULL,
+    method         TEXT,               -- NULL: no rung is within the tolerance
+    rung           TEXT,
+    relative_error REAL,
+    cost_ratio     REAL,               -- of the finest rung's cost to this one's
+    PRIMARY KEY (scenario, ladder, at, quantity, tolerance)
+) STRICT, WITHOUT ROWID;
+
+-- Stiff and extreme cases against algorithms.
+CREATE TABLE stability (
+    suite          TEXT NOT NULL,
+    subject        TEXT NOT NULL,      -- the case
+    algorithm      TEXT NOT NULL,
+    precision      TEXT NOT NULL,
+    ordinal        INTEGER NOT NULL,
+    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),
+    relative_error REAL,
+    residual       REAL,
+    condition      REAL,
+    growth         REAL,
+    refinements    INTEGER,
+    energy_drift   REAL,
+    step_s         REAL,               -- largest stable step, of integrators
+    reason         TEXT NOT NULL,
+    PRIMARY KEY (suite, subject, algorithm, precision)
+) STRICT, WITHOUT ROWID;
+
+-- What was not computed because the scene does not need it, and what that saves.
+CREATE TABLE omission (
+    scenario         TEXT NOT NULL,
+    what             TEXT NOT NULL,
+    why              TEXT NOT NULL,
+    class            TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),
+    bound            REAL,             -- relative, of bounded ones
+    host_saved_s     REAL,
+    machine_saved_ps INTEGER,
+    PRIMARY KEY (scenario, what)
+) STRICT, WITHOUT ROWID;
+
+-- Speedup against each serial baseline; degree of parallelism f by Amdahl, 1/S = (1 - f) + f/P.
+CREATE VIEW v_speedup AS
+SELECT r.id AS run_id, r.scenario, r.machine, r.topology, r.level, r.kernel, r.formulation, r.solver, r.part_solver,
+       r.operators, r.precision, r.base, r.n, r.P, r.compute_noise_cv, r.background_load, r.seed, r.rep,
+       b.ordinal AS baseline_ordinal, b.name AS baseline, b.time_ps AS baseline_ps, r.makespan_ps,
+       CAST(b.time_ps AS REAL) / nullif(r.makespan_ps, 0) AS speedup,
+       CAST(b.time_ps AS REAL) / nullif(r.makespan_ps, 0) / r.P AS efficiency,
+       CASE WHEN r.P > 1 AND b.time_ps > 0
+            THEN (1.0 - CAST(r.makespan_ps AS REAL) / b.time_ps) / (1.0 - 1.0 / r.P) END AS parallel_fraction
+FROM run r JOIN baseline b ON b.run_id = r.id
+WHERE r.status = 'ok';
+
+-- Time per stage: largest over the ranks, and the means, which add up to the makespan over all stages.
+CREATE VIEW v_stage AS
+SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, r.solver, r.operators, r.n, r.P,
+       s.stage, s.name, s.total_max_ps,
+       s.total_sum_ps      / (1.0 * r.P) AS total_mean_ps,
+       s.compute_sum_ps    / (1.0 * r.P) AS compute_mean_ps,    s.compute_max_ps,
+       s.send_sum_ps       / (1.0 * r.P) AS send_mean_ps,       s.send_max_ps,
+       s.recv_sum_ps       / (1.0 * r.P) AS recv_mean_ps,       s.recv_max_ps,
+       s.wait_sum_ps       / (1.0 * r.P) AS wait_mean_ps,       s.wait_max_ps,
+       s.contention_sum_ps / (1.0 * r.P) AS contention_mean_ps, s.contention_max_ps,
+       s.messages, s.sent_bytes, s.flops
+FROM run r JOIN stage s ON s.run_id = r.id
+WHERE r.status = 'ok';
+
+-- Proof that nothing is lost: over all ranks and stages the parts add up to P times the makespan, to the picosecond.
+CREATE VIEW v_accounting AS
+SELECT r.id AS run_id, r.scenario, r.n, r.P, r.makespan_ps, r.P * r.makespan_ps AS expected_ps,
+       sum(s.compute_sum_ps + s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps) AS found_ps,
+       sum(s.compute_sum_ps + s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps)
+           - r.P * r.makespan_ps AS difference_ps,
+       r.accounting_error_ps
+FROM run r JOIN stage s ON s.run_id = r.id
+WHERE r.status IN ('ok', 'invalid')
+GROUP BY r.id;
+
+CREATE VIEW v_errors AS
+SELECT r.id AS run_id, r.scenario, r.machine, r.kernel, r.formulation, r.solver, r.precision, r.n, r.P, r.status,
+       e.quantity, e.reference, e.relative_error, e.tolerance, e.passed
+FROM run r JOIN error_check e ON e.run_id = r.id;
+
+-- The paper's indicators: run time over communication and synchronisation (R/C), and spread of the load.
+CREATE VIEW v_indicator AS
+SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, r.operators, r.n, r.P, r.makespan_ps,
+       1.0 * r.P * r.makespan_ps
+           / nullif(sum(s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps), 0) AS rc_ratio,
+       1.0 * sum(s.compute_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS compute_share,
+       1.0 * sum(s.send_sum_ps + s.recv_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS overhead_share,
+       1.0 * sum(s.wait_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS wait_share,
+       1.0 * sum(s.contention_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS contention_share,
+       1.0 * (r.rank_compute_max_ps - r.rank_compute_min_ps) * r.P / nullif(sum(s.compute_sum_ps), 0) AS load_spread
+FROM run r JOIN stage s ON s.run_id = r.id
+WHERE r.status = 'ok'
+GROUP BY r.id;
+
+CREATE VIEW v_setting AS
+SELECT rs.run_id, s.key, s.value FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
+
+-- The settings that differ between the runs of a scenario: what it sweeps.
+CREATE VIEW v_itervar AS
+WITH varied AS (
+    SELECT r.scenario, s.key
+    FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
+    GROUP BY r.scenario, s.key HAVING count(DISTINCT s.id) > 1)
+SELECT rs.run_id, r.scenario, s.key, s.value
+FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
+     JOIN varied v ON v.scenario = r.scenario AND v.key = s.key;
+
+CREATE VIEW v_claims AS
+SELECT id, variant, statement, verdict, value, unit, threshold, value_low, value_high, share, samples, note
+FROM claim;
+
+-- Who made a row, with what.
+CREATE VIEW v_provenance AS
+SELECT r.id AS run_id, r.scenario, r.config_hash, r.seed, r.rep, r.digest, r.status, r.created_utc, b.version, b.git,
+       b.compiler, b.flags, r.host_s, r.host_total_s, r.host_peak_bytes, r.left_out
+FROM run r JOIN build b ON b.id = r.build_id;

@@ -1,0 +1,279 @@
+/* store.c - opening, checking and closing the database, transactions, and what its errors mean to a user.
+ *
+ * Durability: a run takes milliseconds, so a commit must not wait for the disk. Journal mode WAL with synchronous =
+ * NORMAL writes each commit to the log without a flush: after kill -9 the system still holds every committed run; a
+ * power cut may lose the last ones, but the log's checksums keep the database whole. Shared memory of WAL does not
+ * work over network file systems: there a rollback journal with full flushes is used. */
+#include "store/store.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "store/connection.h"
+#include "store/schema.h"
+
+static const char *const statement_sql[] = {
+#define X(name, sql) sql,
+    STORE_STATEMENTS(X)
+#undef X
+};
+
+bool store_failed(struct store *s, struct err *e)
+{
+    int code = sqlite3_errcode(s->db), system = sqlite3_system_errno(s->db);
+    const char *path = s->path, *text = sqlite3_errmsg(s->db);
+    switch (code) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return err_set(e, ERR_BUSY, "database %s is locked by another program; try again when that has finished", path);
+    case SQLITE_FULL: return err_set(e, ERR_IO, "no space left on the disk of database %s", path);
+    case SQLITE_READONLY: return err_set(e, ERR_IO, "database %s is read-only", path);
+    case SQLITE_CANTOPEN:
+        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s", path,
+                       system ? strerror(system) : text);
+    case SQLITE_IOERR:
+        return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path, system ? strerror(system) : text);
+    case SQLITE_NOTADB: return err_set(e, ERR_DATA, "%s is not a database of mimdsim", path);
+    case SQLITE_CORRUPT: return err_set(e, ERR_DATA, "database %s is damaged: %s", path, text);
+    case SQLITE_NOMEM: return err_set(e, ERR_INTERNAL, "no memory for database %s", path);
+    default: return err_set(e, ERR_DATA, "database %s: %s", path, text);
+    }
+}
+
+bool store_exec(struct store *s, const char *sql, struct err *e)
+{
+    return sqlite3_exec(s->db, sql, NULL, NULL, NULL) == SQLITE_OK || store_failed(s, e);
+}
+
+sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)
+{
+    sqlite3_stmt **kept = &s->statement[which];
+    if (*kept == NULL && sqlite3_prepare_v3(s->db, statement_sql[which], -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) {
+        store_failed(s, e);
+        return NULL;
+    }
+    return *kept;
+}
+
+bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e)
+{
+    bool ok = sqlite3_step(statement) == SQLITE_DONE || store_failed(s, e);
+    sqlite3_reset(statement);
+    return ok;
+}
+
+/* The integer that `sql` (a pragma or a count) returns. */
+static bool read_number(struct store *s, const char *sql, int64_t *out, struct err *e)
+{
+    sqlite3_stmt *q = NULL;
+    bool ok = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
+    if (ok) *out = sqlite3_column_int64(q, 0);
+    else store_failed(s, e);
+    sqlite3_finalize(q);
+    return ok;
+}
+
+/* Whose database it is: *empty for one without tables. */
+static bool check_owner(struct store *s, bool *empty, struct err *e)
+{
+    int64_t application = 0, version = 0, tables = 0;
+    if (!read_number(s, "SELECT count(*) FROM sqlite_schema", &tables, e) ||
+        !read_number(s, "PRAGMA application_id", &application, e) ||
+        !read_number(s, "PRAGMA user_version", &version, e))
+        return false;
+    *empty = tables == 0 && application == 0;
+    if (*empty) return true;
+    if (application != STORE_APPLICATION)
+        return err_set(e, ERR_DATA, "%s is a database of another program, not of mimdsim", s->path);
+    if (version != STORE_VERSION)
+        return err_set(e, ERR_DATA, "database %s has schema version %lld, this program knows version %d; %s", s->path,
+                       (long long)version, STORE_VERSION,
+                       version > STORE_VERSION ? "use a newer mimdsim" : "it cannot be read any more");
+    return true;
+}
+
+/* Tables and identity of a new database, in one transaction. */
+static bool create_schema(struct store *s, struct err *e)
+{
+    struct text t = {0};
+    text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION, STORE_VERSION);
+    text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d), ('span_rows_limit', %d);",
+             STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
+    bool empty = false, ok = store_exec(s, "BEGIN IMMEDIATE", e) && check_owner(s, &empty, e);
+    /* Another program may have made it while we waited for the lock. */
+    if (ok && empty) ok = store_exec(s, store_schema(), e) && store_exec(s, t.s, e);
+    if (ok) ok = store_exec(s, "COMMIT", e);
+    if (!ok) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
+    text_free(&t);
+    return ok;
+}
+
+/* Whether the folder of `path` is on a file system that several hosts share (magic numbers: statfs(2)). */
+static bool on_network(const char *path)
+{
+    static const unsigned magic[] = {0x6969,     0x517B,     0xFF534D42, 0xFE534D42, 0x0BD00BD0, 0x47504653,
+                                     0x19830326, 0x01021997, 0x00C36400, 0x5346414F, 0x65735546};
+    struct statfs info;
+    if (statfs(path, &info) != 0) return false;
+    for (size_t i = 0; i < sizeof magic / sizeof magic[0]; i++)
+        if ((unsigned)info.f_type == magic[i]) return true;
+    return false;
+}
+
+static bool set_journal(struct store *s, bool fresh, struct err *e)
+{
+    if (on_network(s->path)) return store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e);
+    /* An empty file has nothing to lose: no flush for the page that says WAL. */
+    if (fresh && !store_exec(s, "PRAGMA synchronous = OFF", e)) return false;
+    return store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
+}
+
+/* Everything between opening the file and the first statement of a writer. */
+static bool prepare_writer(struct store *s, struct err *e)
+{
+    bool empty = false;
+    if (!check_owner(s, &empty, e)) return false;
+    if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
+    if (!set_journal(s, empty, e)) return false;
+    if (empty && !create_schema(s, e)) return false;
+    /* A lock or a folder that cannot be written shows now, before anything is computed. */
+    return store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
+}
+
+static bool prepare_reader(struct store *s, struct err *e)
+{
+    bool empty = false;
+    if (!check_owner(s, &empty, e)) return false;
+    return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
+}
+
+/* Mistakes in the path that SQLite would report vaguely. *exists when there is a file. */
+static bool check_path(const char *path, enum store_mode mode, bool *exists, struct err *e)
+{
+    struct stat info;
+    *exists = stat(path, &info) == 0;
+    if (*exists && S_ISDIR(info.st_mode))
+        return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA, "%s is a folder, not a database", path);
+    if (!*exists && mode == STORE_READ)
+        return err_set(e, ERR_NO_INPUT, "there is no database %s; `mimdsim run` makes one", path);
+    if (!*exists && errno != ENOENT)
+        return err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
+    return true;
+}
+
+/* A database in WAL mode in a folder that cannot be written opens only when declared unchanging. */
+static void reopen_immutable(struct store *s)
+{
+    struct text uri = {0};
+    text_add(&uri, "file:");
+    for (const unsigned char *c = (const unsigned char *)s->path; *c; c++)
+        if (*c == '?' || *c == '#' || *c == '%') text_add(&uri, "%%%02X", *c);
+        else text_add_bytes(&uri, (const char *)c, 1);
+    text_add(&uri, "?immutable=1");
+    sqlite3_close(s->db);
+    sqlite3_open_v2(uri.s, &s->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
+    text_free(&uri);
+}
+
+static bool log_exists(const char *path)
+{
+    struct text log = {0};
+    text_add(&log, "%s-wal", path);
+    bool there = access(log.s, F_OK) == 0;
+    text_free(&log);
+    return there;
+}
+
+static bool open_reader(struct store *s, struct err *e)
+{
+    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
+    int64_t ignored;
+    struct err first = {0};
+    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
+    if (!read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first) &&
+        sqlite3_errcode(s->db) == SQLITE_CANTOPEN && !log_exists(s->path))
+        reopen_immutable(s);
+    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
+    return prepare_reader(s, e);
+}
+
+static bool open_writer(struct store *s, struct err *e)
+{
+    int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+    if (sqlite3_open_v2(s->path, &s->db, flags, NULL)) return store_failed(s, e);
+    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
+    return prepare_writer(s, e);
+}
+
+/* A file that we made and could not fill must not stay. */
+static void remove_new(const char *path)
+{
+    static const char *const suffix[] = {"", "-wal", "-shm", "-journal"};
+    for (int i = 0; i < 4; i++) {
+        struct text name = {0};
+        text_add(&name, "%s%s", path, suffix[i]);
+        unlink(name.s);
+        text_free(&name);
+    }
+}
+
+struct store *store_open(const char *path, enum store_mode mode, struct err *e)
+{
+    bool exists;
+    if (!check_path(path, mode, &exists, e)) return NULL;
+    struct store *s = calloc(1, sizeof *s);
+    CHECK(s != NULL);
+    s->path = strdup(path);
+    CHECK(s->path != NULL);
+    s->writable = mode == STORE_WRITE;
+    if (s->writable ? open_writer(s, e) : open_reader(s, e)) return s;
+    store_close(s);
+    if (mode == STORE_WRITE && !exists) remove_new(path);
+    return NULL;
+}
+
+void store_close(struct store *s)
+{
+    if (s == NULL) return;
+    for (int i = 0; i < STATEMENT_COUNT; i++) sqlite3_finalize(s->statement[i]);
+    if (s->in_transaction) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
+    CHECK(sqlite3_close(s->db) == SQLITE_OK);
+    free(s->path);
+    free(s);
+}
+
+const char *store_path(const struct store *s) { return s->path; }
+
+bool store_begin(struct store *s, struct err *e)
+{
+    CHECK(!s->in_transaction);
+    sqlite3_stmt *begin = store_statement(s, STATEMENT_BEGIN, e);
+    s->in_transaction = begin != NULL && store_step(s, begin, e);
+    return s->in_transaction;
+}
+
+bool store_commit(struct store *s, struct err *e)
+{
+    CHECK(s->in_transaction);
+    sqlite3_stmt *commit = store_statement(s, STATEMENT_COMMIT, e);
+    if (commit == NULL || !store_step(s, commit, e)) {
+        store_rollback(s);
+        return false;
+    }
+    s->in_transaction = false;
+    return true;
+}
+
+void store_rollback(struct store *s)
+{
+    CHECK(s->in_transaction);
+    /* Some errors (disk full) have rolled back already. */
+    if (!sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
+    s->in_transaction = false;
+}

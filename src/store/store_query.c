@@ -1,0 +1,140 @@
+/* store_query.c - queries out of the database, and rows of any table into it. */
+#include "store/store.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "store/connection.h"
+
+enum { MAX_COLUMNS = 128, MAX_INSERT = 64 };
+
+struct store_value store_null(void) { return (struct store_value){.kind = STORE_NULL}; }
+
+struct store_value store_int(int64_t v) { return (struct store_value){.kind = STORE_INT, .integer = v}; }
+
+struct store_value store_real(double v)
+{
+    return isfinite(v) ? (struct store_value){.kind = STORE_REAL, .real = v} : store_null();
+}
+
+struct store_value store_text(const char *v)
+{
+    return v ? (struct store_value){.kind = STORE_TEXT, .text = v} : store_null();
+}
+
+static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
+{
+    switch (v->kind) {
+    case STORE_NULL: sqlite3_bind_null(q, place); break;
+    case STORE_INT: sqlite3_bind_int64(q, place, v->integer); break;
+    case STORE_REAL: sqlite3_bind_double(q, place, v->real); break;
+    case STORE_TEXT: sqlite3_bind_text(q, place, v->text, -1, SQLITE_STATIC); break;
+    }
+}
+
+static struct store_value column_value(sqlite3_stmt *q, int column)
+{
+    switch (sqlite3_column_type(q, column)) {
+    case SQLITE_INTEGER: return store_int(sqlite3_column_int64(q, column));
+    case SQLITE_FLOAT: return (struct store_value){.kind = STORE_REAL, .real = sqlite3_column_double(q, column)};
+    case SQLITE_NULL: return store_null();
+    default: return store_text((const char *)sqlite3_column_text(q, column));
+    }
+}
+
+static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param, struct err *e)
+{
+    sqlite3_stmt *q = NULL;
+    if (sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK) {
+        store_failed(s, e);
+        return NULL;
+    }
+    if (q == NULL) {
+        err_set(e, ERR_DATA, "empty query");
+        return NULL;
+    }
+    if (sqlite3_bind_parameter_count(q) != nparam) {
+        err_set(e, ERR_DATA, "the query has %d parameters, %d were given", sqlite3_bind_parameter_count(q), nparam);
+        sqlite3_finalize(q);
+        return NULL;
+    }
+    for (int i = 0; i < nparam; i++) sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC);
+    return q;
+}
+
+bool store_query(struct store *s, const char *sql, int nparam, const char *const *param, store_value_fn *header,
+                 store_value_fn *row, void *context, struct err *e)
+{
+    sqlite3_stmt *q = prepare(s, sql, nparam, param, e);
+    if (q == NULL) return false;
+    int ncolumn = sqlite3_column_count(q), code = SQLITE_DONE;
+    const char *name[MAX_COLUMNS];
+    struct store_value value[MAX_COLUMNS];
+    bool ok = ncolumn <= MAX_COLUMNS || err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
+    for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
+    bool more = ok && (header == NULL || header(context, ncolumn, name, NULL));
+    while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
+        for (int i = 0; i < ncolumn; i++) value[i] = column_value(q, i);
+        more = row(context, ncolumn, name, value);
+    }
+    if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
+    sqlite3_finalize(q);
+    return ok;
+}
+
+bool store_select(struct store *s, const char *sql, int nparam, const char *const *param, store_row_fn *row,
+                  void *context, struct err *e)
+{
+    sqlite3_stmt *q = prepare(s, sql, nparam, param, e);
+    if (q == NULL) return false;
+    int ncolumn = sqlite3_column_count(q), code = SQLITE_DONE;
+    const char *name[MAX_COLUMNS], *value[MAX_COLUMNS];
+    bool ok = ncolumn <= MAX_COLUMNS || err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
+    for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
+    bool more = ok;
+    while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
+        for (int i = 0; i < ncolumn; i++) value[i] = (const char *)sqlite3_column_text(q, i);
+        more = row(context, ncolumn, name, value);
+    }
+    if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
+    sqlite3_finalize(q);
+    return ok;
+}
+
+/* Prepare, bind, step and finalize a statement that returns nothing. */
+static bool run_once(struct store *s, const char *sql, int nvalue, const struct store_value *value, struct err *e)
+{
+    sqlite3_stmt *q = NULL;
+    CHECK(s->writable);
+    if (sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK) return store_failed(s, e);
+    for (int i = 0; i < nvalue; i++) bind_value(q, i + 1, &value[i]);
+    bool ok = sqlite3_step(q) == SQLITE_DONE || store_failed(s, e);
+    sqlite3_finalize(q);
+    return ok;
+}
+
+bool store_insert(struct store *s, const char *table, int ncolumn, const char *const *name,
+                  const struct store_value *value, struct err *e)
+{
+    CHECK(ncolumn >= 1 && ncolumn <= MAX_INSERT);
+    struct text sql = {0};
+    text_add(&sql, "INSERT OR REPLACE INTO \"%s\" (", table);
+    for (int i = 0; i < ncolumn; i++) text_add(&sql, "%s\"%s\"", i ? ", " : "", name[i]);
+    text_add(&sql, ") VALUES (");
+    for (int i = 0; i < ncolumn; i++) text_add(&sql, i ? ", ?" : "?");
+    text_add(&sql, ")");
+    bool ok = run_once(s, sql.s, ncolumn, value, e);
+    text_free(&sql);
+    return ok;
+}
+
+bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e)
+{
+    struct text sql = {0};
+    text_add(&sql, "DELETE FROM \"%s\" WHERE \"%s\" IS ?", table, column);
+    bool ok = run_once(s, sql.s, 1, &value, e);
+    text_free(&sql);
+    return ok;
+}
