@@ -1,0 +1,236 @@
+/* dense.c - operations on very small dense matrices (dense.h).
+ *
+ * Columns of right-hand sides are the inner, contiguous dimension, so that compilers turn them into vectors without
+ * changing the order of any sum. */
+#include "linalg/dense.h"
+
+#include <string.h>
+
+/* account: add a count of which `div` are divisions, and one call. */
+static void account(struct work *w, int flops, int div)
+{
+    w->flop += (uint64_t)(flops - div);
+    w->div += (uint64_t)div;
+    w->call++;
+}
+
+bool dense_factor(int c, const real *A, real *G, struct work *w)
+{
+    account(w, dense_factor_flops(c), c);
+    real row[8];
+    for (int i = 0; i < c; i++) {
+        real *g = G + packed_index(i, 0);
+        for (int j = 0; j <= i; j++) row[j] = A[packed_index(i, j)];
+        /* row_j becomes l_ij d_j, then g_j = l_ij */
+        for (int j = 0; j < i; j++) {
+            const real *gj = G + packed_index(j, 0);
+            for (int k = 0; k < j; k++) row[j] -= row[k] * gj[k];
+        }
+        real pivot = row[i];
+        for (int j = 0; j < i; j++) {
+            g[j] = row[j] * G[packed_index(j, j)];
+            pivot -= row[j] * g[j];
+        }
+        if (!(pivot > 0)) return false;
+        g[i] = 1 / pivot;
+    }
+    return true;
+}
+
+void dense_forward(int c, int m, const real *G, real *B, struct work *w)
+{
+    account(w, c * (c - 1) * m, 0);
+    for (int i = 1; i < c; i++)
+        for (int j = 0; j < i; j++) {
+            const real l = G[packed_index(i, j)];
+            for (int k = 0; k < m; k++) B[i * m + k] -= l * B[j * m + k];
+        }
+}
+
+void dense_scale(int c, int m, const real *G, real *B, struct work *w)
+{
+    w->flop += (uint64_t)(c * m);
+    for (int i = 0; i < c; i++) {
+        const real d = G[packed_index(i, i)];
+        for (int k = 0; k < m; k++) B[i * m + k] *= d;
+    }
+}
+
+void dense_backward(int c, int m, const real *G, real *B, struct work *w)
+{
+    account(w, c * (c - 1) * m, 0);
+    for (int i = c - 1; i >= 0; i--)
+        for (int j = i + 1; j < c; j++) {
+            const real l = G[packed_index(j, i)];
+            for (int k = 0; k < m; k++) B[i * m + k] -= l * B[j * m + k];
+        }
+}
+
+void dense_solve(int c, int m, const real *G, real *B, struct work *w)
+{
+    dense_forward(c, m, G, B, w);
+    dense_scale(c, m, G, B, w);
+    dense_backward(c, m, G, B, w);
+}
+
+void dense_product(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
+{
+    account(w, dense_product_flops(a, b, k), 0);
+    memset(C, 0, (size_t)(a * b) * sizeof *C);
+    for (int i = 0; i < a; i++)
+        for (int l = 0; l < k; l++) {
+            const real f = A[i * k + l];
+            for (int j = 0; j < b; j++) C[i * b + j] += f * B[l * b + j];
+        }
+}
+
+void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
+{
+    account(w, dense_product_flops(a, b, k), 0);
+    memset(C, 0, (size_t)(a * b) * sizeof *C);
+    for (int l = 0; l < k; l++)
+        for (int i = 0; i < a; i++) {
+            const real f = A[l * a + i];
+            for (int j = 0; j < b; j++) C[i * b + j] += f * B[l * b + j];
+        }
+}
+
+void dense_subtract(int n, real *a, const real *b, struct work *w)
+{
+    w->flop += (uint64_t)n;
+    for (int i = 0; i < n; i++) a[i] -= b[i];
+}
+
+bool dense_invert(int c, real *A, struct work *w)
+{
+    account(w, 2 * c * c * c, c);
+    for (int k = 0; k < c; k++) {
+        const real pivot = A[k * c + k];
+        if (!(real_fabs(pivot) > 0)) return false;
+        const real inverse = 1 / pivot;
+        A[k * c + k] = 1;
+        for (int j = 0; j < c; j++) A[k * c + j] *= inverse;
+        for (int i = 0; i < c; i++) {
+            if (i == k) continue;
+            const real f = A[i * c + k];
+            A[i * c + k] = 0;
+            for (int j = 0; j < c; j++) A[i * c + j] -= f * A[k * c + j];
+        }
+    }
+    return true;
+}
+
+/* swap_rows: exchange rows p and q of an (n x m) matrix. */
+static void swap_rows(real *A, int m, int p, int q)
+{
+    for (int j = 0; j < m; j++) {
+        const real t = A[p * m + j];
+        A[p * m + j] = A[q * m + j];
+        A[q * m + j] = t;
+    }
+}
+
+bool dense_solve_general(int n, int m, real *A, real *B, struct work *w)
+{
+    account(w, 2 * n * n * n / 3 + 2 * n * n * m, n);
+    for (int k = 0; k < n; k++) {
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            if (real_fabs(A[i * n + k]) > real_fabs(A[p * n + k])) p = i;
+        if (!(real_fabs(A[p * n + k]) > 0)) return false;
+        if (p != k) {
+            swap_rows(A, n, k, p);
+            swap_rows(B, m, k, p);
+        }
+        const real inverse = 1 / A[k * n + k];
+        for (int i = k + 1; i < n; i++) {
+            const real f = A[i * n + k] * inverse;
+            for (int j = k + 1; j < n; j++) A[i * n + j] -= f * A[k * n + j];
+            for (int j = 0; j < m; j++) B[i * m + j] -= f * B[k * m + j];
+        }
+        A[k * n + k] = inverse; /* kept for the way back */
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int k = i + 1; k < n; k++)
+            for (int j = 0; j < m; j++) B[i * m + j] -= A[i * n + k] * B[k * m + j];
+        for (int j = 0; j < m; j++) B[i * m + j] *= A[i * n + i];
+    }
+    return true;
+}
+
+/* rotate: one Jacobi rotation that makes element (p, q) of the symmetric S zero; Q collects the rotations. */
+static void rotate(int n, real *S, real *Q, int p, int q)
+{
+    const real theta = (S[q * n + q] - S[p * n + p]) / (2 * S[p * n + q]);
+    const real t = (theta >= 0 ? 1 : -1) / (real_fabs(theta) + real_sqrt(theta * theta + 1));
+    const real cosine = 1 / real_sqrt(t * t + 1), sine = t * cosine;
+    for (int k = 0; k < n; k++) {
+        const real a = S[k * n + p], b = S[k * n + q];
+        S[k * n + p] = cosine * a - sine * b;
+        S[k * n + q] = sine * a + cosine * b;
+    }
+    for (int k = 0; k < n; k++) {
+        const real a = S[p * n + k], b = S[q * n + k];
+        S[p * n + k] = cosine * a - sine * b;
+        S[q * n + k] = sine * a + cosine * b;
+    }
+    for (int k = 0; k < n; k++) {
+        const real a = Q[k * n + p], b = Q[k * n + q];
+        Q[k * n + p] = cosine * a - sine * b;
+        Q[k * n + q] = sine * a + cosine * b;
+    }
+}
+
+/* jacobi: eigenvectors of S into the columns of Q, eigenvalues onto its diagonal; cyclic sweeps. */
+static void jacobi(int n, real *S, real *Q, struct work *w)
+{
+    memset(Q, 0, (size_t)(n * n) * sizeof *Q);
+    for (int i = 0; i < n; i++) Q[i * n + i] = 1;
+    for (int sweep = 0; sweep < 60; sweep++) {
+        int nrotation = 0;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) {
+                const real size = real_fabs(S[p * n + p]) + real_fabs(S[q * n + q]);
+                if (!(real_fabs(S[p * n + q]) > REAL_EPSILON * REAL_EPSILON * size)) continue;
+                rotate(n, S, Q, p, q);
+                S[p * n + q] = S[q * n + p] = 0;
+                nrotation++;
+            }
+        w->flop += (uint64_t)(nrotation * (18 * n + 6));
+        w->div += (uint64_t)(nrotation * 3);
+        w->sqrt += (uint64_t)(nrotation * 2);
+        if (nrotation == 0) return;
+    }
+}
+
+int dense_least_norm(int n, const real *scale, real *S, real *s, real *work, struct work *w)
+{
+    real *Q = work, *d = work + n * n, *z = d + n;
+    for (int i = 0; i < n; i++) d[i] = 1 / real_sqrt(scale[i]);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) S[i * n + j] *= d[i] * d[j];
+    jacobi(n, S, Q, w);
+    real largest = 1;
+    for (int i = 0; i < n; i++)
+        if (S[i * n + i] > largest) largest = S[i * n + i];
+    const real tolerance = REAL_BITS == 32 ? real_sqrt((real)REAL_EPSILON) / 10 : (real)1e-10;
+    int rank = 0;
+    for (int k = 0; k < n; k++) {
+        const real eigenvalue = S[k * n + k];
+        z[k] = 0;
+        if (!(eigenvalue > tolerance * largest)) continue;
+        for (int i = 0; i < n; i++) z[k] += Q[i * n + k] * (d[i] * s[i]);
+        z[k] /= eigenvalue;
+        rank++;
+    }
+    for (int i = 0; i < n; i++) {
+        real x = 0;
+        for (int k = 0; k < n; k++) x += Q[i * n + k] * z[k];
+        s[i] = d[i] * x;
+    }
+    w->flop += (uint64_t)(7 * n * n + 3 * n);
+    w->div += (uint64_t)(2 * n);
+    w->sqrt += (uint64_t)n;
+    w->call++;
+    return rank;
+}
