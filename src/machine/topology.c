@@ -54,6 +54,7 @@ int topology_injection_port(const struct topology *t, int node)
 struct route_cursor topology_start(const struct topology *t, int src, int dst, uint64_t choice)
 {
     struct route_cursor c = {.router = topology_router_of(t, src), .target = topology_router_of(t, dst), .via = -1};
+    c.at = dst - c.target * t->nodes_per_router;
     t->type->start(t, choice, &c);
     return c;
 }

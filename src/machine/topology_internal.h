@@ -10,9 +10,9 @@ struct topology_type {
     const char *name;
     /* fill nrouter, nlink, nclass, nport, max_hops and state of *t from t->spec; memory from a */
     bool (*create)(struct topology *t, struct arena *a, struct err *e);
-    /* c->router and c->target are routers, already set: prepare the walk */
+    /* prepare the walk; set already: router, target, via (-1), and at: local number of the destination node */
     void (*start)(const struct topology *t, uint64_t choice, struct route_cursor *c);
-    /* c->router != c->target or the walk is not over: one step */
+    /* one step into *h; false when the walk is over */
     bool (*next)(const struct topology *t, struct route_cursor *c, struct hop *h);
     int (*distance)(const struct topology *t, int from, int to); /* routers; NULL: walk and count */
     void (*ends)(const struct topology *t, int link, int *from, int *to, int *port);

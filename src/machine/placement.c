@@ -1,0 +1,117 @@
+/* placement.c - ranks onto processors: an order of the processors, of which the first nrank are used.
+ *
+ * Processors are numbered node by node. An order of routers (linear, snake, Gray) becomes one of nodes and then of
+ * processors: block fills a node before the next, cyclic deals one processor of every node in turn. */
+#include "machine/placement.h"
+
+#include "base/check.h"
+#include "base/random.h"
+
+/* Router number `i` along a path through the grid that only steps to neighbours: every second line runs backwards. */
+static int snake_router(const struct topology_spec *s, int i)
+{
+    int router = 0, stride = 1, rest[MACHINE_MAX_DIMS];
+    for (int d = 0; d < s->ndim; d++) {
+        rest[d] = i;
+        i /= s->dims[d];
+    }
+    for (int d = 0; d < s->ndim; d++) {
+        int k = s->dims[d], x = rest[d] % k, line = rest[d] / k;
+        router += (line % 2 ? k - 1 - x : x) * stride;
+        stride *= k;
+    }
+    return router;
+}
+
+static int ordered_router(const struct machine_spec *m, int i)
+{
+    switch (m->placement.kind) {
+    case PLACEMENT_SNAKE: return snake_router(&m->topology, i);
+    case PLACEMENT_GRAY: return i ^ i >> 1;
+    default: return i;
+    }
+}
+
+static bool kind_fits(const struct machine_spec *m, struct err *e)
+{
+    enum topology_family f = m->topology.family;
+    if (m->placement.kind == PLACEMENT_SNAKE && f != TOPOLOGY_TORUS && f != TOPOLOGY_MESH)
+        return err_set(e, ERR_CONFIG, "placement snake needs a torus or a mesh");
+    if (m->placement.kind == PLACEMENT_GRAY && f != TOPOLOGY_HYPERCUBE)
+        return err_set(e, ERR_CONFIG, "placement gray needs a hypercube");
+    return true;
+}
+
+static void put(struct placement *p, int rank, int64_t processor, int per_node)
+{
+    p->node[rank] = (int)(processor / per_node);
+    p->processor[rank] = (int)(processor % per_node);
+}
+
+static void place_in_order(struct placement *p, const struct machine_spec *m, const struct topology *t)
+{
+    int per_node = m->topology.processors_per_node, npr = t->nodes_per_router;
+    for (int r = 0; r < p->nrank; r++) {
+        bool block = m->placement.spread == SPREAD_BLOCK;
+        int i = block ? r / per_node : r % t->nnode, processor = block ? r % per_node : r / t->nnode;
+        int node = npr == 1 ? ordered_router(m, i) : ordered_router(m, i / npr) * npr + i % npr;
+        put(p, r, (int64_t)node * per_node + processor, per_node);
+    }
+}
+
+static void place_randomly(struct placement *p, const struct machine_spec *m, int64_t nprocessor, struct arena *a)
+{
+    struct random g = random_make(m->placement.seed, 0x706c616365, 0); /* "place" */
+    struct arena_mark mark = arena_mark(a);
+    int64_t *all = TAKE(a, nprocessor, int64_t);
+    for (int64_t i = 0; i < nprocessor; i++) all[i] = i;
+    for (int r = 0; r < p->nrank; r++) { /* Fisher and Yates, as far as needed */
+        int64_t j = r + (int64_t)random_below(&g, (uint64_t)(nprocessor - r)), other = all[j];
+        all[j] = all[r];
+        all[r] = other;
+        put(p, r, other, m->topology.processors_per_node);
+    }
+    arena_release(a, mark);
+}
+
+static bool place_by_list(struct placement *p, const struct machine_spec *m, int64_t nprocessor, struct arena *a,
+                          struct err *e)
+{
+    const struct placement_spec *s = &m->placement;
+    if (s->nlist < p->nrank)
+        return err_set(e, ERR_CONFIG, "placement list names %d processors for %d ranks", s->nlist, p->nrank);
+    struct arena_mark mark = arena_mark(a);
+    int *taken = TAKE(a, nprocessor, int); /* 1 + rank */
+    bool ok = true;
+    for (int r = 0; ok && r < p->nrank; r++) {
+        int processor = s->list[r];
+        if (processor < 0 || processor >= nprocessor)
+            ok = err_set(e, ERR_CONFIG, "placement list: processor %d of rank %d; expected 0 to %lld", processor, r,
+                         (long long)nprocessor - 1);
+        else if (taken[processor])
+            ok = err_set(e, ERR_CONFIG, "placement list: ranks %d and %d on processor %d", taken[processor] - 1, r,
+                         processor);
+        else
+            taken[processor] = r + 1;
+        if (ok) put(p, r, processor, m->topology.processors_per_node);
+    }
+    arena_release(a, mark);
+    return ok;
+}
+
+bool placement_create(struct placement *p, const struct machine_spec *m, const struct topology *t, int nrank,
+                      struct arena *a, struct err *e)
+{
+    int64_t nprocessor = (int64_t)t->nnode * m->topology.processors_per_node;
+    CHECK(nrank >= 1);
+    if (nrank > nprocessor)
+        return err_set(e, ERR_CONFIG, "%d ranks do not fit on machine %s with %lld processors", nrank, m->name,
+                       (long long)nprocessor);
+    if (!kind_fits(m, e)) return false;
+    *p = (struct placement){nrank, TAKE(a, nrank, int), TAKE(a, nrank, int)};
+    switch (m->placement.kind) {
+    case PLACEMENT_LIST: return place_by_list(p, m, nprocessor, a, e);
+    case PLACEMENT_RANDOM: place_randomly(p, m, nprocessor, a); return true;
+    default: place_in_order(p, m, t); return true;
+    }
+}

@@ -1,0 +1,162 @@
+/* topology_graph.c - routers and links as given in a file, deterministic shortest paths.
+ *
+ * The next router towards a target is the lowest-numbered neighbour that is nearer to it. Next hops are found by a
+ * breadth-first search per target when it is first used, and kept. The class is the number of links behind, which
+ * frees any graph of deadlock; a tree needs one class only. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "machine/topology_internal.h"
+
+enum { GRAPH_EXACT_DIAMETER = 1024 }; /* routers; above, twice the distance from router 0 bounds the longest route */
+
+struct graph {
+    struct arena *arena;
+    int nrouter;
+    int *first;         /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
+    int *from, *to, *port; /* (nlink) of each directed link */
+    int **next;         /* (nrouter) per target: the link to take from every router; NULL until needed */
+    int *distance, *queue; /* (nrouter) of the search */
+    bool tree;
+};
+
+struct graph_link {
+    int from, to;
+};
+
+static int link_order(const void *a, const void *b)
+{
+    const struct graph_link *p = a, *q = b;
+    return p->from != q->from ? (p->from > q->from) - (p->from < q->from) : (p->to > q->to) - (p->to < q->to);
+}
+
+static bool links_read(const struct topology_spec *s, struct graph_link *all, struct err *e)
+{
+    for (int i = 0; i < s->nlink; i++) {
+        int a = s->link[i][0], b = s->link[i][1];
+        if (a < 0 || b < 0 || a >= s->dims[0] || b >= s->dims[0] || a == b)
+            return err_set(e, ERR_CONFIG, "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i, a,
+                           b, s->dims[0] - 1);
+        all[2 * i] = (struct graph_link){a, b};
+        all[2 * i + 1] = (struct graph_link){b, a};
+    }
+    qsort(all, 2 * (size_t)s->nlink, sizeof *all, link_order);
+    for (int i = 1; i < 2 * s->nlink; i++)
+        if (link_order(&all[i - 1], &all[i]) == 0)
+            return err_set(e, ERR_CONFIG, "topology graph: routers %d and %d are joined twice", all[i].from, all[i].to);
+    return true;
+}
+
+static void graph_index(struct graph *g, const struct graph_link *all, int nlink, struct topology *t)
+{
+    int *arrived = TAKE(g->arena, g->nrouter, int);
+    for (int l = 0; l < nlink; l++) {
+        g->from[l] = all[l].from;
+        g->to[l] = all[l].to;
+        g->first[all[l].from + 1]++;
+        g->port[l] = arrived[all[l].to]++; /* links are sorted by `from`, so ports go by neighbour */
+    }
+    for (int r = 0; r < g->nrouter; r++) {
+        if (g->first[r + 1] > t->nport) t->nport = g->first[r + 1];
+        g->first[r + 1] += g->first[r];
+    }
+}
+
+/* breadth-first from `target` backwards; returns the largest distance, -1 when some router cannot be reached */
+static int search(struct graph *g, int target)
+{
+    int head = 0, tail = 0;
+    memset(g->distance, -1, (size_t)g->nrouter * sizeof *g->distance);
+    g->distance[target] = 0;
+    g->queue[tail++] = target;
+    while (head < tail) {
+        int r = g->queue[head++];
+        for (int l = g->first[r]; l < g->first[r + 1]; l++) {
+            if (g->distance[g->to[l]] >= 0) continue;
+            g->distance[g->to[l]] = g->distance[r] + 1;
+            g->queue[tail++] = g->to[l];
+        }
+    }
+    return tail == g->nrouter ? g->distance[g->queue[tail - 1]] : -1;
+}
+
+static const int *next_links(struct graph *g, int target)
+{
+    if (g->next[target]) return g->next[target];
+    int *next = TAKE(g->arena, g->nrouter, int);
+    search(g, target);
+    for (int r = 0; r < g->nrouter; r++) {
+        next[r] = -1;
+        for (int l = g->first[r]; l < g->first[r + 1] && next[r] < 0; l++)
+            if (g->distance[g->to[l]] == g->distance[r] - 1) next[r] = l;
+    }
+    g->next[target] = next;
+    return next;
+}
+
+static int longest_route(struct graph *g)
+{
+    int longest = search(g, 0);
+    if (longest < 0) return -1;
+    if (g->nrouter > GRAPH_EXACT_DIAMETER) return 2 * longest;
+    for (int r = 1; r < g->nrouter; r++) {
+        int far = search(g, r);
+        if (far > longest) longest = far;
+    }
+    return longest;
+}
+
+static bool graph_create(struct topology *t, struct arena *a, struct err *e)
+{
+    const struct topology_spec *s = t->spec;
+    int n = s->dims[0], nlink = 2 * s->nlink;
+    if (n < 1 || s->nlink < 0 || s->nlink > INT32_MAX / 4)
+        return err_set(e, ERR_CONFIG, "topology graph: %d routers, %d links", n, s->nlink);
+    struct graph *g = TAKE(a, 1, struct graph);
+    *g = (struct graph){.arena = a, .nrouter = n, .tree = s->nlink == n - 1};
+    struct graph_link *all = TAKE(a, nlink + 1, struct graph_link);
+    if (!links_read(s, all, e)) return false;
+    g->first = TAKE(a, n + 1, int);
+    g->from = TAKE(a, nlink + 1, int);
+    g->to = TAKE(a, nlink + 1, int);
+    g->port = TAKE(a, nlink + 1, int);
+    g->next = TAKE(a, n, int *);
+    g->distance = TAKE(a, n, int);
+    g->queue = TAKE(a, n, int);
+    graph_index(g, all, nlink, t);
+    t->state = g;
+    t->nrouter = n;
+    t->nlink = nlink;
+    t->max_hops = longest_route(g);
+    if (t->max_hops < 0) return err_set(e, ERR_CONFIG, "topology graph: not all routers can be reached from router 0");
+    t->nclass = g->tree || t->max_hops < 2 ? 1 : t->max_hops;
+    return true;
+}
+
+static void graph_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
+{
+    (void)t;
+    (void)choice;
+    c->stage = 0;
+}
+
+static bool graph_next(const struct topology *t, struct route_cursor *c, struct hop *h)
+{
+    struct graph *g = t->state;
+    if (c->router == c->target) return false;
+    int link = next_links(g, c->target)[c->router];
+    *h = (struct hop){link, g->tree ? 0 : c->stage++, g->port[link]};
+    c->router = g->to[link];
+    return true;
+}
+
+static void graph_ends(const struct topology *t, int link, int *from, int *to, int *port)
+{
+    const struct graph *g = t->state;
+    *from = g->from[link];
+    *to = g->to[link];
+    *port = g->port[link];
+}
+
+const struct topology_type topology_graph = {"graph", graph_create, graph_start, graph_next, NULL, graph_ends, NULL};
