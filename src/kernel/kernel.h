@@ -1,7 +1,8 @@
 /* kernel.h - the table of kernels: parallel programs written against comm.h alone.
  *
  * A job is one evaluation shared by all ranks: what is given is read-only, each rank writes only its own bodies'
- * answers into the output arrays. (The gathering of answers for the check costs no simulated time.) */
+ * answers into the output arrays. (The gathering of answers for the check costs no simulated time; neither do
+ * `residual` and `condition`, which the answer does not need.) */
 #ifndef KERNEL_KERNEL_H
 #define KERNEL_KERNEL_H
 
@@ -28,7 +29,10 @@ struct kernel_job {
     double *q_end, *qd_end;      /* out: state after the last time step; NULL when steps = 0 */
     double *lambda;              /* out: loop forces; NULL without loops */
     double *measured;            /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
-    double *residual;            /* out (nrank): largest constraint residual seen by each rank, relative */
+    double *residual;            /* out (nrank): largest constraint residual seen by each rank, relative; may be NULL */
+    double *condition;           /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
+                                    condition of the block-scaled system; may be NULL */
+    int *loop_rank;              /* out (1): rank of the loops' constraint matrix; may be NULL */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
@@ -52,7 +56,7 @@ struct kernel_type {
     /* prepare: tables shared by all ranks, from `a`, into job->shared; costs no simulated time. */
     bool (*prepare)(struct kernel_job *job, struct arena *a, struct err *e);
 
-    /* workspace_bytes: private memory of rank `rank`; given zeroed to run. */
+    /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
     size_t (*workspace_bytes)(const struct kernel_job *job, int rank);
 
     /* run: the program of one rank. */
@@ -62,8 +66,13 @@ struct kernel_type {
     void (*estimate)(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
 };
 
-/* kernel_find: by name; NULL when there is none. kernel_list: all of them, (*n) pointers. */
+/* kernel_find: by name, in double precision; NULL when there is none. */
 const struct kernel_type *kernel_find(const char *name);
+
+/* kernel_find_precision: the same kernel computing in `precision`. Micro-benchmarks are the same in all. */
+const struct kernel_type *kernel_find_precision(const char *name, enum precision precision);
+
+/* kernel_list: all of them, (*n) pointers, in double precision. */
 const struct kernel_type *const *kernel_list(int *n);
 
 #endif

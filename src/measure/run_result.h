@@ -75,6 +75,7 @@ struct run_result {
     int nerror;
     struct error_check error[RUN_MAX_ERRORS];
 
+    double measured_s;         /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
     int64_t messages, bytes;   /* sent, all ranks */
     int64_t events;            /* dispatched by the simulator */
     int64_t ties;              /* events that shared their time with the one before */

@@ -1,0 +1,101 @@
+/* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will cost. */
+#include <stdlib.h>
+
+#include "app/verb.h"
+#include "base/json.h"
+#include "base/units.h"
+#include "run/run.h"
+
+static const char doc[] = "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
+                          "memory they will take on this computer.\n\n"
+                          "Example: mimdsim explain scenarios/speedup-t3e.yaml\n";
+
+struct totals {
+    double host_s, host_bytes;
+};
+
+static void add(struct totals *t, const struct run_estimate *r)
+{
+    t->host_s += r->host_s;
+    if (r->host_bytes > t->host_bytes) t->host_bytes = r->host_bytes;
+}
+
+static void print_text(const struct plan *p, const struct run_estimate *r)
+{
+    struct totals t = {0};
+    printf("%s\n%d runs\n\n%-10s %-12s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun, "kernel", "formulation", "n",
+           "P", "messages", "MB sent", "Mflop", "host s", "host MB");
+    for (int i = 0; i < p->nrun; i++) {
+        const struct run_spec *s = &p->run[i];
+        printf("%-10s %-12s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n", s->kernel.name,
+               s->kernel.formulation == FORMULATION_PAPER ? "paper" : "direct", (long long)r[i].nbody, s->nrank,
+               r[i].messages, r[i].bytes / 1e6, r[i].flops / 1e6, r[i].host_s, r[i].host_bytes / 1e6);
+        add(&t, &r[i]);
+    }
+    printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
+    for (int k = 0; p->nrun && k < r[0].nomission; k++)
+        printf("left out (%s): %s: %s\n", r[0].omission[k].exact ? "exact" : "bounded", r[0].omission[k].what,
+               r[0].omission[k].why);
+    for (int i = 0; i < p->nunused; i++) printf("unused: %s\n", p->unused[i]);
+}
+
+static void json_pair(struct json *j, const char *key, double value)
+{
+    json_key(j, key);
+    json_real(j, value);
+}
+
+static void print_json(const struct plan *p, const struct run_estimate *r)
+{
+    struct json j = json_make(stdout);
+    json_object(&j);
+    json_key(&j, "question");
+    json_text(&j, p->question);
+    json_key(&j, "runs");
+    json_array(&j);
+    for (int i = 0; i < p->nrun; i++) {
+        json_object(&j);
+        json_pair(&j, "bodies", (double)r[i].nbody);
+        json_pair(&j, "bytes", r[i].bytes);
+        json_pair(&j, "flops", r[i].flops);
+        json_pair(&j, "host_bytes", r[i].host_bytes);
+        json_pair(&j, "host_s", r[i].host_s);
+        json_key(&j, "kernel");
+        json_text(&j, p->run[i].kernel.name);
+        json_pair(&j, "messages", r[i].messages);
+        json_pair(&j, "ranks", p->run[i].nrank);
+        json_end(&j);
+    }
+    json_end(&j);
+    json_key(&j, "unused");
+    json_array(&j);
+    for (int i = 0; i < p->nunused; i++) json_text(&j, p->unused[i]);
+    json_end(&j);
+    json_end(&j);
+    json_finish(&j);
+}
+
+static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
+{
+    for (int i = 0; i < p->nrun; i++)
+        if (!run_explain(&p->run[i], &r[i], e)) return false;
+    return true;
+}
+
+int cmd_explain(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_PLAN, "SCENARIO", doc, 1, 1);
+    struct err e;
+    err_clear(&e);
+    struct plan p = {0};
+    struct plan_options o = common_plan(&c);
+    bool ok = plan_read(&p, c.arg[0], &o, &e);
+    struct run_estimate *r = calloc(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
+    ok = ok && r && estimate_all(&p, r, &e);
+    if (ok && c.json) print_json(&p, r);
+    else if (ok) print_text(&p, r);
+    free(r);
+    plan_free(&p);
+    return ok ? 0 : common_fail(&c, &e);
+}

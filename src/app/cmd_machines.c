@@ -1,0 +1,152 @@
+/* cmd_machines.c - mimdsim machines: list, show one with the origin of every value, compare two. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/verb.h"
+#include "base/json.h"
+
+static const char doc[] = "List the machines; with NAME, show one with the origin of every value.\n\n"
+                          "Example: mimdsim machines t3e-300\n"
+                          "         mimdsim machines t3e-300 t3e-300-mpt     what differs\n";
+
+struct shown {
+    struct machine_spec spec;
+    struct origin *origin;
+    int n;
+};
+
+static int list_machines(const struct common *c, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    const char **stem, **title;
+    int n;
+    if (!plan_list("machines", a, &stem, &title, &n, &e)) return common_fail(c, &e);
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    for (int i = 0; i < n; i++) {
+        if (!c->json) {
+            printf("%-20s %s\n", stem[i], title[i]);
+            continue;
+        }
+        json_object(&j);
+        json_key(&j, "name");
+        json_text(&j, stem[i]);
+        json_key(&j, "title");
+        json_text(&j, title[i]);
+        json_end(&j);
+    }
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
+    return 0;
+}
+
+static void origin_json(struct json *j, const struct origin *o)
+{
+    json_object(j);
+    json_key(j, "evidence");
+    json_text(j, o->evidence);
+    json_key(j, "file");
+    json_text(j, o->file);
+    json_key(j, "key");
+    json_text(j, o->key);
+    json_key(j, "line");
+    json_int(j, o->line);
+    json_key(j, "max");
+    json_real(j, o->max);
+    json_key(j, "min");
+    json_real(j, o->min);
+    json_key(j, "source");
+    json_text(j, o->source);
+    json_key(j, "value");
+    json_text(j, o->value);
+    json_end(j);
+}
+
+static void print_origin(const struct origin *o)
+{
+    const char *slash = strrchr(o->file, '/');
+    printf("%-36s %-22s %-3s ", o->key, o->value, o->evidence);
+    if (o->line) printf("%s:%d", slash ? slash + 1 : o->file, o->line);
+    else printf("%s", slash ? slash + 1 : o->file);
+    if (*o->source) printf("  %s", o->source);
+    putchar('\n');
+}
+
+static void show_one(const struct common *c, const struct shown *m)
+{
+    if (!c->json) {
+        printf("%s: %s, %lld processors\n\n%-36s %-22s %-3s %s\n", m->spec.name, m->spec.title,
+               (long long)machine_spec_processors(&m->spec), "key", "value", "ev.", "where, source");
+        for (int i = 0; i < m->n; i++) print_origin(&m->origin[i]);
+        return;
+    }
+    struct json j = json_make(stdout);
+    json_object(&j);
+    json_key(&j, "name");
+    json_text(&j, m->spec.name);
+    json_key(&j, "processors");
+    json_int(&j, machine_spec_processors(&m->spec));
+    json_key(&j, "title");
+    json_text(&j, m->spec.title);
+    json_key(&j, "values");
+    json_array(&j);
+    for (int i = 0; i < m->n; i++) origin_json(&j, &m->origin[i]);
+    json_end(&j);
+    json_end(&j);
+    json_finish(&j);
+}
+
+/* Both machines print the same keys in the same order. */
+static void compare(const struct common *c, const struct shown *x, const struct shown *y)
+{
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    else printf("%-36s %-26s %s\n", "key", x->spec.name, y->spec.name);
+    for (int i = 0; i < x->n && i < y->n; i++) {
+        const struct origin *a = &x->origin[i], *b = &y->origin[i];
+        if (strcmp(a->value, b->value) == 0) continue;
+        if (!c->json) {
+            printf("%-36s %-26s %s\n", a->key, a->value, b->value);
+            continue;
+        }
+        json_object(&j);
+        json_key(&j, "key");
+        json_text(&j, a->key);
+        json_key(&j, x->spec.name);
+        json_text(&j, a->value);
+        json_key(&j, y->spec.name);
+        json_text(&j, b->value);
+        json_end(&j);
+    }
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
+}
+
+static int show(const struct common *c, struct arena *a)
+{
+    struct shown m[2] = {0};
+    struct plan_options o = common_plan(c);
+    for (int i = 0; i < c->narg; i++) {
+        struct err e;
+        err_clear(&e);
+        if (!plan_machine(&m[i].spec, c->arg[i], &o, a, &m[i].origin, &m[i].n, &e)) return common_fail(c, &e);
+    }
+    if (c->narg == 1) show_one(c, &m[0]);
+    else compare(c, &m[0], &m[1]);
+    return 0;
+}
+
+int cmd_machines(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_PLAN, "[NAME [OTHER]]", doc, 0, 2);
+    struct arena *a = arena_create();
+    int status = c.narg ? show(&c, a) : list_machines(&c, a);
+    arena_destroy(a);
+    return status;
+}

@@ -1,0 +1,96 @@
+/* cmd_run.c - mimdsim run: answer a scenario. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/verb.h"
+#include "base/check.h"
+#include "report/report.h"
+#include "run/run.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Run every point of SCENARIO, store each in the database, and print the table.\n\n"
+    "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
+    "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
+    "the exit status is then 1; a deadlock ends with 70.";
+
+struct keep {
+    struct store *store;
+    struct err *error;
+    int invalid, deadlock;
+};
+
+static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
+{
+    struct keep *k = context;
+    k->invalid += r->status == RUN_INVALID || r->status == RUN_FAILED;
+    k->deadlock += r->status == RUN_DEADLOCK;
+    if (r->status != RUN_OK)
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank, r->text);
+    return store_put(k->store, spec, r, "", k->error);
+}
+
+static bool *stored_already(struct store *s, const struct plan *p, bool force)
+{
+    bool *skip = calloc((size_t)p->nrun, sizeof *skip);
+    CHECK(skip);
+    for (int i = 0; i < p->nrun; i++) skip[i] = !force && store_has(s, &p->run[i]);
+    return skip;
+}
+
+static const char table_sql[] =
+    "SELECT r.kernel, r.formulation, r.solver, r.level, r.n, r.P, r.makespan_ps / 1e6 AS makespan_us,"
+    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
+    "   AS speedup_vs_fastest_serial,"
+    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'parallel code on one processor')"
+    "   AS speedup_vs_itself,"
+    " (SELECT max(e.relative_error) FROM error_check e WHERE e.run_id = r.id) AS relative_error,"
+    " r.measured_s * 1e6 AS measured_us, r.digest, r.status"
+    " FROM run r JOIN json_each(?1) k ON r.config_hash = k.value ->> 0 AND r.seed = k.value ->> 1"
+    " AND r.rep = k.value ->> 2 ORDER BY k.key";
+
+static bool print_table(struct store *s, const struct plan *p, bool json, struct err *e)
+{
+    struct text keys = {0};
+    for (int i = 0; i < p->nrun; i++)
+        text_add(&keys, "%s[\"%s\",%lld,%d]", i ? "," : "[", p->run[i].config_hash, (long long)p->run[i].seed,
+                 p->run[i].rep);
+    text_add(&keys, "]");
+    const char *param = keys.s;
+    bool ok = report_query(s, table_sql, 1, &param, json, stdout, e);
+    text_free(&keys);
+    return ok;
+}
+
+static void say_unused(const struct plan *p)
+{
+    for (int i = 0; i < p->nunused; i++) fprintf(stderr, "mimdsim: unused: %s\n", p->unused[i]);
+}
+
+static bool answer(const struct common *c, const struct plan *p, struct keep *k, struct err *e)
+{
+    if (!c->quiet) say_unused(p);
+    k->store = store_open(c->database, STORE_WRITE, e);
+    if (!k->store) return false;
+    bool *skip = stored_already(k->store, p, c->force);
+    bool ok = run_campaign(p->run, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    free(skip);
+    return ok && print_table(k->store, p, c->json, e);
+}
+
+int cmd_run(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO", doc, 1, 1);
+    struct err e;
+    err_clear(&e);
+    struct plan p = {0};
+    struct plan_options o = common_plan(&c);
+    struct keep k = {.error = &e};
+    bool ok = plan_read(&p, c.arg[0], &o, &e) && answer(&c, &p, &k, &e);
+    store_close(k.store);
+    plan_free(&p);
+    if (!ok) return common_fail(&c, &e);
+    if (k.deadlock) return err_exit_status(ERR_DEADLOCK);
+    return k.invalid ? err_exit_status(ERR_CHECK) : 0;
+}

@@ -1,0 +1,119 @@
+/* common.c - the options that verbs share, by argp. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/verb.h"
+#include "base/check.h"
+#include "base/json.h"
+
+enum { KEY_JSON = 0x100, KEY_FORCE, KEY_DIR };
+
+static const struct argp_option option_table[] = {
+    {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
+    {"set", 's', "KEY=VALUE", 0, "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; may be repeated", 1},
+    {"output", 'o', "DB", 0, "database (default mimdsim.db)", 2},
+    {"force", KEY_FORCE, NULL, 0, "run again what is already stored", 2},
+    {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
+    {"jobs", 'j', "N", 0, "worker processes (default: one a processor)", 4},
+    {"json", KEY_JSON, NULL, 0, "answer with one JSON document on standard output", 5},
+    {"quiet", 'q', NULL, 0, "no progress and no remarks on standard error", 5},
+    {0},
+};
+
+static unsigned group_of(int group)
+{
+    static const unsigned takes[] = {0, TAKES_PLAN, TAKES_STORE, TAKES_DIR, TAKES_JOBS, 0};
+    return takes[group];
+}
+
+struct parse {
+    struct common *common;
+    int least, most;
+};
+
+static void add_set(struct common *c, const char *text)
+{
+    c->set = realloc(c->set, (size_t)(c->nset + 1) * sizeof *c->set);
+    CHECK(c->set);
+    c->set[c->nset++] = text;
+}
+
+static void set_jobs(struct common *c, const char *arg, struct argp_state *state)
+{
+    char *end;
+    long n = strtol(arg, &end, 10);
+    if (*end || end == arg || n < 1 || n > 256) argp_error(state, "--jobs: '%s' is not a number from 1 to 256", arg);
+    c->jobs = (int)n;
+}
+
+static error_t parse_option(int key, char *arg, struct argp_state *state)
+{
+    struct parse *p = state->input;
+    struct common *c = p->common;
+    switch (key) {
+    case 'm': c->machine = arg; break;
+    case 's': add_set(c, arg); break;
+    case 'o': c->database = arg; break;
+    case 'q': c->quiet = true; break;
+    case 'j': set_jobs(c, arg, state); break;
+    case KEY_FORCE: c->force = true; break;
+    case KEY_DIR: c->directory = arg; break;
+    case KEY_JSON: c->json = true; break;
+    case ARGP_KEY_ARG:
+        if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
+            argp_error(state, "unexpected argument '%s'", arg);
+        c->arg[c->narg++] = arg;
+        break;
+    case ARGP_KEY_END:
+        if (c->narg < p->least) argp_error(state, "an argument is missing");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
+                  int most)
+{
+    memset(c, 0, sizeof *c);
+    c->database = "mimdsim.db";
+    c->directory = "figures";
+    struct argp_option option[sizeof option_table / sizeof *option_table] = {{0}};
+    int n = 0;
+    for (const struct argp_option *o = option_table; o->name; o++)
+        if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
+    struct parse p = {c, least, most};
+    struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
+    argp_parse(&argp, argc, argv, 0, NULL, &p);
+}
+
+struct plan_options common_plan(const struct common *c)
+{
+    return (struct plan_options){.machine = c->machine, .nset = c->nset, .set = c->set};
+}
+
+int common_fail(const struct common *c, const struct err *e)
+{
+    int status = err_exit_status(e->kind);
+    if (c->json) {
+        struct json j = json_make(stdout);
+        json_object(&j);
+        json_key(&j, "error");
+        json_object(&j);
+        json_key(&j, "exit_status");
+        json_int(&j, status);
+        json_key(&j, "file");
+        json_text(&j, e->file);
+        json_key(&j, "kind");
+        json_text(&j, err_word(e->kind));
+        json_key(&j, "line");
+        json_int(&j, e->line);
+        json_key(&j, "text");
+        json_text(&j, e->text);
+        json_end(&j);
+        json_end(&j);
+        json_finish(&j);
+    }
+    err_print(e);
+    return status;
+}

@@ -1,0 +1,67 @@
+/* main.c - choose the verb. */
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/verb.h"
+#include "base/text.h"
+#include "run/catalogue.h"
+#include "store/build.h"
+
+enum { MOST_VERBS = 64 };
+
+static void print_help(FILE *out)
+{
+    fprintf(out, "Usage: mimdsim VERB [OPTION...] [ARGUMENT...]\n"
+                 "Predict how a parallel algorithm will run on a machine you do not have.\n\n"
+                 "  mimdsim run scenarios/speedup-t3e.yaml     answer one question, store it, print the table\n"
+                 "  mimdsim plot mimdsim.db fig6               draw a figure from the database\n\n");
+    for (const struct verb *v = verb_list; v->name; v++) fprintf(out, "  %-11s %s\n", v->name, v->title);
+    fprintf(out, "\n'mimdsim VERB --help' tells the options of a verb, with an example. Exit statuses: mimdsim(1).\n");
+}
+
+static void print_version(void)
+{
+    struct build b = store_build();
+    printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s\n", b.version, b.git, b.compiler, b.flags, run_fibers());
+}
+
+static int unknown_verb(const char *word)
+{
+    const char *name[MOST_VERBS];
+    int n = 0;
+    for (const struct verb *v = verb_list; v->name; v++) name[n++] = v->name;
+    const char *near = text_nearest(word, name, n);
+    fprintf(stderr, "mimdsim: '%s' is not a verb%s%s%s; 'mimdsim --help' lists them\n", word,
+            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return err_exit_status(ERR_USAGE);
+}
+
+static int run_verb(const struct verb *v, int argc, char **argv)
+{
+    static const char prefix[] = "mimdsim ";
+    char name[sizeof prefix + 32];
+    snprintf(name, sizeof name, "%s%s", prefix, v->name);
+    argv[0] = name;
+    return v->run(argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = err_exit_status(ERR_USAGE);
+    if (argc < 2) {
+        print_help(stderr);
+        return err_exit_status(ERR_USAGE);
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(stdout);
+        return 0;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        print_version();
+        return 0;
+    }
+    for (const struct verb *v = verb_list; v->name; v++)
+        if (strcmp(argv[1], v->name) == 0) return run_verb(v, argc - 1, argv + 1);
+    return unknown_verb(argv[1]);
+}

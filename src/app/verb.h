@@ -1,0 +1,62 @@
+/* verb.h - the verbs of the command line: one file each, one table. */
+#ifndef APP_VERB_H
+#define APP_VERB_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/err.h"
+#include "plan/plan.h"
+
+struct verb {
+    const char *name;
+    const char *title;               /* one line for `mimdsim --help` */
+    int (*run)(int argc, char **argv); /* argv[0] is "mimdsim VERB"; returns the exit status */
+};
+
+/* verb_list: all verbs, ended by a NULL name. */
+extern const struct verb verb_list[];
+
+int cmd_run(int argc, char **argv);
+int cmd_plot(int argc, char **argv);
+int cmd_check(int argc, char **argv);
+int cmd_explain(int argc, char **argv);
+int cmd_machines(int argc, char **argv);
+int cmd_scenarios(int argc, char **argv);
+int cmd_kernels(int argc, char **argv);
+int cmd_query(int argc, char **argv);
+
+/* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
+struct common {
+    const char *machine;
+    const char **set;      /* (nset), owned by the process */
+    int nset;
+    bool json, quiet, force;
+    const char *database;  /* -o */
+    const char *directory; /* --dir */
+    int jobs;              /* 0: as many as processors */
+    int narg;
+    const char *arg[64];   /* what is not an option */
+};
+
+/* Which of the common options a verb takes. */
+enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8 };
+
+/* common_parse: read the command line of a verb.
+ *
+ *   takes       in  which options it has, TAKES_*; --json, --quiet and --help always
+ *   args, doc   in  for --help: the arguments, and what the verb does, with an example first
+ *   least,most  in  how many arguments; outside: message and exit status 64
+ *
+ * Ends the process on a wrong option (64) and after --help (0). */
+void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
+                  int most);
+
+/* common_plan: the plan options among them. */
+struct plan_options common_plan(const struct common *c);
+
+/* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit status. */
+int common_fail(const struct common *c, const struct err *e);
+
+#endif

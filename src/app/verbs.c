@@ -1,0 +1,14 @@
+/* verbs.c - the table of verbs. */
+#include "app/verb.h"
+
+const struct verb verb_list[] = {
+    {"run", "run a scenario, store every run, print the table", cmd_run},
+    {"plot", "draw a figure from a database", cmd_plot},
+    {"explain", "what a scenario will run, what it will cost", cmd_explain},
+    {"check", "validate files without running", cmd_check},
+    {"machines", "list machines; show one with its sources; compare two", cmd_machines},
+    {"scenarios", "list scenarios", cmd_scenarios},
+    {"kernels", "list kernels", cmd_kernels},
+    {"query", "run SQL on a database", cmd_query},
+    {0},
+};

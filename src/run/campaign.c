@@ -1,0 +1,252 @@
+/* campaign.c - many runs on worker processes, results handed over in plan order by the one parent.
+ *
+ * Each worker reads run numbers from its pipe and answers with the result's bytes; the parent alone sees the store. */
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/check.h"
+#include "base/progress.h"
+#include "run/run.h"
+
+enum { MOST_WORKERS = 256 };
+
+/* The arrays of a result, in the order in which they travel. */
+struct parts {
+    void **array[4];
+    size_t bytes[4];
+};
+
+static struct parts parts_of(struct run_result *r)
+{
+    size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
+    return (struct parts){
+        {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link},
+        {rows * sizeof *r->stage, (r->finish_ps ? (size_t)r->nrank : 0) * sizeof *r->finish_ps,
+         (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link},
+    };
+}
+
+static bool write_all(int fd, const void *data, size_t n)
+{
+    for (const char *p = data; n;) {
+        ssize_t k = write(fd, p, n);
+        if (k < 0 && errno == EINTR) continue;
+        if (k <= 0) return false;
+        p += k;
+        n -= (size_t)k;
+    }
+    return true;
+}
+
+static bool read_all(int fd, void *data, size_t n)
+{
+    for (char *p = data; n;) {
+        ssize_t k = read(fd, p, n);
+        if (k < 0 && errno == EINTR) continue;
+        if (k <= 0) return false;
+        p += k;
+        n -= (size_t)k;
+    }
+    return true;
+}
+
+struct answer {
+    int index;
+    bool ok;
+    struct err error;
+    struct run_result result;
+};
+
+static bool send_answer(int fd, struct answer *a)
+{
+    if (!write_all(fd, a, sizeof *a)) return false;
+    if (!a->ok) return true;
+    struct parts p = parts_of(&a->result);
+    for (int i = 0; i < 4; i++)
+        if (!write_all(fd, *p.array[i], p.bytes[i])) return false;
+    return true;
+}
+
+static bool receive_answer(int fd, struct answer *a, struct arena *arena)
+{
+    if (!read_all(fd, a, sizeof *a)) return false;
+    if (!a->ok) return true;
+    struct parts p = parts_of(&a->result);
+    for (int i = 0; i < 4; i++) {
+        *p.array[i] = p.bytes[i] ? arena_take(arena, p.bytes[i]) : NULL;
+        if (!read_all(fd, *p.array[i], p.bytes[i])) return false;
+    }
+    return true;
+}
+
+struct worker {
+    pid_t pid;
+    int orders, answers; /* pipe ends of the parent */
+    int busy;            /* run number it works on, -1: none */
+};
+
+struct campaign {
+    const struct run_spec *spec;
+    int nspec, next, handed, nworker, ndone, ntodo;
+    const bool *skip;
+    struct worker worker[MOST_WORKERS];
+    struct answer **slot;   /* (nspec) results waiting for their turn */
+    struct arena **arena;   /* (nspec) their memory */
+    run_done_fn *done;
+    void *context;
+    struct progress progress;
+};
+
+static _Noreturn void worker_main(const struct run_spec *spec, int orders, int answers)
+{
+    int index;
+    while (read_all(orders, &index, sizeof index)) {
+        struct arena *arena = arena_create();
+        struct answer a = {.index = index};
+        a.ok = run_one(&spec[index], arena, &a.result, &a.error);
+        if (!send_answer(answers, &a)) break;
+        arena_destroy(arena);
+    }
+    _exit(0);
+}
+
+static bool start_worker(struct campaign *c, struct err *e)
+{
+    int orders[2], answers[2];
+    if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
+    pid_t pid = fork();
+    if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
+    if (pid == 0) {
+        close(orders[1]);
+        close(answers[0]);
+        for (int i = 0; i < c->nworker; i++) {
+            close(c->worker[i].orders);
+            close(c->worker[i].answers);
+        }
+        worker_main(c->spec, orders[0], answers[1]);
+    }
+    close(orders[0]);
+    close(answers[1]);
+    c->worker[c->nworker++] = (struct worker){pid, orders[1], answers[0], -1};
+    return true;
+}
+
+static bool give_order(struct campaign *c, struct worker *w)
+{
+    while (c->next < c->nspec && c->skip && c->skip[c->next]) c->next++;
+    w->busy = c->next < c->nspec ? c->next : -1;
+    if (w->busy < 0) return true;
+    c->next++;
+    return write_all(w->orders, &w->busy, sizeof w->busy);
+}
+
+/* Hand over what is next in plan order, as far as it is there. */
+static bool hand_over(struct campaign *c, struct err *e)
+{
+    while (c->handed < c->nspec) {
+        int i = c->handed;
+        if (c->skip && c->skip[i]) {
+            c->handed++;
+            continue;
+        }
+        struct answer *a = c->slot[i];
+        if (!a) return true;
+        bool ok = a->ok;
+        if (!ok) *e = a->error;
+        else ok = c->done(c->context, &c->spec[i], &a->result);
+        arena_destroy(c->arena[i]);
+        c->arena[i] = NULL;
+        c->slot[i] = NULL;
+        c->handed++;
+        progress_show(&c->progress, ++c->ndone);
+        if (!ok) return false;
+    }
+    return true;
+}
+
+static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
+{
+    int index = w->busy;
+    c->arena[index] = arena_create();
+    c->slot[index] = TAKE(c->arena[index], 1, struct answer);
+    if (!receive_answer(w->answers, c->slot[index], c->arena[index]))
+        return err_set(e, ERR_INTERNAL, "the worker process of run %d of %d (%s, n = %d, P = %d) died", index + 1,
+                       c->nspec, c->spec[index].kernel.name, c->spec[index].model.nbody, c->spec[index].nrank);
+    CHECK(c->slot[index]->index == index);
+    return give_order(c, w) && hand_over(c, e);
+}
+
+static bool serve(struct campaign *c, struct err *e)
+{
+    for (int i = 0; i < c->nworker; i++)
+        if (!give_order(c, &c->worker[i])) return err_set(e, ERR_INTERNAL, "a worker process died at its start");
+    while (c->handed < c->nspec) {
+        struct pollfd p[MOST_WORKERS];
+        for (int i = 0; i < c->nworker; i++)
+            p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
+        if (poll(p, (nfds_t)c->nworker, -1) < 0 && errno != EINTR) return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
+        for (int i = 0; i < c->nworker; i++)
+            if (p[i].fd >= 0 && p[i].revents && !take_answer(c, &c->worker[i], e)) return false;
+    }
+    return true;
+}
+
+static void stop_workers(struct campaign *c, bool at_once)
+{
+    for (int i = 0; i < c->nworker; i++) {
+        close(c->worker[i].orders);
+        close(c->worker[i].answers);
+        if (at_once) kill(c->worker[i].pid, SIGKILL);
+    }
+    for (int i = 0; i < c->nworker; i++) waitpid(c->worker[i].pid, NULL, 0);
+}
+
+static bool run_here(struct campaign *c, struct err *e)
+{
+    for (int i = 0; i < c->nspec; i++) {
+        if (c->skip && c->skip[i]) continue;
+        struct arena *arena = arena_create();
+        struct run_result result;
+        bool ok = run_one(&c->spec[i], arena, &result, e) && c->done(c->context, &c->spec[i], &result);
+        arena_destroy(arena);
+        progress_show(&c->progress, ++c->ndone);
+        if (!ok) return false;
+    }
+    return true;
+}
+
+static bool run_workers(struct campaign *c, int workers, struct err *e)
+{
+    c->slot = calloc((size_t)c->nspec, sizeof *c->slot);
+    c->arena = calloc((size_t)c->nspec, sizeof *c->arena);
+    CHECK(c->slot && c->arena);
+    signal(SIGPIPE, SIG_IGN);
+    bool ok = true;
+    while (ok && c->nworker < workers) ok = start_worker(c, e);
+    ok = ok && hand_over(c, e) && serve(c, e);
+    stop_workers(c, !ok);
+    for (int i = 0; i < c->nspec; i++) arena_destroy(c->arena[i]);
+    free(c->arena);
+    free(c->slot);
+    return ok;
+}
+
+bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet,
+                  run_done_fn *done, void *context, struct err *e)
+{
+    struct campaign c = {.spec = spec, .nspec = nspec, .skip = skip, .done = done, .context = context};
+    for (int i = 0; i < nspec; i++) c.ntodo += !(skip && skip[i]);
+    if (c.ntodo == 0) return true;
+    c.progress = progress_make("runs", c.ntodo, quiet);
+    if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (workers > c.ntodo) workers = c.ntodo;
+    if (workers > MOST_WORKERS) workers = MOST_WORKERS;
+    bool ok = workers <= 1 ? run_here(&c, e) : run_workers(&c, workers, e);
+    progress_end(&c.progress);
+    return ok;
+}

@@ -1,0 +1,20 @@
+/* catalogue.c - names and titles of the kernels. */
+#include "run/catalogue.h"
+
+#include "base/check.h"
+#include "kernel/kernel.h"
+#include "sim/fiber.h"
+
+struct catalogue catalogue_of_kernels(void)
+{
+    struct catalogue c = {0};
+    const struct kernel_type *const *k = kernel_list(&c.n);
+    CHECK(c.n <= CATALOGUE_MOST);
+    for (int i = 0; i < c.n; i++) {
+        c.name[i] = k[i]->name;
+        c.title[i] = k[i]->title;
+    }
+    return c;
+}
+
+const char *run_fibers(void) { return fiber_backend(); }

@@ -1,0 +1,141 @@
+/* references.c - serial answers, tolerances and baselines; see references.h. */
+#include "run/references.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "machine/node_cost.h"
+#include "mech/dynamics_table.h"
+
+enum { CRBA_MOST_DOFS = 512 };
+
+static double relative_error(const double *x, const double *reference, int n)
+{
+    double largest = 0, difference = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return NAN;
+        largest = fmax(largest, fabs(reference[i]));
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+    }
+    return difference == 0 ? 0 : difference / largest;
+}
+
+static void record(struct run_result *out, const char *quantity, const char *reference, double relative,
+                   double tolerance)
+{
+    CHECK(out->nerror < RUN_MAX_ERRORS);
+    struct error_check *c = &out->error[out->nerror++];
+    text_copy(c->quantity, sizeof c->quantity, quantity);
+    text_copy(c->reference, sizeof c->reference, reference);
+    c->relative = relative;
+    c->tolerance = tolerance;
+    if (relative <= tolerance) return; /* a NaN does not pass */
+    if (out->status == RUN_OK)
+        snprintf(out->text, sizeof out->text, "%s differs from %s by %.3g (relative), more than %.3g", quantity,
+                 reference, relative, tolerance);
+    out->status = RUN_INVALID;
+}
+
+static double precision_scale(enum precision p)
+{
+    return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1;
+}
+
+double references_tolerance(const struct kernel_spec *k, int n)
+{
+    double size = fmax(1, n / 100.0), base = k->formulation == FORMULATION_PAPER ? 1e-8 : 1e-10;
+    return fmin(base * size * size * precision_scale(k->precision), 1e-2);
+}
+
+static void check_inverse(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+{
+    double *tau = TAKE(scratch, job->model->nu, double);
+    struct work w = {0};
+    dynamics_type_of(PRECISION_DOUBLE)->inverse(job->model, job->state, scratch, tau, &w);
+    double tolerance = fmin(1e-11 * fmax(1, job->model->nbody / 100.0) * precision_scale(job->spec->kernel.precision), 1e-2);
+    record(out, "tau", "rnea", relative_error(job->tau, tau, job->model->nu), tolerance);
+}
+
+static void check_forward(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+{
+    double *qdd = TAKE(scratch, job->model->nu, double);
+    struct work w = {0};
+    bool found = dynamics_type_of(PRECISION_DOUBLE)
+                     ->forward(job->model, job->state, FORWARD_ABA, scratch, qdd, NULL, NULL, &w);
+    record(out, "qdd", "aba", found ? relative_error(job->qdd, qdd, job->model->nu) : NAN,
+           references_tolerance(&job->spec->kernel, job->model->nbody));
+}
+
+void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+{
+    if (!job->model) return;
+    struct arena_mark mark = arena_mark(scratch);
+    if (job->tau) check_inverse(job, scratch, out);
+    if (job->qdd && job->spec->kernel.steps == 0) check_forward(job, scratch, out);
+    arena_release(scratch, mark);
+}
+
+static void add_baseline(struct run_result *out, const struct node_cost *cost, const char *name, const struct work *w)
+{
+    CHECK(out->nbaseline < RUN_MAX_BASELINES);
+    struct baseline *b = &out->baseline[out->nbaseline++];
+    text_copy(b->name, sizeof b->name, name);
+    b->time_ps = node_cost_ps(cost, w);
+    b->work = *w;
+}
+
+static void add_fastest(struct run_result *out, int first)
+{
+    int best = first;
+    for (int i = first; i < out->nbaseline; i++)
+        if (out->baseline[i].time_ps < out->baseline[best].time_ps) best = i;
+    if (best == out->nbaseline) return;
+    struct baseline fastest = out->baseline[best];
+    text_copy(fastest.name, sizeof fastest.name, "fastest serial");
+    out->baseline[out->nbaseline++] = fastest;
+}
+
+/* The serial codes of the same task: Newton-Euler, then each way to the accelerations. */
+static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
+                       struct arena *scratch, struct run_result *out)
+{
+    static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT};
+    const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
+    double *answer = TAKE(scratch, job->model->nu, double);
+    struct work inverse = {0};
+    if (kernel->does_inverse) {
+        t->inverse(job->model, job->state, scratch, answer, &inverse);
+        add_baseline(out, cost, "rnea", &inverse);
+    }
+    int first = kernel->does_forward ? out->nbaseline : 0;
+    for (int i = 0; kernel->does_forward && i < 4; i++) {
+        if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS) continue;
+        struct work w = inverse;
+        if (!t->forward(job->model, job->state, methods[i], scratch, answer, NULL, NULL, &w)) continue;
+        char name[40];
+        snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "", forward_method_name(methods[i]));
+        add_baseline(out, cost, name, &w);
+    }
+    add_fastest(out, first);
+}
+
+static void add_parallel_work(const struct node_cost *cost, struct run_result *out)
+{
+    struct work all = {0};
+    for (int64_t k = 0; k < (int64_t)out->nrank * out->nstage; k++) work_add(&all, &out->stage[k].work);
+    add_baseline(out, cost, "parallel code on one processor", &all);
+}
+
+void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
+                          struct run_result *out)
+{
+    if (!job->model) return;
+    struct arena_mark mark = arena_mark(scratch);
+    struct node_cost cost = node_cost_make(&job->spec->machine.node);
+    add_parallel_work(&cost, out);
+    add_serial(job, kernel, &cost, scratch, out);
+    arena_release(scratch, mark);
+}

@@ -1,0 +1,24 @@
+/* references.h - the serial answers and costs that a simulated run is held against. */
+#ifndef RUN_REFERENCES_H
+#define RUN_REFERENCES_H
+
+#include "kernel/kernel.h"
+#include "measure/run_result.h"
+#include "mech/model.h"
+#include "spec/run_spec.h"
+
+/* references_check: compare the job's answers with the serial ones: tau with RNEA, qdd with ABA (closed chains: with
+ * the articulated-body algorithm's bordered system). Fills out->error; a relative error above the tolerance, or one
+ * that is no number, makes the run RUN_INVALID with its text. Time-stepping jobs compare the end state. */
+void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out);
+
+/* references_tolerance: the largest relative error of the accelerations that a correct program may show for `n`
+ * bodies: the formulation's error growth (docs/accuracy.md), with two decades of room. */
+double references_tolerance(const struct kernel_spec *k, int n);
+
+/* references_baselines: predicted times of the serial codes on one node, and of the whole parallel work on one
+ * processor (out->stage must be filled). CRBA's O(n^3) factorisation is left out above 512 degrees of freedom. */
+void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
+                          struct run_result *out);
+
+#endif

@@ -1,0 +1,134 @@
+/* run.c - one run: build, place, go, verify, collect. */
+#include "run/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/progress.h"
+#include "kernel/kernel.h"
+#include "mech/model.h"
+#include "run/references.h"
+#include "vp/world.h"
+
+struct launch {
+    const struct kernel_type *kernel;
+    const struct kernel_job *job;
+    char **workspace; /* (nrank) */
+};
+
+static void program(struct comm *c, void *context)
+{
+    struct launch *l = context;
+    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
+}
+
+static const struct kernel_type *find_kernel(const struct run_spec *spec, struct err *e)
+{
+    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
+    if (!k) err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", spec->kernel.name);
+    return k;
+}
+
+/* The scene and the arrays for its answers. */
+static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
+                     struct arena *a, struct err *e)
+{
+    *job = (struct kernel_job){.spec = spec, .nrank = spec->nrank};
+    if (kernel->needs_model) {
+        struct model *m = model_build(&spec->model, a, e);
+        if (!m) return false;
+        job->model = m;
+        job->state = state_make(m, &spec->model, a);
+        if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
+        if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
+        if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
+        if (spec->kernel.steps > 0) {
+            job->q_end = TAKE(a, m->nq, double);
+            job->qd_end = TAKE(a, m->nu, double);
+        }
+        job->residual = TAKE(a, spec->nrank, double);
+    } else {
+        job->measured = TAKE(a, spec->nrank, double);
+    }
+    return kernel->accepts(spec, job->model, e) && kernel->prepare(job, a, e);
+}
+
+static char **make_workspaces(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *a)
+{
+    char **w = TAKE(a, job->nrank, char *);
+    size_t total = 0;
+    for (int i = 0; i < job->nrank; i++) total += (kernel->workspace_bytes(job, i) + 63) / 64 * 64;
+    char *next = arena_take(a, total ? total : 64);
+    for (int i = 0; i < job->nrank; i++) {
+        w[i] = next;
+        next += (kernel->workspace_bytes(job, i) + 63) / 64 * 64;
+    }
+    return w;
+}
+
+static double largest_measured(const struct kernel_job *job)
+{
+    double largest = job->measured ? 0 : NAN;
+    for (int i = 0; job->measured && i < job->nrank; i++) largest = fmax(largest, job->measured[i]);
+    return largest;
+}
+
+static void verify(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
+                   struct run_result *out)
+{
+    out->measured_s = largest_measured(job);
+    if (out->status != RUN_OK) return;
+    references_check(job, scratch, out);
+    references_baselines(job, kernel, scratch, out);
+}
+
+bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e)
+{
+    memset(out, 0, sizeof *out);
+    double begin = host_seconds();
+    const struct kernel_type *kernel = find_kernel(spec, e);
+    if (!kernel) return false;
+    struct arena *scratch = arena_create();
+    struct kernel_job job;
+    bool ok = make_job(&job, kernel, spec, scratch, e);
+    if (ok) {
+        struct launch l = {kernel, &job, make_workspaces(&job, kernel, scratch)};
+        ok = world_run(&spec->machine, spec->nrank, &spec->record, spec->seed + (uint64_t)spec->rep, kernel->nstage,
+                       kernel->stage_name, program, &l, a, out, e);
+    }
+    if (ok) verify(&job, kernel, scratch, out);
+    arena_destroy(scratch);
+    out->host_total_s = host_seconds() - begin;
+    out->host_peak_bytes = host_peak_bytes();
+    return ok;
+}
+
+enum { STACK_PAGES_BYTES = 2 * 4096 };
+
+bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
+{
+    memset(out, 0, sizeof *out);
+    const struct kernel_type *kernel = find_kernel(spec, e);
+    if (!kernel) return false;
+    struct arena *scratch = arena_create();
+    struct model *m = kernel->needs_model ? model_build(&spec->model, scratch, e) : NULL;
+    bool ok = !kernel->needs_model || m;
+    if (ok) ok = kernel->accepts(spec, m, e);
+    if (ok) {
+        struct kernel_estimate k = {0};
+        kernel->estimate(spec, m, &k);
+        out->nbody = m ? m->nbody : 0;
+        out->nu = m ? m->nu : 0;
+        out->messages = k.messages;
+        out->bytes = k.bytes;
+        out->flops = k.flops;
+        /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
+        double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
+        out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
+        out->host_bytes = spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + 1400.0) + (double)out->nbody * 1200.0;
+    }
+    arena_destroy(scratch);
+    return ok;
+}
