@@ -56,14 +56,26 @@ static struct body_def body_from(const struct urdf_robot *robot, int link_index)
     return def;
 }
 
-static bool link_check(const struct urdf_robot *robot, const struct urdf_link *link, const struct urdf_options *o,
-                       struct err *e)
+/* A link that has mass or inertia must be one that a body can have; one that has neither must not have to move alone. */
+static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_options *o, struct arena *a, struct err *e)
 {
+    const struct urdf_link *link = &robot->link[i];
+    bool frame_only = link->mass == 0;
+    for (int k = 0; k < 6; k++) frame_only = frame_only && link->inertia[k] == 0;
     if (link->mass < 0)
         return err_set_at(e, ERR_DATA, robot->path, link->inertial_line, "link '%.100s' has negative mass %g kg", link->name,
                           link->mass);
-    if (!o->keep_fixed || o->allow_nonphysical || link->has_inertial) return true;
-    return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass", link->name);
+    bool is_base = link->joint < 0 && !o->floating;
+    if (o->allow_nonphysical || (frame_only && (is_base || !o->keep_fixed))) return true;
+    if (!link->has_inertial)
+        return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass", link->name);
+    struct arena_mark mark = arena_mark(a);
+    struct model *alone = model_begin(a, robot->path);
+    struct body_def def = body_from(robot, i);
+    def.parent = -1;
+    bool good = model_add_body(alone, &def, e) >= 0 && model_finish(alone, false, e);
+    arena_release(a, mark);
+    return good;
 }
 
 /* A body for every link; the root is body 0 of a floating robot and no body of a fixed one. */
@@ -76,7 +88,7 @@ static struct model *every_link(const struct urdf_robot *robot, const struct urd
     for (int k = 0; k < robot->nlink; k++) {
         int i = robot->order[k];
         const struct urdf_link *link = &robot->link[i];
-        if (!link_check(robot, link, o, e)) return NULL;
+        if (!link_check(robot, i, o, a, e)) return NULL;
         struct body_def def = body_from(robot, i);
         body[i] = -1;
         if (k == 0 && !o->floating) continue;
