@@ -41,7 +41,7 @@ enum { GAP = 64 };
 enum { GAP = 0 };
 #endif
 
-enum { ALIGN = 64, FIRST_BLOCK = 1 << 18, LARGEST_BLOCK = 1 << 28, PAGE = 4096 };
+enum { ALIGN = 64, FIRST_BLOCK = 1 << 18, HUGE_BLOCK = 1 << 22, LARGEST_BLOCK = 1 << 28, PAGE = 4096 };
 
 /* The head of a block lies in its own first bytes; takes start at ALIGN. */
 struct block {
@@ -97,6 +97,8 @@ static struct block *block_map(struct arena *a, size_t size)
     struct block *b =
         mmap(NULL, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     CHECK(b != MAP_FAILED && "out of memory");
+    /* A block of many takes fills from below, so large pages only save faults; a single large array may stay sparse. */
+    if (capacity >= HUGE_BLOCK && size <= capacity / 8) madvise(b, capacity, MADV_HUGEPAGE);
     ROOT_ADD(b, capacity);
     *b = (struct block){.capacity = capacity, .used = ALIGN, .dirty = ALIGN};
     return b;

@@ -292,7 +292,7 @@ static int print_exponent(const struct kind *k, double x)
 {
     char digits[20];
     int exponent;
-    if (x == 0 || !isfinite(x) || k->print_min == k->print_max) return k->print_min;
+    if (x == 0 || !isfinite(x) || k->print_min == k->print_max) return k->print_max < 0 ? k->print_min : 0;
     shortest_digits(x, digits, &exponent);
     int thousands = (exponent >= 0 ? exponent : exponent - 2) / 3 * 3;
     if (thousands < k->print_min) return k->print_min;

@@ -1,0 +1,122 @@
+/* test_arena.c - memory of a run: zeroed, aligned, given back by marks, cheap when untouched. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+#include "base/progress.h"
+#include "base/random.h"
+
+static bool all_are(const unsigned char *p, size_t size, unsigned char value)
+{
+    for (size_t k = 0; k < size; k++)
+        if (p[k] != value) return false;
+    return true;
+}
+
+static void takes_are_zeroed_aligned_and_apart(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct random r = random_make(1, 0, 0);
+    unsigned char *p[500];
+    size_t size[500];
+    for (int i = 0; i < 500; i++) {
+        size[i] = random_below(&r, i % 50 == 0 ? 1000000 : 3000);
+        p[i] = arena_take(a, size[i]);
+        assert_int_equal((uintptr_t)p[i] % 64, 0);
+        assert_true(all_are(p[i], size[i], 0));
+        memset(p[i], i & 255, size[i]);
+    }
+    for (int i = 0; i < 500; i++) assert_true(all_are(p[i], size[i], i & 255));
+    arena_destroy(a);
+}
+
+static void memory_taken_again_after_a_release_is_zeroed(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    for (int i = 0; i < 200; i++) {
+        struct arena_mark m = arena_mark(a);
+        size_t size = (size_t)(i * 7919 % 400000) + 1;
+        unsigned char *p = arena_take(a, size);
+        assert_true(all_are(p, size, 0));
+        memset(p, 255, size);
+        arena_release(a, m);
+    }
+    arena_destroy(a);
+}
+
+static void marks_nest_and_spare_what_was_taken_before(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct arena_mark empty = arena_mark(a);
+    char *kept = arena_text(a, "kept");
+    struct arena_mark outer = arena_mark(a);
+    char *first = arena_take(a, 100);
+    struct arena_mark inner = arena_mark(a);
+    memset(arena_take(a, 3000000), 1, 3000000); /* beyond the first block */
+    memset(arena_take(a, 300000), 2, 300000);
+    arena_release(a, inner);
+    first[99] = 'x';
+    arena_release(a, outer);
+    assert_ptr_equal(arena_take(a, 100), first);
+    assert_int_equal(first[99], 0);
+    assert_string_equal(kept, "kept");
+    arena_release(a, empty);
+    assert_int_equal(((char *)arena_take(a, 5))[0], 0);
+    arena_destroy(a);
+}
+
+static void the_peak_is_the_largest_use_not_the_last(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    assert_int_equal(arena_peak(a), 0);
+    struct arena_mark m = arena_mark(a);
+    arena_take(a, 1000000);
+    arena_take(a, 1000000);
+    arena_release(a, m);
+    arena_take(a, 64);
+    assert_in_range(arena_peak(a), 2000000, 2000000 + 1024);
+    arena_destroy(a);
+}
+
+static void untouched_memory_costs_no_memory_of_the_host(void **state)
+{
+    (void)state;
+    long before = host_peak_bytes();
+    struct arena *a = arena_create();
+    char *large = TAKE(a, 1l << 34, char);
+    large[1l << 33] = 1;
+    assert_true(host_peak_bytes() - before < 64l << 20);
+    arena_destroy(a);
+}
+
+static void an_empty_take_is_a_place_and_null_is_destroyed_in_peace(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    assert_non_null(arena_take(a, 0));
+    arena_destroy(a);
+    arena_destroy(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(takes_are_zeroed_aligned_and_apart),
+        cmocka_unit_test(memory_taken_again_after_a_release_is_zeroed),
+        cmocka_unit_test(marks_nest_and_spare_what_was_taken_before),
+        cmocka_unit_test(the_peak_is_the_largest_use_not_the_last),
+        cmocka_unit_test(untouched_memory_costs_no_memory_of_the_host),
+        cmocka_unit_test(an_empty_take_is_a_place_and_null_is_destroyed_in_peace),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
