@@ -1,0 +1,96 @@
+/* Fibers keep their place and their stacks apart. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/fiber.h"
+
+struct counter {
+    struct fiber *fiber;
+    int id, seen, rounds;
+};
+
+static void count_rounds(void *argument)
+{
+    struct counter *c = argument;
+    volatile char local[512];
+    memset((void *)local, c->id, sizeof local);
+    for (int i = 0; i < c->rounds; i++) {
+        fiber_leave(c->fiber);
+        for (size_t k = 0; k < sizeof local; k++) assert_int_equal((char)local[k], (char)c->id);
+        c->seen++;
+    }
+}
+
+static void fibers_interleave_and_keep_their_stacks(void **state)
+{
+    (void)state;
+    enum { N = 100 };
+    struct err e;
+    err_clear(&e);
+    struct fiber_pool *p = fiber_pool_create(N, 64 * 1024, &e);
+    assert_non_null(p);
+    struct counter *c = calloc(N, sizeof *c);
+    for (int i = 0; i < N; i++) {
+        c[i] = (struct counter){.id = i, .rounds = i % 7};
+        c[i].fiber = fiber_start(p, i, count_rounds, &c[i]);
+    }
+    int alive = N;
+    while (alive)
+        for (int i = 0; i < N; i++)
+            if (c[i].fiber && !fiber_enter(c[i].fiber)) {
+                c[i].fiber = NULL;
+                alive--;
+            }
+    for (int i = 0; i < N; i++) assert_int_equal(c[i].seen, c[i].rounds);
+    int64_t entered = 0;
+    for (int i = 0; i < N; i++) entered += c[i].rounds + 1;
+    assert_int_equal(fiber_pool_switches(p), entered);
+    assert_true(fiber_pool_stack_peak(p) >= 4096);
+    assert_true(fiber_pool_stack_peak(p) <= 64 * 1024);
+    free(c);
+    fiber_pool_destroy(p);
+}
+
+static void use_stack(void *argument)
+{
+    volatile char big[20 * 1024];
+    memset((void *)big, 1, sizeof big);
+    *(int *)argument = big[100];
+}
+
+static void the_peak_sees_what_was_used(void **state)
+{
+    (void)state;
+    struct err e;
+    err_clear(&e);
+    struct fiber_pool *p = fiber_pool_create(3, 64 * 1024, &e);
+    int out = 0;
+    assert_false(fiber_enter(fiber_start(p, 1, use_stack, &out)));
+    assert_int_equal(out, 1);
+    assert_true(fiber_pool_stack_peak(p) >= 20 * 1024);
+    fiber_pool_destroy(p);
+}
+
+static void too_many_stacks_are_refused_with_a_message(void **state)
+{
+    (void)state;
+    struct err e;
+    err_clear(&e);
+    assert_null(fiber_pool_create(1 << 30, 1 << 20, &e));
+    assert_int_equal(e.kind, ERR_INTERNAL);
+    assert_non_null(strstr(e.text, "virtual processors"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fibers_interleave_and_keep_their_stacks),
+        cmocka_unit_test(the_peak_sees_what_was_used),
+        cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
