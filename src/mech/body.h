@@ -1,11 +1,11 @@
 /* body.h - one body's constants and its local computations in the build's precision: all that a kernel needs.
  *
- * Internally a frame is turned so that its joint's axis is z (slot: x; universal: x, then y), spatial order is
+ * Internally a body's frame is turned so that its joint's axis is z (universal: axes x, y), spatial order is
  * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
  * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
  * pass unchanged between model order and here. H and its complement W are orthonormal.
  *
- * Work: the functions do not count; joint_cost has what each does for a joint type. */
+ * Work: the functions do not count; joint_cost_of has what each does for a joint type. */
 #ifndef MECH_BODY_H
 #define MECH_BODY_H
 
@@ -30,6 +30,7 @@ struct body {
     struct inertia inertia; /* about the origin */
     struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
     real user[9];           /* user's body axes = user * internal axes */
+    real slide[9];          /* slot, point-plane: rows are the sliding directions in the joint frame, the free ones first */
     real stiffness, rest, damping;
 };
 
@@ -130,9 +131,9 @@ void body_step(const struct body *b, real *q, const real *u, real h);
 #define body_qdot REAL_NAME(body_qdot)
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
 
-/* joint_cost: by type, never NULL. The table is the same in every precision. */
-#define joint_cost REAL_NAME(joint_cost)
-const struct joint_cost *joint_cost(enum model_joint joint);
+/* joint_cost_of: by type, never NULL. The table is the same in every precision. */
+#define joint_cost_of REAL_NAME(joint_cost_of)
+const struct joint_cost *joint_cost_of(enum model_joint joint);
 
 /* subspace_h: y (6) += H x (d). subspace_w: y (6) += W x (c). */
 #define subspace_h REAL_NAME(subspace_h)

@@ -1,4 +1,4 @@
-/* loop.h - a loop joint's local computations: frames, constraint subspace, velocity terms; least-norm solution.
+/* loop.h - a loop joint's local computations: frames, constraint subspace, velocity terms.
  *
  * A loop joint acts in a loop frame. Its force F = W lambda acts on body b as T_b F and on body a as -T_a F; the
  * accelerations obey  W^T (T_b^T A_b - T_a^T A_a + gamma) + 2 alpha W^T rho + beta^2 g = 0  (physics 7.2), A classical.
@@ -59,20 +59,5 @@ void loop_column(const struct loop_pose *p, bool side_b, real *out);
 #define loop_residual REAL_NAME(loop_residual)
 void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r);
 
-/* least_norm_solve: x of smallest norm (scaled) with S x = r, for symmetric positive semidefinite S.
- *
- *   n          in      order
- *   s          in      (n x n) row-major; destroyed
- *   reference  in      (n) positive numbers that S's rounding errors scale with: the diagonal of A_ll (physics 7.7)
- *   r          in/out  (n) right-hand side in, x out
- *   tolerance  in      eigenvalues of the scaled S under tolerance * max(largest, 1) count as zero
- *   work       in      (n x n + 2 n) scratch
- *
- *   Returns the rank. Source: Golub and Van Loan 8.5 (cyclic Jacobi). */
-#define least_norm_solve REAL_NAME(least_norm_solve)
-int least_norm_solve(int n, real *s, const real *reference, real *r, real tolerance, real *work);
-
-/* least_norm_flop: its flops, an upper bound from the usual number of sweeps. */
-static inline int least_norm_flop(int n) { return n < 2 ? 10 : 6 * 6 * n * n * n; }
 
 #endif

@@ -117,7 +117,8 @@ struct model *model_build(const struct model_spec *spec, struct arena *a, struct
 /* state_take: a state of m with zeros, identity quaternions and no external forces. */
 struct state *state_take(const struct model *m, struct arena *a);
 
-/* state_make: the pose, rates, torques and external forces that `spec` asks for; seeded, the same on every host. */
+/* state_make: the pose, rates, torques and external forces that `spec` asks for; seeded, the same on every host. NULL
+ * only when a vector file, readable a moment ago, no longer is. */
 struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a);
 
 /* state_fext_need: the state's fext array, taken (zero) when there was none. */

@@ -1,0 +1,14 @@
+/* model_build.c - from a spec to a model: which reader or generator. */
+#include "mech/generator.h"
+#include "mech/model.h"
+#include "mech/urdf_model.h"
+#include "mech/vector_model.h"
+
+struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e)
+{
+    switch (spec->generator) {
+    case MODEL_URDF: return urdf_model_build(spec, a, e);
+    case MODEL_VECTOR: return vector_model_build(spec, a, e);
+    default: return generator_model(spec, a, e);
+    }
+}
