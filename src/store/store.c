@@ -7,6 +7,8 @@
 #include "store/store.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -105,7 +107,7 @@ static bool create_schema(struct store *s, struct err *e)
     text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION, STORE_VERSION);
     text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d), ('span_rows_limit', %d);",
              STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
-    bool empty = false, ok = store_exec(s, "BEGIN IMMEDIATE", e) && check_owner(s, &empty, e);
+    bool empty = false, ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, e);
     /* Another program may have made it while we waited for the lock. */
     if (ok && empty) ok = store_exec(s, store_schema(), e) && store_exec(s, t.s, e);
     if (ok) ok = store_exec(s, "COMMIT", e);
@@ -126,12 +128,10 @@ static bool on_network(const char *path)
     return false;
 }
 
-static bool set_journal(struct store *s, bool fresh, struct err *e)
+static bool set_journal(struct store *s, struct err *e)
 {
-    if (on_network(s->path)) return store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e);
-    /* An empty file has nothing to lose: no flush for the page that says WAL. */
-    if (fresh && !store_exec(s, "PRAGMA synchronous = OFF", e)) return false;
-    return store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
+    return on_network(s->path) ? store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e)
+                               : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
 }
 
 /* Everything between opening the file and the first statement of a writer. */
@@ -140,8 +140,7 @@ static bool prepare_writer(struct store *s, struct err *e)
     bool empty = false;
     if (!check_owner(s, &empty, e)) return false;
     if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
-    if (!set_journal(s, empty, e)) return false;
-    if (empty && !create_schema(s, e)) return false;
+    if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
 }
@@ -153,6 +152,15 @@ static bool prepare_reader(struct store *s, struct err *e)
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
+/* The folder that `path` lies in, with its slash. */
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash == NULL ? strdup("./") : strndup(path, (size_t)(slash - path) + 1);
+    CHECK(folder != NULL);
+    return folder;
+}
+
 /* Mistakes in the path that SQLite would report vaguely. *exists when there is a file. */
 static bool check_path(const char *path, enum store_mode mode, bool *exists, struct err *e)
 {
@@ -162,9 +170,70 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
         return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA, "%s is a folder, not a database", path);
     if (!*exists && mode == STORE_READ)
         return err_set(e, ERR_NO_INPUT, "there is no database %s; `mimdsim run` makes one", path);
-    if (!*exists && errno != ENOENT)
-        return err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
+    if (*exists) return true;
+    char *folder = folder_of(path);
+    bool writable = access(folder, W_OK | X_OK) == 0;
+    free(folder);
+    return writable || err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
+}
+
+/* A new database as the bytes of its file, to be freed by sqlite3_free. */
+static unsigned char *make_image(sqlite3_int64 *size, bool wal, struct err *e)
+{
+    struct store s = {.path = (char[]){"in memory"}, .writable = true};
+    unsigned char *image = NULL;
+    if (sqlite3_open(":memory:", &s.db) == SQLITE_OK && create_schema(&s, e))
+        image = sqlite3_serialize(s.db, "main", size, 0);
+    else store_failed(&s, e);
+    /* Bytes 18 and 19 of the header: 2 is WAL, 1 a rollback journal (sqlite.org/fileformat2.html, 1.3.3). */
+    if (image != NULL) image[18] = image[19] = wal ? 2 : 1;
+    sqlite3_close(s.db);
+    return image;
+}
+
+static bool write_all(int file, const unsigned char *bytes, sqlite3_int64 size)
+{
+    for (sqlite3_int64 done = 0; done < size;) {
+        ssize_t n = write(file, bytes + done, (size_t)(size - done));
+        if (n < 0 && errno != EINTR) return false;
+        if (n > 0) done += n;
+    }
     return true;
+}
+
+/* Logs of a database that was removed after a crash would be taken for the new one's. */
+static void remove_stale_logs(const char *path)
+{
+    static const char *const suffix[] = {"-wal", "-shm", "-journal"};
+    for (int i = 0; i < 3; i++) {
+        struct text log = {0};
+        text_add(&log, "%s%s", path, suffix[i]);
+        if (access(log.s, F_OK) == 0 && access(path, F_OK) != 0) unlink(log.s);
+        text_free(&log);
+    }
+}
+
+/* Make the file of a new database. It is written beside its place and linked there when it is whole, so no one ever
+ * sees, and no failure leaves, half of one; when another program was faster, its file is the one. */
+static bool make_file(const char *path, struct err *e)
+{
+    char *folder = folder_of(path);
+    struct text beside = {0};
+    sqlite3_int64 size;
+    unsigned char *image = make_image(&size, !on_network(folder), e);
+    free(folder);
+    if (image == NULL) return false;
+    remove_stale_logs(path);
+    text_add(&beside, "%s.new-%ld", path, (long)getpid());
+    int file = open(beside.s, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    bool ok = file >= 0 && write_all(file, image, size) && fdatasync(file) == 0;
+    if (ok && link(beside.s, path) != 0 && errno != EEXIST) ok = rename(beside.s, path) == 0;
+    if (!ok) err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path, strerror(errno));
+    if (file >= 0) close(file);
+    unlink(beside.s);
+    text_free(&beside);
+    sqlite3_free(image);
+    return ok;
 }
 
 /* A database in WAL mode in a folder that cannot be written opens only when declared unchanging. */
@@ -196,37 +265,25 @@ static bool open_reader(struct store *s, struct err *e)
     int64_t ignored;
     struct err first = {0};
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
-    if (!read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first) &&
-        sqlite3_errcode(s->db) == SQLITE_CANTOPEN && !log_exists(s->path))
-        reopen_immutable(s);
+    bool readable = read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
+    int code = sqlite3_errcode(s->db);
+    if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path)) reopen_immutable(s);
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     return prepare_reader(s, e);
 }
 
 static bool open_writer(struct store *s, struct err *e)
 {
-    int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
-    if (sqlite3_open_v2(s->path, &s->db, flags, NULL)) return store_failed(s, e);
+    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     return prepare_writer(s, e);
-}
-
-/* A file that we made and could not fill must not stay. */
-static void remove_new(const char *path)
-{
-    static const char *const suffix[] = {"", "-wal", "-shm", "-journal"};
-    for (int i = 0; i < 4; i++) {
-        struct text name = {0};
-        text_add(&name, "%s%s", path, suffix[i]);
-        unlink(name.s);
-        text_free(&name);
-    }
 }
 
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists;
     if (!check_path(path, mode, &exists, e)) return NULL;
+    if (!exists && !make_file(path, e)) return NULL;
     struct store *s = calloc(1, sizeof *s);
     CHECK(s != NULL);
     s->path = strdup(path);
@@ -234,7 +291,6 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
     s->writable = mode == STORE_WRITE;
     if (s->writable ? open_writer(s, e) : open_reader(s, e)) return s;
     store_close(s);
-    if (mode == STORE_WRITE && !exists) remove_new(path);
     return NULL;
 }
 
@@ -276,4 +332,5 @@ void store_rollback(struct store *s)
     /* Some errors (disk full) have rolled back already. */
     if (!sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     s->in_transaction = false;
+    s->build_id = 0; /* its row may have been forgotten too */
 }

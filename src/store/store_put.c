@@ -473,6 +473,5 @@ bool store_put(struct store *s, const struct run_spec *spec, const struct run_re
     if (!alone) return ok;
     if (ok) return store_commit(s, e);
     store_rollback(s);
-    s->build_id = 0;
     return false;
 }
