@@ -66,7 +66,11 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
 {
     const struct network_spec *w = &m->network;
     struct net *n = TAKE(a, 1, struct net);
-    CHECK((unsigned)w->level < sizeof levels / sizeof *levels && levels[w->level]);
+    CHECK((unsigned)w->level < LEVEL_AUTO + 1u);
+    if (w->level >= sizeof levels / sizeof *levels || !levels[w->level]) {
+        err_set(e, ERR_CONFIG, "this level is not there");
+        return NULL;
+    }
     if (!sizes_fit(t, e)) return NULL;
     *n = (struct net){.type = levels[w->level], .machine = m, .topology = t, .sim = s, .arena = a,
                       .deliver = deliver, .context = context};

@@ -5,6 +5,7 @@
 #ifndef NET_TRAFFIC_H
 #define NET_TRAFFIC_H
 
+#include "machine/topology.h"
 #include "net/net.h"
 
 struct traffic {

@@ -1,0 +1,37 @@
+/* netcheck_case.h - reference cases as machines and message lists: names of topologies, traffic patterns.
+ *
+ * The reference's unit is the cycle, one flit of 16 B on a 16 GB/s link: 1000 ps. Its router takes a head over a hop
+ * in 3 cycles, entry and exit add 2, a credit comes back in 2. */
+#ifndef RUN_NETCHECK_CASE_H
+#define RUN_NETCHECK_CASE_H
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "net/traffic.h"
+#include "spec/machine_spec.h"
+
+enum { NETCHECK_CYCLE_PS = 1000, NETCHECK_FLIT_BYTES = 16 };
+
+/* netcheck_topology: the topology called "mesh8x8", "torus4x4x8", "ring4", "hcube7", "fattree_k4_n3",
+ * "dragonfly_p2a4h2_72", "crossbar16", "fullmesh8", "bus8" - a family's name with its numbers behind it, other words
+ * around it ignored. tie: 0 positive, 2 by parity. Returns false with ERR_DATA. */
+bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struct err *e);
+
+/* netcheck_machine: the reference's router on topology `s`: `vcs` virtual channels of `buffer` flits, packets of at
+ * most `packet_flits` (0: any). head_cycles is the pipeline's 3 or 5. */
+struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int buffer, int packet_flits,
+                                     int head_cycles);
+
+/* netcheck_step: every node of `nnode` sends `flits` flits at 0 by pattern "shift", "trunc" or "xor" at `distance`;
+ * arrays from a. Returns false with ERR_DATA for another pattern. */
+bool netcheck_step(const char *pattern, int distance, int nnode, int flits, struct arena *a, struct traffic *q,
+                   struct err *e);
+
+/* netcheck_load: random arrivals (Bernoulli per cycle) of packets of `flits` flits for `cycles` cycles at `load`
+ * flits per node and cycle, destinations by `pattern`: uniform, bitcomp, bitrev, transpose, shuffle, tornado(k,n),
+ * neighbor(k,n), shift(d), bad_dragon. The same seed gives the same list. Returns false with ERR_DATA for another
+ * pattern or one that needs 2^n nodes on a network without. */
+bool netcheck_load(const char *pattern, const struct topology *t, int flits, double load, int cycles, uint64_t seed,
+                   struct arena *a, struct traffic *q, struct err *e);
+
+#endif
