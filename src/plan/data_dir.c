@@ -1,0 +1,169 @@
+/* data_dir.c - machines/ and scenarios/ beside the build tree's binary, installed, or the user's own.
+ *
+ * What was found is remembered in the environment as MIMDSIM_DATA, so that programs started from here look in the
+ * same place. */
+#include "plan/data_dir.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "plan/plan.h"
+
+enum { PATH_LENGTH = 1024, MAX_NAMES = 4096 };
+
+static bool holds_data(const char *dir)
+{
+    char path[PATH_LENGTH + 16];
+    snprintf(path, sizeof path, "%s/machines", dir);
+    if (access(path, R_OK | X_OK) != 0) return false;
+    snprintf(path, sizeof path, "%s/scenarios", dir);
+    return access(path, R_OK | X_OK) == 0;
+}
+
+/* The running binary's folder or one or two above it (src/mimdsim of a build in or below the source tree). */
+static bool beside_binary(char dir[PATH_LENGTH])
+{
+    ssize_t n = readlink("/proc/self/exe", dir, PATH_LENGTH - 1);
+    if (n <= 0) return false;
+    dir[n] = '\0';
+    for (int up = 0; up < 3; up++) {
+        char *slash = strrchr(dir, '/');
+        if (slash == NULL || slash == dir) return false;
+        *slash = '\0';
+        if (holds_data(dir)) return true;
+    }
+    return false;
+}
+
+const char *plan_data_dir(void)
+{
+    char dir[PATH_LENGTH];
+    const char *given = getenv("MIMDSIM_DATA");
+    if (given != NULL && given[0] != '\0') return given;
+    const char *found = MIMDSIM_DATADIR;
+    if (beside_binary(dir))
+        found = dir;
+    else if (holds_data(MIMDSIM_SRCDIR))
+        found = MIMDSIM_SRCDIR;
+    setenv("MIMDSIM_DATA", found, 1);
+    const char *kept = getenv("MIMDSIM_DATA");
+    return kept != NULL ? kept : MIMDSIM_DATADIR;
+}
+
+/* $XDG_DATA_HOME/mimdsim or its usual place; "" without a home. */
+static void user_dir(char *dir, size_t size)
+{
+    const char *xdg = getenv("XDG_DATA_HOME"), *home = getenv("HOME");
+    dir[0] = '\0';
+    if (xdg != NULL && xdg[0] == '/')
+        snprintf(dir, size, "%s/mimdsim", xdg);
+    else if (home != NULL && home[0] == '/')
+        snprintf(dir, size, "%s/.local/share/mimdsim", home);
+}
+
+static bool is_path(const char *name)
+{
+    size_t n = strlen(name);
+    return strchr(name, '/') != NULL || (n > 5 && strcmp(name + n - 5, ".yaml") == 0) ||
+           (n > 4 && strcmp(name + n - 4, ".yml") == 0);
+}
+
+const char *data_dir_of(const char *path, struct arena *a)
+{
+    const char *slash = strrchr(path, '/');
+    if (slash == NULL) return "";
+    char *dir = arena_text(a, path);
+    dir[slash == path ? 1 : slash - path] = '\0';
+    return dir;
+}
+
+const char *data_dir_stem(const char *path, struct arena *a)
+{
+    const char *slash = strrchr(path, '/');
+    char *stem = arena_text(a, slash != NULL ? slash + 1 : path);
+    char *dot = strrchr(stem, '.');
+    if (dot != NULL && dot != stem && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0)) *dot = '\0';
+    return stem;
+}
+
+/* DIR/[WHAT/]NAME[.yaml] when it is there, in `a`; `dir` "" is the working directory. */
+static const char *probe(const char *dir, const char *what, const char *name, const char *ending, struct arena *a)
+{
+    char path[2 * PATH_LENGTH];
+    int n = snprintf(path, sizeof path, "%s%s%s%s%s%s", dir, dir[0] != '\0' ? "/" : "", what,
+                     what[0] != '\0' ? "/" : "", name, ending);
+    if (n >= (int)sizeof path || access(path, F_OK) != 0) return NULL;
+    return arena_text(a, path);
+}
+
+static const char *find_path(const char *name, const char *near, struct arena *a, struct err *e)
+{
+    const char *path = name[0] == '/' || near == NULL ? NULL : probe(near, "", name, "", a);
+    if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0')) path = probe("", "", name, "", a);
+    if (path == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);
+    return path;
+}
+
+static void not_found(const char *what, const char *name, struct arena *a, struct err *e)
+{
+    int n;
+    const char **names = data_dir_names(what, a, &n);
+    const char *near = text_nearest(name, names, n);
+    int singular = (int)strlen(what) - 1;
+    if (near != NULL)
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
+    else
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s' in %s/%s; `mimdsim %s` lists them", singular, what, name,
+                plan_data_dir(), what, what);
+}
+
+const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a, struct err *e)
+{
+    char user[PATH_LENGTH];
+    if (is_path(name)) return find_path(name, near, a, e);
+    const char *path = near != NULL && name[0] != '\0' ? probe(near, "", name, ".yaml", a) : NULL;
+    if (path == NULL && name[0] != '\0') path = probe(plan_data_dir(), what, name, ".yaml", a);
+    user_dir(user, sizeof user);
+    if (path == NULL && user[0] != '\0' && name[0] != '\0') path = probe(user, what, name, ".yaml", a);
+    if (path == NULL) not_found(what, name, a, e);
+    return path;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Add the stems of DIR/WHAT to names[0 .. n-1]; returns the new number. */
+static int add_names(const char *dir, const char *what, const char **names, int n, struct arena *a)
+{
+    char path[2 * PATH_LENGTH];
+    if (snprintf(path, sizeof path, "%s/%s", dir, what) >= (int)sizeof path) return n;
+    DIR *d = opendir(path);
+    if (d == NULL) return n;
+    for (struct dirent *entry; n < MAX_NAMES && (entry = readdir(d)) != NULL;) {
+        size_t length = strlen(entry->d_name);
+        if (entry->d_name[0] == '.' || length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
+        names[n++] = data_dir_stem(entry->d_name, a);
+    }
+    closedir(d);
+    return n;
+}
+
+const char **data_dir_names(const char *what, struct arena *a, int *n)
+{
+    char user[PATH_LENGTH];
+    const char **names = TAKE(a, MAX_NAMES, const char *);
+    int count = add_names(plan_data_dir(), what, names, 0, a), kept = 0;
+    user_dir(user, sizeof user);
+    if (user[0] != '\0') count = add_names(user, what, names, count, a);
+    qsort(names, (size_t)count, sizeof *names, compare_names);
+    for (int i = 0; i < count; i++)
+        if (kept == 0 || strcmp(names[kept - 1], names[i]) != 0) names[kept++] = names[i];
+    *n = kept;
+    return names;
+}

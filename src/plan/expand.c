@@ -1,0 +1,321 @@
+/* expand.c - from settings and axes to runs: each with its machine, its P and n, and its identity.
+ *
+ * A run starts as a copy of what holds for all runs on its machine, so a large sweep costs a copy and a few settings
+ * a run; the canonical text of a struct that did not change since the run before is not printed again. */
+#include "plan/expand.h"
+
+#include <string.h>
+
+#include "base/digest.h"
+#include "base/text.h"
+#include "plan/data_dir.h"
+#include "plan/machine_file.h"
+
+enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
+
+/* What holds for all runs on one machine. */
+struct start {
+    const char *name;
+    struct run_spec run;
+    struct start *next;
+};
+
+/* Text of one table as printed last, and the bytes it was printed from. */
+struct printed {
+    void *bytes;
+    struct text text;
+};
+
+struct expansion {
+    struct plan *plan;
+    const struct scenario *scenario;
+    struct err *err;
+    struct start *starts;
+    int point[SCENARIO_MAX_AXES];    /* where each axis stands */
+    struct printed *printed;         /* one per table */
+};
+
+/* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries. */
+static int lists_of(const struct expansion *x, const struct setting_list **list)
+{
+    const struct scenario *s = x->scenario;
+    int n = 0;
+    list[n++] = &s->base;
+    for (int i = 0; i < s->naxis; i++) list[n++] = &s->axis[i].point[x->point[i]];
+    list[n++] = &s->set;
+    return n;
+}
+
+/* The last setting that matches, NULL when there is none. */
+static const struct setting *last_of(const struct expansion *x, bool (*matches)(const struct setting *))
+{
+    const struct setting_list *list[SCENARIO_MAX_AXES + 2];
+    int n = lists_of(x, list);
+    const struct setting *found = NULL;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < list[i]->n; j++)
+            if (matches(&list[i]->at[j])) found = &list[i]->at[j];
+    return found;
+}
+
+static bool is_machine(const struct setting *s) { return s->kind == SETTING_MACHINE; }
+static bool is_ranks(const struct setting *s) { return strcmp(s->key, "ranks") == 0; }
+static bool is_ratio(const struct setting *s) { return s->kind == SETTING_N_OVER_P; }
+static bool is_bodies(const struct setting *s) { return strcmp(s->key, "model.n") == 0; }
+
+static struct start *start_make(struct expansion *x, const struct setting *machine)
+{
+    struct arena *a = x->plan->arena;
+    struct machine_file m;
+    struct err why;
+    int ntable;
+    bool in_file = machine->line > 0;
+    err_clear(&why);
+    if (!machine_file_read(&m, machine->text, in_file ? x->scenario->dir : NULL, a, &why)) {
+        if (why.file[0] == '\0') /* not found: say where it was asked for */
+            err_set_at(x->err, why.kind, machine->file, machine->line, "%s", why.text);
+        else
+            err_set_at(x->err, why.kind, why.file, why.line, "%s", why.text);
+        return NULL;
+    }
+    struct start *s = TAKE(a, 1, struct start);
+    const struct field_table *const *table = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++) /* the first table is the whole run's */
+        field_defaults(table[i], (char *)&s->run + table[i]->offset, a);
+    s->run.machine = m.spec;
+    s->name = machine->text;
+    s->next = x->starts;
+    x->starts = s;
+    text_copy(s->run.scenario, sizeof s->run.scenario, x->scenario->stem);
+    for (int i = 0; i < x->scenario->base.n; i++) setting_apply(&x->scenario->base.at[i], &s->run, a);
+    return s;
+}
+
+static struct start *start_of(struct expansion *x)
+{
+    const struct setting *machine = last_of(x, is_machine);
+    if (machine == NULL) {
+        err_set_at(x->err, ERR_DATA, x->scenario->path, 1, "machine is missing; expected one of `mimdsim machines`");
+        return NULL;
+    }
+    for (struct start *s = x->starts; s != NULL; s = s->next)
+        if (strcmp(s->name, machine->text) == 0) return s;
+    return start_make(x, machine);
+}
+
+/* P and n where one follows from the other. */
+static bool resolve_sizes(struct expansion *x, struct run_spec *run)
+{
+    const struct setting *ranks = last_of(x, is_ranks), *ratio = last_of(x, is_ratio), *bodies = last_of(x, is_bodies);
+    if (ranks == NULL)
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
+                          "ranks is missing; expected a number, a list, or 'n' for as many as bodies");
+    if (ratio != NULL && bodies != NULL)
+        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p says n already; leave out '%s' (line %d)",
+                          bodies->key, bodies->line);
+    if (ratio != NULL && ranks->kind == SETTING_RANKS_ARE_N)
+        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as numbers, not 'n'");
+    if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
+    if (ratio == NULL) return true;
+    int64_t n = (int64_t)ratio->number * run->nrank;
+    if (n > MAX_BODIES)
+        return err_set_at(x->err, ERR_CONFIG, ratio->file, ratio->line, "n_over_p %d times %d ranks gives more than %d bodies",
+                          ratio->number, run->nrank, MAX_BODIES);
+    run->model.nbody = (int)n;
+    return true;
+}
+
+static bool check_fits(struct expansion *x, const struct run_spec *run)
+{
+    const struct setting *ranks = last_of(x, is_ranks);
+    const struct machine_spec *m = &run->machine;
+    int64_t n = machine_spec_processors(m);
+    if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL) ranks = last_of(x, is_bodies);
+    if (!machine_file_check(m, ranks->file, ranks->line, x->err)) return false;
+    if (m->placement.kind == PLACEMENT_LIST && m->placement.nlist < run->nrank)
+        return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
+                          "%d ranks, but machine.placement.list names %d processors", run->nrank, m->placement.nlist);
+    if (run->nrank <= n) return true;
+    return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
+                      "%d ranks, but machine '%s' has %lld processors; fewer ranks, or raise machine.topology.dims",
+                      run->nrank, m->name, (long long)n);
+}
+
+/* Whether the scenario's `only` conditions keep this point. */
+static bool wanted(const struct scenario *s, const struct run_spec *run)
+{
+    if (s->only_bodies_for_all && run->model.nbody < run->nrank) return false;
+    return !s->only_fitting || run->nrank <= machine_spec_processors(&run->machine);
+}
+
+/* A model's file is part of a run by its content, wherever it lies. */
+static bool resolve_path(struct expansion *x, struct run_spec *run, struct text *identity)
+{
+    char path[2 * sizeof run->model.path], hex[65];
+    const struct model_spec *m = &run->model;
+    struct text file = {0};
+    bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
+    if (!from_file) return true;
+    if (m->path[0] == '\0')
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path is missing: the file of the model");
+    snprintf(path, sizeof path, "%s/%s", x->scenario->dir[0] != '\0' ? x->scenario->dir : ".", m->path);
+    struct err ignored;
+    err_clear(&ignored);
+    bool relative = m->path[0] != '/' && text_read_file(&file, path, &ignored);
+    if (!relative && !text_read_file(&file, m->path, x->err)) return text_free(&file), false;
+    digest_sha256_hex(file.s, file.length, hex);
+    text_add(identity, "model.file = sha256 %s\n", hex);
+    text_free(&file);
+    if (!relative) return true;
+    if (strlen(path) >= sizeof run->model.path)
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path: '%.80s' is too long", path);
+    text_copy(run->model.path, sizeof run->model.path, path);
+    return true;
+}
+
+/* The canonical text: every table, those that did not change since the last run from memory. */
+static void print_config(struct expansion *x, const struct run_spec *run, struct text *out)
+{
+    int ntable;
+    const struct field_table *const *table = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++) {
+        const void *bytes = (const char *)run + table[i]->offset;
+        struct printed *p = &x->printed[i];
+        if (i == 0 || p->text.s == NULL || memcmp(p->bytes, bytes, table[i]->size) != 0) {
+            p->text.length = 0;
+            fields_print(table[i], bytes, false, &p->text);
+            memcpy(p->bytes, bytes, table[i]->size);
+        }
+        text_add_bytes(out, p->text.s, p->text.length);
+    }
+}
+
+static bool identify(struct expansion *x, struct run_spec *run)
+{
+    struct text t = {0}, file = {0};
+    struct run_spec plain;
+    bool fine = resolve_path(x, run, &file);
+    if (fine) {
+        plain = *run;
+        if (file.length > 0) text_copy(plain.model.path, sizeof plain.model.path, "");
+        print_config(x, &plain, &t);
+        if (file.length > 0) text_add_bytes(&t, file.s, file.length);
+        digest_sha256_hex(t.s, t.length, run->config_hash);
+        run->config_text = arena_text(x->plan->arena, t.s);
+    }
+    text_free(&t);
+    text_free(&file);
+    return fine;
+}
+
+/* One point: 1 run made, 0 left out, -1 failed. */
+static int make_point(struct expansion *x, struct run_spec *run)
+{
+    const struct start *start = start_of(x);
+    const struct scenario *s = x->scenario;
+    if (start == NULL) return -1;
+    *run = start->run;
+    for (int i = 0; i < s->naxis; i++) {
+        const struct setting_list *list = &s->axis[i].point[x->point[i]];
+        for (int j = 0; j < list->n; j++) setting_apply(&list->at[j], run, x->plan->arena);
+    }
+    for (int i = 0; i < s->set.n; i++) setting_apply(&s->set.at[i], run, x->plan->arena);
+    if (!resolve_sizes(x, run)) return -1;
+    if (!wanted(s, run)) return 0;
+    return check_fits(x, run) && identify(x, run) ? 1 : -1;
+}
+
+/* The next point; false behind the last. */
+static bool advance(struct expansion *x)
+{
+    for (int i = x->scenario->naxis - 1; i >= 0; i--) {
+        if (++x->point[i] < x->scenario->axis[i].npoint) return true;
+        x->point[i] = 0;
+    }
+    return false;
+}
+
+static bool expand_points(struct expansion *x, int64_t capacity)
+{
+    struct plan *p = x->plan;
+    p->run = TAKE(p->arena, capacity, struct run_spec);
+    do {
+        int made = make_point(x, &p->run[p->nrun]);
+        if (made < 0) return false;
+        if (made == 0) continue;
+        for (int rep = 1; rep < x->scenario->repetitions; rep++) {
+            p->run[p->nrun + rep] = p->run[p->nrun];
+            p->run[p->nrun + rep].rep = rep;
+        }
+        p->nrun += x->scenario->repetitions;
+    } while (advance(x));
+    if (p->nrun > 0) return true;
+    return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "no run is left by 'only'");
+}
+
+bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
+{
+    struct expansion x = {.plan = p, .scenario = s, .err = e};
+    int64_t n = s->repetitions;
+    int ntable;
+    for (int i = 0; i < s->naxis; i++) n = n > MAX_RUNS ? n : n * s->axis[i].npoint;
+    if (n > MAX_RUNS) return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller", MAX_RUNS);
+    const struct field_table *const *table = field_tables(&ntable);
+    x.printed = TAKE(p->arena, ntable, struct printed);
+    for (int i = 0; i < ntable; i++) x.printed[i].bytes = arena_take(p->arena, table[i]->size);
+    bool fine = expand_points(&x, n);
+    for (int i = 0; i < ntable; i++) text_free(&x.printed[i].text);
+    return fine;
+}
+
+/* ---- what does not act */
+
+static bool is_random(const struct run_spec *r)
+{
+    const struct machine_spec *m = &r->machine;
+    bool valiant = m->topology.family == TOPOLOGY_DRAGONFLY && m->topology.routing == ROUTE_VALIANT;
+    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant;
+}
+
+/* Why a setting acts in no run, NULL when it acts in one. */
+static const char *why_idle(const struct plan *p, const struct setting *s)
+{
+    const char *why = NULL;
+    if (s->kind != SETTING_FIELD || s->field->idle == NULL) return NULL;
+    for (int i = 0; i < p->nrun; i++)
+        if ((why = s->field->idle(&p->run[i])) == NULL) return NULL;
+    return why;
+}
+
+static void add_unused(struct plan *p, const char *key, const char *why)
+{
+    struct text t = {0};
+    text_add(&t, "%s: %s", key, why);
+    for (int i = 0; i < p->nunused && t.s != NULL; i++)
+        if (strcmp(p->unused[i], t.s) == 0) text_free(&t);
+    if (t.s != NULL) p->unused[p->nunused++] = arena_text(p->arena, t.s);
+    text_free(&t);
+}
+
+static void add_unused_of(struct plan *p, const struct setting_list *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        const char *why = why_idle(p, &list->at[i]);
+        if (why != NULL) add_unused(p, list->at[i].key, why);
+    }
+}
+
+void expand_unused(struct plan *p, const struct scenario *s)
+{
+    int ntable, n = 1;
+    bool random = false;
+    const struct field_table *const *table = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++) n += table[i]->nfield;
+    p->unused = TAKE(p->arena, n, const char *);
+    add_unused_of(p, &s->base);
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->axis[i].npoint; j++) add_unused_of(p, &s->axis[i].point[j]);
+    add_unused_of(p, &s->set);
+    for (int i = 0; i < p->nrun && !random; i++) random = is_random(&p->run[i]);
+    if (s->repetitions > 1 && !random) add_unused(p, "repetitions", "nothing is random in these runs");
+}

@@ -1,0 +1,15 @@
+/* expand.h - a scenario's settings combined into the runs of a plan. */
+#ifndef PLAN_EXPAND_H
+#define PLAN_EXPAND_H
+
+#include "plan/plan.h"
+#include "plan/scenario_file.h"
+
+/* expand_runs: fill p->run: every point of the axes' cross product, the first axis slowest, repetitions fastest.
+ * Returns false with ERR_NO_INPUT, ERR_DATA or ERR_CONFIG. */
+bool expand_runs(struct plan *p, const struct scenario *s, struct err *e);
+
+/* expand_unused: fill p->unused: settings of the scenario and the command line that act in no run. */
+void expand_unused(struct plan *p, const struct scenario *s);
+
+#endif

@@ -1,0 +1,253 @@
+/* machine_file.c - machines/NAME.yaml: plain values or {value, min, max, class, source}, on top of a base. */
+#include "plan/machine_file.h"
+
+#include <string.h>
+
+#include "base/text.h"
+#include "plan/data_dir.h"
+#include "spec/spec_fields.h"
+
+enum { MAX_BASES = 8, MAX_PUBLISHED = 256 };
+
+/* Reading one file of the chain of bases. */
+struct reader {
+    struct machine_file *machine;
+    const char *path;
+};
+
+/* The evidence classes of docs/machines: one, or several with slashes where a value mixes them. */
+static bool is_evidence(const char *s)
+{
+    static const char *const classes[] = {"PR", "P", "D", "E"};
+    for (;;) {
+        size_t i = 0, n = 0;
+        for (; i < 4 && n == 0; i++)
+            if (strncmp(s, classes[i], strlen(classes[i])) == 0) n = strlen(classes[i]);
+        if (n == 0) return false;
+        s += n;
+        if (*s == '\0') return true;
+        if (*s++ != '/') return false;
+    }
+}
+
+static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf, struct err *e)
+{
+    for (const struct yaml_node *n = leaf->child; n != NULL; n = n->next) {
+        static const char *const known[] = {"value", "min", "max", "class", "source"};
+        bool is_known = false;
+        for (int i = 0; i < 5; i++) is_known = is_known || strcmp(n->key, known[i]) == 0;
+        const char *near = text_nearest(n->key, known, 5);
+        if (!is_known)
+            return err_set_at(e, ERR_DATA, v->file, n->line,
+                              "%s: unknown key '%.80s'; expected value, min, max, class or source%s%s", key, n->key,
+                              near != NULL ? "; did you mean " : "", near != NULL ? near : "");
+        if (strcmp(n->key, "value") == 0) continue;
+        if (n->kind != YAML_SCALAR)
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' has to be one value", key, n->key);
+        if (strcmp(n->key, "class") == 0) v->evidence = n->text;
+        if (strcmp(n->key, "source") == 0) v->source = n->text;
+    }
+    if (!is_evidence(v->evidence) && v->evidence[0] != '\0')
+        return err_set_at(e, ERR_DATA, v->file, v->line,
+                          "%s: class '%.20s'; expected P (published), PR (published, recalled), D (derived) or "
+                          "E (estimated)", key, v->evidence);
+    return true;
+}
+
+/* The published range of a number; it has to hold the value. */
+static bool read_range(struct machine_value *v, const struct field *f, const char *key, const struct yaml_node *leaf,
+                       const struct machine_spec *spec, struct err *e)
+{
+    static const char *const names[] = {"min", "max"};
+    double *const bound[] = {&v->min, &v->max}, value = 0;
+    const void *place = (const char *)spec + f->offset;
+    char why[256];
+    const struct yaml_node *range = yaml_node_child(leaf, "min");
+    if (range == NULL) range = yaml_node_child(leaf, "max");
+    if (range == NULL) return true;
+    if (f->kind == FIELD_REAL)
+        value = *(const double *)place;
+    else if (f->kind == FIELD_INT64)
+        value = (double)*(const int64_t *)place;
+    else if (f->kind == FIELD_INT)
+        value = *(const int *)place;
+    else
+        return err_set_at(e, ERR_DATA, v->file, range->line, "%s: only numbers have a range", key);
+    v->min = v->max = value;
+    for (int i = 0; i < 2; i++) {
+        const struct yaml_node *n = yaml_node_child(leaf, names[i]);
+        if (n != NULL && (n->text == NULL || !units_parse(n->text, f->unit, bound[i], why, (int)sizeof why)))
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i],
+                              n->text != NULL ? n->text : "", n->text != NULL ? why : "expected one value");
+    }
+    if (v->min > value || v->max < value)
+        return err_set_at(e, ERR_DATA, v->file, v->line, "%s: the value is outside its own range min .. max", key);
+    if (v->min == v->max) v->min = v->max = 0;
+    return true;
+}
+
+static bool read_leaf(void *context, const char *full, const struct yaml_node *leaf, const char *file, struct arena *a,
+                      struct err *e)
+{
+    struct reader *r = context;
+    const char *key = full + strlen("machine.");
+    int row = strncmp(full, "machine.", 8) == 0 ? field_find(&machine_table, key) : -1;
+    if (row < 0 || strcmp(key, "name") == 0) return setting_unknown("machine", full, file, leaf->line, e);
+    const struct field *f = &machine_table.field[row];
+    struct machine_value *v = &r->machine->value[row];
+    if (v->line != 0 && strcmp(v->file, file) == 0)
+        return err_set_at(e, ERR_DATA, file, leaf->line, "duplicate key '%s'; first given in line %d", key, v->line);
+    const char *text = setting_value(key, leaf, file, a, e);
+    if (text == NULL) return false;
+    *v = (struct machine_value){.text = text, .file = file, .line = leaf->line, .evidence = "", .source = ""};
+    char why[512];
+    if (!field_set(f, &r->machine->spec, text, a, why, (int)sizeof why))
+        return err_set_at(e, ERR_DATA, file, leaf->line, "%s: '%.80s': %s", key, text, why);
+    if (leaf->kind != YAML_MAPPING) return true;
+    if (!read_evidence(v, key, leaf, e)) return false;
+    return read_range(v, f, key, leaf, &r->machine->spec, e);
+}
+
+/* Figures that are known of the machine and not used: any name, value as text. */
+static bool read_published(struct machine_file *m, const struct yaml_node *list, const char *file, struct arena *a,
+                           struct err *e)
+{
+    if (list->kind != YAML_MAPPING)
+        return err_set_at(e, ERR_DATA, file, list->line, "published: expected 'name: {value, class, source}' lines");
+    for (const struct yaml_node *n = list->child; n != NULL; n = n->next) {
+        int i = 0;
+        while (i < m->npublished && strcmp(m->published[i].name, n->key) != 0) i++;
+        if (i == MAX_PUBLISHED) return err_set_at(e, ERR_DATA, file, n->line, "more than %d published figures", i);
+        struct machine_value v = {.file = file, .line = n->line, .evidence = "", .source = ""};
+        v.text = setting_value(n->key, n, file, a, e);
+        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, e))) return false;
+        m->published[i] = (struct machine_published){.name = n->key, .value = v};
+        if (i == m->npublished) m->npublished++;
+    }
+    return true;
+}
+
+static bool check_version(const struct yaml_node *root, const char *file, struct err *e)
+{
+    const struct yaml_node *n = yaml_node_child(root, "schema_version");
+    if (n == NULL) return err_set_at(e, ERR_DATA, file, 1, "schema_version is missing; expected 'schema_version: 1'");
+    if (n->text != NULL && strcmp(n->text, "1") == 0) return true;
+    return err_set_at(e, ERR_DATA, file, n->line, "schema_version: '%.20s'; this program reads version 1",
+                      n->text != NULL ? n->text : "");
+}
+
+static bool read_title(struct machine_file *m, const struct yaml_node *n, const char *file, struct arena *a,
+                       struct err *e)
+{
+    int row = field_find(&machine_table, "title");
+    char why[256];
+    if (n->text == NULL || !field_set(&machine_table.field[row], &m->spec, n->text, a, why, (int)sizeof why))
+        return err_set_at(e, ERR_DATA, file, n->line, "title: %s", n->text == NULL ? "expected one line of text" : why);
+    m->value[row] = (struct machine_value){.text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
+    return true;
+}
+
+static bool read_tree(struct reader *r, struct yaml_node *root, struct arena *a, struct err *e)
+{
+    static const char *const known[] = {"schema_version", "base"};
+    struct yaml_node rest = *root, **tail = &rest.child;
+    if (!check_version(root, r->path, e)) return false;
+    rest.child = NULL;
+    for (struct yaml_node *n = root->child, *next; n != NULL; n = next) {
+        next = n->next;
+        bool ok = true;
+        if (strcmp(n->key, known[0]) == 0 || strcmp(n->key, known[1]) == 0)
+            ;
+        else if (strcmp(n->key, "title") == 0)
+            ok = read_title(r->machine, n, r->path, a, e);
+        else if (strcmp(n->key, "published") == 0)
+            ok = read_published(r->machine, n, r->path, a, e);
+        else
+            *tail = n, tail = &n->next;
+        if (!ok) return false;
+    }
+    *tail = NULL;
+    return setting_walk(&rest, "machine", r->path, read_leaf, r, a, e);
+}
+
+/* Base first, then the file itself. `chain` holds the files that led here. */
+static bool read_chain(struct machine_file *m, const char *path, const char **chain, int depth, struct arena *a,
+                       struct err *e)
+{
+    for (int i = 0; i < depth; i++)
+        if (strcmp(chain[i], path) == 0)
+            return err_set_at(e, ERR_DATA, chain[depth - 1], 0, "base: %s builds on itself", data_dir_stem(path, a));
+    if (depth == MAX_BASES) return err_set_at(e, ERR_DATA, path, 0, "more than %d files build on each other", depth);
+    struct yaml_node *root = yaml_tree_read(path, a, e);
+    if (root == NULL) return false;
+    chain[depth] = path;
+    const struct yaml_node *base = yaml_node_child(root, "base");
+    if (base != NULL) {
+        if (base->text == NULL) return err_set_at(e, ERR_DATA, path, base->line, "base: expected a machine's name");
+        struct err why;
+        err_clear(&why);
+        const char *below = data_dir_find("machines", base->text, data_dir_of(path, a), a, &why);
+        if (below == NULL) return err_set_at(e, why.kind, path, base->line, "base: %s", why.text);
+        if (!read_chain(m, below, chain, depth + 1, a, e)) return false;
+    }
+    struct reader r = {.machine = m, .path = path};
+    return read_tree(&r, root, a, e);
+}
+
+static bool check_complete(const struct machine_file *m, struct err *e)
+{
+    for (int i = 0; i < machine_table.nfield; i++)
+        if (machine_table.field[i].fallback == NULL && m->value[i].line == 0)
+            return err_set_at(e, ERR_DATA, m->path, 0, "%s is missing: %s", machine_table.field[i].key,
+                              machine_table.field[i].doc);
+    return true;
+}
+
+bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a, struct err *e)
+{
+    const char *chain[MAX_BASES];
+    *m = (struct machine_file){.path = data_dir_find("machines", name, near, a, e)};
+    if (m->path == NULL) return false;
+    field_defaults(&machine_table, &m->spec, a);
+    m->value = TAKE(a, machine_table.nfield, struct machine_value);
+    m->published = TAKE(a, MAX_PUBLISHED, struct machine_published);
+    for (int i = 0; i < machine_table.nfield; i++)
+        m->value[i] = (struct machine_value){.text = machine_table.field[i].fallback, .file = "default",
+                                             .evidence = "", .source = ""};
+    if (!read_chain(m, m->path, chain, 0, a, e) || !check_complete(m, e)) return false;
+    text_copy(m->spec.name, sizeof m->spec.name, data_dir_stem(m->path, a));
+    int dims = field_find(&machine_table, "topology.dims");
+    return machine_file_check(&m->spec, m->value[dims].file, m->value[dims].line, e);
+}
+
+/* How many dimensions a family takes: 0 for any. */
+static int family_dims(enum topology_family family)
+{
+    switch (family) {
+    case TOPOLOGY_TORUS:
+    case TOPOLOGY_MESH: return 0;
+    case TOPOLOGY_FAT_TREE: return 2;
+    case TOPOLOGY_DRAGONFLY: return 4;
+    default: return 1;
+    }
+}
+
+bool machine_file_check(const struct machine_spec *m, const char *file, int line, struct err *e)
+{
+    const struct topology_spec *t = &m->topology;
+    int expected = family_dims(t->family);
+    if (expected != 0 && t->ndim != expected)
+        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims has %d numbers; its family takes %d",
+                          m->name, t->ndim, expected);
+    int64_t n = machine_spec_processors(m);
+    if (n < 1 || n > 1 << 24)
+        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims gives %s than %d processors", m->name,
+                          n < 1 ? "less" : "more", n < 1 ? 1 : 1 << 24);
+    for (int i = 0; i < t->nlink; i++)
+        if (t->link[i][0] >= t->dims[0] || t->link[i][1] >= t->dims[0])
+            return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.links names router %d; there are %d",
+                              m->name, t->link[i][t->link[i][0] < t->dims[0]], t->dims[0]);
+    if (t->family == TOPOLOGY_GRAPH && t->nlink == 0 && t->dims[0] > 1)
+        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: family 'graph' needs topology.links", m->name);
+    return true;
+}

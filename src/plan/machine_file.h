@@ -1,0 +1,36 @@
+/* machine_file.h - a machine from its file and the files it builds on, with where each value came from. */
+#ifndef PLAN_MACHINE_FILE_H
+#define PLAN_MACHINE_FILE_H
+
+#include "plan/plan.h"
+#include "plan/setting.h"
+
+/* A value as the files give it; `line` 0 and file "default": nobody did. */
+struct machine_value {
+    const char *text;
+    const char *file;
+    int line;
+    const char *evidence, *source;
+    double min, max;
+};
+
+struct machine_file {
+    struct machine_spec spec;
+    const char *path;                /* of the file named, not of its bases */
+    struct machine_value *value;     /* (machine_table.nfield) */
+    int npublished;
+    struct machine_published {       /* published figures that the simulator does not use */
+        const char *name;
+        struct machine_value value;
+    } *published;
+};
+
+/* machine_file_read: machine `name` (see data_dir_find with `near`) complete: bases, defaults, checks.
+ * Returns false with ERR_NO_INPUT, ERR_DATA or ERR_CONFIG. */
+bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a, struct err *e);
+
+/* machine_file_check: whether the values fit together: dimensions of the family, placement list, rates.
+ * Returns false with ERR_CONFIG at `file`:`line`. */
+bool machine_file_check(const struct machine_spec *m, const char *file, int line, struct err *e);
+
+#endif

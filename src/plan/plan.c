@@ -1,0 +1,151 @@
+/* plan.c - the face of the room: a scenario to runs, a machine to values with their origins, lists, checks. */
+#include "plan/plan.h"
+
+#include <string.h>
+
+#include "plan/data_dir.h"
+#include "plan/expand.h"
+#include "plan/machine_file.h"
+#include "plan/scenario_file.h"
+#include "spec/spec_fields.h"
+
+static bool fill(struct plan *p, const struct scenario *s, struct err *e)
+{
+    text_copy(p->name, sizeof p->name, s->stem);
+    p->question = s->question;
+    p->figure = s->figure;
+    p->nfigure = s->nfigure;
+    if (!expand_runs(p, s, e)) return false;
+    expand_unused(p, s);
+    return true;
+}
+
+bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e)
+{
+    struct scenario s;
+    *p = (struct plan){.arena = arena_create()};
+    if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, e)) return true;
+    plan_free(p);
+    return false;
+}
+
+void plan_free(struct plan *p)
+{
+    arena_destroy(p->arena);
+    *p = (struct plan){0};
+}
+
+/* A machine file describes a machine and asks no question. */
+static bool is_machine_tree(const struct yaml_node *root)
+{
+    static const char *const scenario_keys[] = {"question", "machine", "kernel", "ranks", "sweep", "model"};
+    static const char *const machine_keys[] = {"topology", "network", "node", "software", "base", "title"};
+    for (int i = 0; i < 6; i++)
+        if (yaml_node_child(root, scenario_keys[i]) != NULL) return false;
+    for (int i = 0; i < 6; i++)
+        if (yaml_node_child(root, machine_keys[i]) != NULL) return true;
+    return false;
+}
+
+bool plan_check_file(const char *path, struct err *e)
+{
+    struct plan p = {.arena = arena_create()};
+    struct scenario s;
+    struct machine_file m;
+    struct yaml_node *root = yaml_tree_read(path, p.arena, e);
+    bool fine = root != NULL;
+    if (fine && is_machine_tree(root)) {
+        struct text as_path = {0};
+        text_add(&as_path, "%s%s", strchr(path, '/') == NULL ? "./" : "", path);
+        fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
+        text_free(&as_path);
+    } else if (fine) {
+        fine = scenario_file_tree(&s, root, path, NULL, p.arena, e) && fill(&p, &s, e);
+    }
+    plan_free(&p);
+    return fine;
+}
+
+/* ---- machines */
+
+/* --set of a machine alone: keys begin with "machine." */
+static bool set_machine(struct machine_file *m, const char *set, struct arena *a, struct err *e)
+{
+    const char *equals = strchr(set, '='), *full;
+    struct setting s;
+    struct run_spec run;
+    if (equals == NULL || equals == set) return err_set(e, ERR_USAGE, "--set '%.80s': expected key=value", set);
+    char *name = arena_text(a, set);
+    name[equals - set] = '\0';
+    full = setting_key(name);
+    if (!setting_make(&s, name, arena_text(a, equals + 1), "--set", 0, a, e)) return false;
+    if (strncmp(full, "machine.", 8) != 0 || s.kind != SETTING_FIELD)
+        return err_set_at(e, ERR_DATA, "--set", 0, "%s: not a setting of a machine", name);
+    run.machine = m->spec;
+    setting_apply(&s, &run, a);
+    m->spec = run.machine;
+    m->value[field_find(&machine_table, full + 8)] =
+        (struct machine_value){.text = s.text, .file = "--set", .evidence = "", .source = ""};
+    return machine_file_check(&m->spec, "--set", 0, e);
+}
+
+static struct origin origin_make(const char *key, const char *value, const struct machine_value *v)
+{
+    return (struct origin){.key = key, .value = value, .file = v->file, .line = v->line, .evidence = v->evidence,
+                           .source = v->source, .min = v->min, .max = v->max};
+}
+
+static int list_origins(const struct machine_file *m, struct origin *list, struct arena *a)
+{
+    int n = 0;
+    for (int i = 0; i < machine_table.nfield; i++) {
+        struct text t = {0};
+        field_print(&machine_table.field[i], &m->spec, &t);
+        list[n++] = origin_make(machine_table.field[i].key, arena_text(a, t.s != NULL ? t.s : ""), &m->value[i]);
+        text_free(&t);
+    }
+    for (int i = 0; i < m->npublished; i++) {
+        struct text t = {0};
+        text_add(&t, "published.%s", m->published[i].name);
+        list[n++] = origin_make(arena_text(a, t.s), m->published[i].value.text, &m->published[i].value);
+        text_free(&t);
+    }
+    return n;
+}
+
+bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o, struct arena *a,
+                  struct origin **origin, int *norigin, struct err *e)
+{
+    struct machine_file file;
+    if (!machine_file_read(&file, name, NULL, a, e)) return false;
+    for (int i = 0; o != NULL && i < o->nset; i++)
+        if (!set_machine(&file, o->set[i], a, e)) return false;
+    *m = file.spec;
+    if (origin == NULL) return true;
+    *origin = TAKE(a, machine_table.nfield + file.npublished, struct origin);
+    *norigin = list_origins(&file, *origin, a);
+    return true;
+}
+
+/* ---- lists */
+
+static const char *title_of(const char *what, const char *name, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    const char *path = data_dir_find(what, name, NULL, a, &e);
+    struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, &e) : NULL;
+    const struct yaml_node *n = NULL;
+    if (root != NULL) n = yaml_node_child(root, strcmp(what, "machines") == 0 ? "title" : "question");
+    if (n != NULL && n->text != NULL) return n->text;
+    return root != NULL ? "" : arena_text(a, e.text);
+}
+
+bool plan_list(const char *what, struct arena *a, const char ***stem, const char ***title, int *n, struct err *e)
+{
+    *stem = data_dir_names(what, a, n);
+    *title = TAKE(a, *n + 1, const char *);
+    if (*n == 0) return err_set(e, ERR_NO_INPUT, "no %s in %s/%s", what, plan_data_dir(), what);
+    for (int i = 0; i < *n; i++) (*title)[i] = title_of(what, (*stem)[i], a);
+    return true;
+}

@@ -1,0 +1,318 @@
+/* scenario_file.c - scenarios/NAME.yaml: which keys there are at the top, lists as axes, and --set on top.
+ *
+ * A list where a single value belongs is an axis of the sweep; the first axis in the file changes slowest. */
+#include "plan/scenario_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "plan/data_dir.h"
+
+enum { MAX_REPETITIONS = 100000 };
+
+static bool is_list_field(const char *key)
+{
+    const struct field_table *t;
+    const struct field *f = field_find_full(key, &t);
+    if (f == NULL) return false;
+    return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST || f->kind == FIELD_PAIR_LIST;
+}
+
+/* Add a setting; a key may be given only once in a list. */
+static bool add_setting(struct setting_list *list, const char *key, const char *text, const char *file, int line,
+                        struct arena *a, struct err *e)
+{
+    struct setting s;
+    if (!setting_make(&s, key, text, file, line, a, e)) return false;
+    for (int i = 0; i < list->n; i++)
+        if (strcmp(list->at[i].key, s.key) == 0)
+            return err_set_at(e, ERR_DATA, file, line, "duplicate key '%s'; first given in line %d", s.key,
+                              list->at[i].line);
+    if (list->n == SCENARIO_MAX_SETTINGS) return err_set_at(e, ERR_DATA, file, line, "too many settings");
+    if ((list->n & (list->n - 1)) == 0) { /* full: room for twice as many */
+        struct setting *at = TAKE(a, 2 * list->n + 1, struct setting);
+        if (list->n > 0) memcpy(at, list->at, (size_t)list->n * sizeof *at);
+        list->at = at;
+    }
+    list->at[list->n++] = s;
+    return true;
+}
+
+/* ---- axes */
+
+static bool add_leaf(void *context, const char *key, const struct yaml_node *leaf, const char *file, struct arena *a,
+                     struct err *e)
+{
+    const char *text = setting_value(key, leaf, file, a, e);
+    return text != NULL && add_setting(context, key, text, file, leaf->line, a, e);
+}
+
+/* One point: a value of the axis's own key, or a mapping of settings below the group that the axis names. */
+static bool read_point(struct setting_list *point, const char *key, const char *group, const struct yaml_node *node,
+                       const char *file, struct arena *a, struct err *e)
+{
+    if (node->kind == YAML_MAPPING) {
+        if (group == NULL)
+            return err_set_at(e, ERR_DATA, file, node->line, "sweep: '%s' takes values, not settings", key);
+        return setting_walk(node, group, file, add_leaf, point, a, e);
+    }
+    if (key == NULL)
+        return err_set_at(e, ERR_DATA, file, node->line, "sweep: each variant is a mapping such as {kernel.solver: cr}");
+    if (node->kind == YAML_SEQUENCE && !is_list_field(key))
+        return err_set_at(e, ERR_DATA, file, node->line, "%s: a list within a list", key);
+    return add_setting(point, key, yaml_node_flow(node, a), file, node->line, a, e);
+}
+
+/* The group below which an axis's mappings set: kernel, model, machine; all for `variant`; NULL: values only. */
+static const char *axis_group(const char *name)
+{
+    if (strcmp(name, "variant") == 0) return "";
+    bool group = strcmp(name, "kernel") == 0 || strcmp(name, "model") == 0 || strcmp(name, "machine") == 0;
+    return group ? name : NULL;
+}
+
+static bool add_axis(struct scenario *s, const char *name, const struct yaml_node *list, struct arena *a, struct err *e)
+{
+    const char *group = axis_group(name), *full = setting_key(name), *key = setting_is_key(full) ? full : NULL;
+    if (key == NULL && group == NULL) return setting_unknown("", name, s->path, list->line, e);
+    if (list->kind != YAML_SEQUENCE || list->nchild == 0)
+        return err_set_at(e, ERR_DATA, s->path, list->line, "sweep: '%s' needs a list such as [2, 4, 8]", name);
+    for (int i = 0; i < s->naxis; i++)
+        if (strcmp(s->axis[i].key, full) == 0)
+            return err_set_at(e, ERR_DATA, s->path, list->line, "duplicate key '%s'; first swept in line %d", full,
+                              s->axis[i].line);
+    if (s->naxis == SCENARIO_MAX_AXES || list->nchild > SCENARIO_MAX_POINTS)
+        return err_set_at(e, ERR_DATA, s->path, list->line, "too large a sweep");
+    struct axis *x = &s->axis[s->naxis++];
+    *x = (struct axis){.key = full, .line = list->line, .npoint = list->nchild};
+    x->point = TAKE(a, list->nchild, struct setting_list);
+    int i = 0;
+    for (const struct yaml_node *n = list->child; n != NULL; n = n->next)
+        if (!read_point(&x->point[i++], key, group, n, s->path, a, e)) return false;
+    return true;
+}
+
+/* ---- the file */
+
+struct top {
+    struct scenario *scenario;
+    struct arena *arena;
+    struct err *err;
+};
+
+static bool refuse(struct top *t, const struct yaml_node *n, const char *expected)
+{
+    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "%s: '%.80s'; expected %s", n->key,
+                      n->text != NULL ? n->text : "a list or mapping", expected);
+}
+
+static bool read_version(struct top *t, const struct yaml_node *n)
+{
+    return (n->text != NULL && strcmp(n->text, "1") == 0) || refuse(t, n, "version 1");
+}
+
+static bool read_question(struct top *t, const struct yaml_node *n)
+{
+    if (n->text == NULL) return refuse(t, n, "one line of text");
+    t->scenario->question = n->text;
+    return true;
+}
+
+static bool read_repetitions(struct top *t, const struct yaml_node *n)
+{
+    char *end = NULL;
+    long v = n->text != NULL ? strtol(n->text, &end, 10) : 0;
+    if (v < 1 || v > MAX_REPETITIONS || *end != '\0') return refuse(t, n, "a whole number from 1 to 100000");
+    t->scenario->repetitions = (int)v;
+    t->scenario->repetitions_line = n->line;
+    return true;
+}
+
+static bool read_figures(struct top *t, const struct yaml_node *n)
+{
+    struct scenario *s = t->scenario;
+    if (n->kind != YAML_SEQUENCE) return refuse(t, n, "a list such as [fig5, fig6]");
+    s->figure = TAKE(t->arena, n->nchild + 1, const char *);
+    for (const struct yaml_node *f = n->child; f != NULL; f = f->next) {
+        if (f->text == NULL || f->text[0] == '\0') return refuse(t, n, "a list such as [fig5, fig6]");
+        s->figure[s->nfigure++] = f->text;
+    }
+    return true;
+}
+
+static bool read_condition(struct top *t, const struct yaml_node *n, const char *text)
+{
+    if (text != NULL && strcmp(text, "n >= ranks") == 0) return t->scenario->only_bodies_for_all = true;
+    if (text != NULL && strcmp(text, "ranks <= processors") == 0) return t->scenario->only_fitting = true;
+    return refuse(t, n, "'n >= ranks' or 'ranks <= processors', or a list of both");
+}
+
+static bool read_only(struct top *t, const struct yaml_node *n)
+{
+    if (n->kind == YAML_SCALAR) return read_condition(t, n, n->text);
+    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
+        if (!read_condition(t, n, c->text)) return false;
+    return n->kind == YAML_SEQUENCE || refuse(t, n, "a list of conditions");
+}
+
+static bool read_sweep(struct top *t, const struct yaml_node *n)
+{
+    if (n->kind != YAML_MAPPING) return refuse(t, n, "axes such as {n: [2, 4, 8]}");
+    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
+        if (!add_axis(t->scenario, c->key, c, t->arena, t->err)) return false;
+    return true;
+}
+
+typedef bool top_fn(struct top *t, const struct yaml_node *n);
+static const struct top_key {
+    const char *name;
+    top_fn *read;
+} top_keys[] = {
+    {"schema_version", read_version}, {"question", read_question}, {"repetitions", read_repetitions},
+    {"figures", read_figures},        {"only", read_only},         {"sweep", read_sweep},
+};
+enum { NTOP = sizeof top_keys / sizeof *top_keys };
+
+/* A key that is no setting: the nearest of this file's own keys before any other. */
+static bool unknown_top(struct top *t, const struct yaml_node *n)
+{
+    const char *names[NTOP + 8] = {"machine", "model", "kernel", "ranks", "seed", "record", "n", "n_over_p"};
+    for (int i = 0; i < NTOP; i++) names[8 + i] = top_keys[i].name;
+    const char *near = text_nearest(n->key, names, NTOP + 8);
+    if (near == NULL) return setting_unknown("", n->key, t->scenario->path, n->line, t->err);
+    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "unknown key '%.120s'; did you mean '%s'?", n->key,
+                      near);
+}
+
+static bool read_setting(struct top *t, const struct yaml_node *n)
+{
+    struct scenario *s = t->scenario;
+    const char *key = setting_key(n->key);
+    struct yaml_node only = *n, parent = {.kind = YAML_MAPPING, .nchild = 1, .child = &only};
+    if (!setting_is_key(key) && !setting_is_group(n->key)) return unknown_top(t, n);
+    if (n->kind == YAML_SEQUENCE && !is_list_field(key)) return add_axis(s, n->key, n, t->arena, t->err);
+    only.next = NULL;
+    return setting_walk(&parent, "", s->path, add_leaf, &s->base, t->arena, t->err);
+}
+
+static bool read_top(struct top *t, const struct yaml_node *n)
+{
+    for (int i = 0; i < NTOP; i++)
+        if (strcmp(n->key, top_keys[i].name) == 0) return top_keys[i].read(t, n);
+    return read_setting(t, n);
+}
+
+/* A key cannot both be swept and hold for all runs. */
+static bool check_axes(const struct scenario *s, struct err *e)
+{
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->base.n; j++)
+            if (strcmp(s->axis[i].key, s->base.at[j].key) == 0)
+                return err_set_at(e, ERR_DATA, s->path, s->axis[i].line,
+                                  "'%s' is swept here and set for all runs in line %d", s->axis[i].key,
+                                  s->base.at[j].line);
+    return true;
+}
+
+/* ---- the command line */
+
+/* "[a, b]" of a single-valued key becomes an axis in the place of the file's. */
+static bool set_axis(struct scenario *s, const char *key, const char *list, struct arena *a, struct err *e)
+{
+    struct err why;
+    err_clear(&why);
+    char *line = TAKE(a, strlen(list) + 4, char);
+    sprintf(line, "v: %s", list);
+    struct yaml_node *root = yaml_tree_parse(line, strlen(line), "--set", a, &why);
+    const char *path = s->path;
+    if (root == NULL || root->child->kind != YAML_SEQUENCE)
+        return err_set_at(e, ERR_DATA, "--set", 0, "%s: '%.80s' is not a list", key, list);
+    for (struct yaml_node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
+    root->child->line = 0;
+    s->path = "--set";
+    bool fine = add_axis(s, key, root->child, a, e);
+    s->path = path;
+    return fine;
+}
+
+static void remove_axis(struct scenario *s, const char *full)
+{
+    for (int i = 0; i < s->naxis; i++) {
+        if (strcmp(s->axis[i].key, full) != 0) continue;
+        memmove(&s->axis[i], &s->axis[i + 1], (size_t)(--s->naxis - i) * sizeof *s->axis);
+        return;
+    }
+}
+
+static void remove_setting(struct setting_list *list, const char *full)
+{
+    for (int i = 0; i < list->n; i++) {
+        if (strcmp(list->at[i].key, full) != 0) continue;
+        memmove(&list->at[i], &list->at[i + 1], (size_t)(--list->n - i) * sizeof *list->at);
+        return;
+    }
+}
+
+static bool read_set(struct scenario *s, const char *set, struct arena *a, struct err *e)
+{
+    const char *equals = strchr(set, '=');
+    if (equals == NULL || equals == set)
+        return err_set(e, ERR_USAGE, "--set '%.80s': expected key=value, such as machine.network.link.bandwidth='1 GB/s'",
+                       set);
+    char *name = arena_text(a, set);
+    name[equals - set] = '\0';
+    const char *full = setting_key(name);
+    if (!setting_is_key(full)) return setting_unknown("", name, "--set", 0, e);
+    remove_axis(s, full);
+    remove_setting(&s->set, full);
+    remove_setting(&s->base, full);
+    if (equals[1] == '[' && !is_list_field(full)) return set_axis(s, name, arena_text(a, equals + 1), a, e);
+    return add_setting(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
+}
+
+/* n and n_over_p exclude each other, and so do ranks given twice: what comes from the command line wins. */
+static void drop_overruled(struct scenario *s, const char *set, const char *file)
+{
+    bool given = false;
+    for (int i = 0; i < s->set.n; i++) given = given || strcmp(s->set.at[i].key, set) == 0;
+    if (!given) return;
+    remove_axis(s, file);
+    remove_setting(&s->base, file);
+}
+
+static bool read_options(struct scenario *s, const struct plan_options *o, struct arena *a, struct err *e)
+{
+    if (o == NULL) return true;
+    for (int i = 0; i < o->nset; i++)
+        if (!read_set(s, o->set[i], a, e)) return false;
+    drop_overruled(s, "model.n", "n_over_p");
+    drop_overruled(s, "n_over_p", "model.n");
+    if (o->machine == NULL) return true;
+    remove_axis(s, "machine.name");
+    remove_setting(&s->base, "machine.name");
+    remove_setting(&s->set, "machine.name");
+    return add_setting(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
+}
+
+bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const char *path,
+                        const struct plan_options *o, struct arena *a, struct err *e)
+{
+    struct top t = {.scenario = s, .arena = a, .err = e};
+    *s = (struct scenario){.path = path, .question = "", .repetitions = 1};
+    s->stem = data_dir_stem(path, a);
+    s->dir = data_dir_of(path, a);
+    if (yaml_node_child(root, "schema_version") == NULL)
+        return err_set_at(e, ERR_DATA, path, 1, "schema_version is missing; expected 'schema_version: 1'");
+    for (const struct yaml_node *n = root->child; n != NULL; n = n->next)
+        if (!read_top(&t, n)) return false;
+    return check_axes(s, e) && read_options(s, o, a, e);
+}
+
+bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o, struct arena *a,
+                        struct err *e)
+{
+    const char *path = data_dir_find("scenarios", name, NULL, a, e);
+    struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, e) : NULL;
+    return root != NULL && scenario_file_tree(s, root, path, o, a, e);
+}

@@ -1,0 +1,47 @@
+/* scenario_file.h - a scenario as its file and the command line give it: settings that hold for all runs, axes whose
+ * points are combined, and what is left out. Nothing is resolved yet. */
+#ifndef PLAN_SCENARIO_FILE_H
+#define PLAN_SCENARIO_FILE_H
+
+#include "plan/plan.h"
+#include "plan/setting.h"
+
+enum { SCENARIO_MAX_SETTINGS = 512, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS = 100000 };
+
+struct setting_list {
+    int n;
+    struct setting *at;         /* (n) in the order given */
+};
+
+/* One axis of the sweep: at each point several settings change together. */
+struct axis {
+    const char *key;            /* full key, or "variant" */
+    int line;
+    int npoint;
+    struct setting_list *point; /* (npoint) */
+};
+
+struct scenario {
+    const char *path, *stem, *dir;
+    const char *question;
+    struct setting_list base;   /* of all runs */
+    struct setting_list set;    /* --set, after everything else */
+    int naxis;
+    struct axis axis[SCENARIO_MAX_AXES];
+    int repetitions, repetitions_line;
+    bool only_bodies_for_all;   /* leave out points with n < P */
+    bool only_fitting;          /* leave out points with P > processors */
+    int nfigure;
+    const char **figure;
+};
+
+/* scenario_file_read: scenario `name` (see data_dir_find) with `o`. Returns false with ERR_NO_INPUT, ERR_DATA or
+ * ERR_USAGE. */
+bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o, struct arena *a,
+                        struct err *e);
+
+/* scenario_file_tree: the same from a tree already read. */
+bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const char *path,
+                        const struct plan_options *o, struct arena *a, struct err *e);
+
+#endif

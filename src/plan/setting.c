@@ -1,0 +1,154 @@
+/* setting.c - keys of files and of --set find their field; values are tried before they are kept. */
+#include "plan/setting.h"
+
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+
+enum { KEY_LENGTH = 256, MAX_CANDIDATES = 256 };
+
+const char *setting_key(const char *key)
+{
+    static const char *const shorts[][2] = {
+        {"n", "model.n"}, {"level", "machine.network.level"}, {"kernel", "kernel.name"}, {"machine", "machine.name"}};
+    for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
+        if (strcmp(key, shorts[i][0]) == 0) return shorts[i][1];
+    return key;
+}
+
+/* A row that scenarios and --set may touch: not what the plan fills in itself, nor a machine's title. */
+static const struct field *settable(const char *key, const struct field_table **table)
+{
+    const struct field *f = field_find_full(key, table);
+    return f == NULL || f->label || strcmp(key, "scenario") == 0 ? NULL : f;
+}
+
+bool setting_is_key(const char *key)
+{
+    const struct field_table *t;
+    return strcmp(key, "n_over_p") == 0 || settable(key, &t) != NULL;
+}
+
+bool setting_is_group(const char *key)
+{
+    int ntable;
+    size_t length = strlen(key);
+    const struct field_table *const *tables = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++) {
+        size_t prefix = strlen(tables[i]->prefix);
+        if (prefix > 0 && strcmp(tables[i]->prefix, key) == 0) return true;
+        bool below = prefix == 0 || (strncmp(key, tables[i]->prefix, prefix) == 0 && key[prefix] == '.');
+        const char *rest = prefix == 0 ? key : key + prefix + 1;
+        size_t n = prefix == 0 ? length : length - prefix - 1;
+        for (int j = 0; below && j < tables[i]->nfield; j++)
+            if (strncmp(tables[i]->field[j].key, rest, n) == 0 && tables[i]->field[j].key[n] == '.') return true;
+    }
+    return false;
+}
+
+static bool make_number(struct setting *s, struct err *e)
+{
+    static const struct field count = {.key = "n_over_p", .kind = FIELD_INT, .min = 1, .max = 1 << 20};
+    char why[256];
+    if (field_set(&count, &s->number, s->text, NULL, why, (int)sizeof why)) return true;
+    return err_set_at(e, ERR_DATA, s->file, s->line, "%s: '%.80s': %s", s->key, s->text, why);
+}
+
+bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,
+                  struct err *e)
+{
+    struct run_spec trial;
+    char why[512];
+    *s = (struct setting){.key = setting_key(key), .text = text, .file = file, .line = line};
+    if (strcmp(s->key, "machine.name") == 0) return s->kind = SETTING_MACHINE, true;
+    if (strcmp(s->key, "n_over_p") == 0) return s->kind = SETTING_N_OVER_P, make_number(s, e);
+    if (strcmp(s->key, "ranks") == 0 && strcmp(text, "n") == 0) return s->kind = SETTING_RANKS_ARE_N, true;
+    s->field = settable(s->key, &s->table);
+    if (s->field == NULL) return setting_unknown("", key, file, line, e);
+    struct arena_mark mark = arena_mark(a);
+    bool fine = field_set(s->field, (char *)&trial + s->table->offset, text, a, why, (int)sizeof why);
+    arena_release(a, mark);
+    return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
+}
+
+void setting_apply(const struct setting *s, struct run_spec *run, struct arena *a)
+{
+    char why[512];
+    if (s->kind == SETTING_FIELD)
+        CHECK(field_set(s->field, (char *)run + s->table->offset, s->text, a, why, (int)sizeof why));
+}
+
+/* The distinct names that may follow group `group` ("" or "machine.network"). */
+static int candidates(const char *group, char name[][KEY_LENGTH], const char **list)
+{
+    static const char *const top[] = {"machine", "model", "kernel", "n", "level", "n_over_p"};
+    int n = 0, ntable;
+    size_t length = strlen(group);
+    const struct field_table *const *tables = field_tables(&ntable);
+    for (size_t i = 0; length == 0 && i < sizeof top / sizeof *top; i++) snprintf(name[n++], KEY_LENGTH, "%s", top[i]);
+    for (int i = 0; i < ntable; i++) {
+        for (int j = 0; j < tables[i]->nfield && n < MAX_CANDIDATES; j++) {
+            char full[KEY_LENGTH];
+            snprintf(full, sizeof full, "%s%s%s", tables[i]->prefix, tables[i]->prefix[0] ? "." : "",
+                     tables[i]->field[j].key);
+            if (length > 0 && (strncmp(full, group, length) != 0 || full[length] != '.')) continue;
+            snprintf(name[n], KEY_LENGTH, "%s", full + length + (length > 0));
+            if (length > 0) name[n][strcspn(name[n], ".")] = '\0';
+            if (n == 0 || strcmp(name[n], name[n - 1]) != 0) n++;
+        }
+    }
+    for (int i = 0; i < n; i++) list[i] = name[i];
+    return n;
+}
+
+bool setting_unknown(const char *group, const char *key, const char *file, int line, struct err *e)
+{
+    char name[MAX_CANDIDATES][KEY_LENGTH];
+    const char *list[MAX_CANDIDATES];
+    char in[KEY_LENGTH + 8] = "";
+    int n = candidates(group, name, list);
+    const char *near = text_nearest(key, list, n);
+    if (group[0] != '\0') snprintf(in, sizeof in, " in '%.240s'", group);
+    if (near != NULL)
+        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?", key, in, near);
+    struct text all = {0};
+    for (int i = 0; i < n && group[0] != '\0'; i++) text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
+    err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s%s", key, in,
+               all.s != NULL ? all.s : "; `mimdsim config` lists all keys");
+    text_free(&all);
+    return false;
+}
+
+const char *setting_value(const char *key, const struct yaml_node *leaf, const char *file, struct arena *a,
+                          struct err *e)
+{
+    const struct yaml_node *value = leaf;
+    if (leaf->kind == YAML_MAPPING) value = yaml_node_child(leaf, "value");
+    const char *text = value != NULL ? yaml_node_flow(value, a) : NULL;
+    if (text == NULL)
+        err_set_at(e, ERR_DATA, file, leaf->line, "%s: expected a value or {value: ..., class: ..., source: ...}", key);
+    return text;
+}
+
+bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,
+                  void *context, struct arena *a, struct err *e)
+{
+    char key[KEY_LENGTH];
+    for (const struct yaml_node *n = mapping->child; n != NULL; n = n->next) {
+        int length = snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
+        if (length >= (int)sizeof key) return setting_unknown(prefix, n->key, file, n->line, e);
+        const char *full = prefix[0] == '\0' && n->kind != YAML_MAPPING ? setting_key(key) : key;
+        bool ok;
+        if (setting_is_key(full))
+            ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
+        else if (!setting_is_group(key))
+            ok = setting_unknown(prefix, n->key, file, n->line, e);
+        else if (n->kind != YAML_MAPPING)
+            ok = err_set_at(e, ERR_DATA, file, n->line, "'%s' is a group of settings; expected keys below it", key);
+        else
+            ok = setting_walk(n, key, file, leaf, context, a, e);
+        if (!ok) return false;
+    }
+    return true;
+}
