@@ -86,7 +86,7 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
                real *bias);
 
 /* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3). BODY_GYRO_FLOP. */
-enum { BODY_GYRO_FLOP = 39, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 66 };
+enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 48 };
 static inline void body_gyro(const struct body *b, const real *w, real *f)
 {
     /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs no digits. */

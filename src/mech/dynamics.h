@@ -17,15 +17,22 @@
 #include "mech/body.h"
 #include "mech/model.h"
 
+enum { DYNAMICS_SCRATCH = 96 };
+
+struct revolute;              /* compact constants of a body on a revolute joint: revolute.h */
+
 struct dynamics {
     const struct model *model;
+    int nbody, nu;
     struct body *body;        /* (nbody) constants */
+    struct revolute *revolute;/* (nbody) the same, compact, when all joints are revolute; else NULL */
     struct body_pose *pose;   /* (nbody) of the last dynamics_place */
     real *v, *a, *f;          /* (nbody x 6) velocity, acceleration, joint force on the body by its parent */
-    real *load;               /* (nbody x 6) external wrenches of the last dynamics_load, internal axes */
-    bool has_load, all_revolute;
+    real *bias;               /* (nbody x 6) b of physics (1.9) */
+    real *load;               /* (nbody x 6) external wrenches of the last dynamics_load, internal axes; or NULL */
     real base[6];             /* acceleration of the base minus gravity, [angular; linear] */
     real *zero;               /* (nu) zeros */
+    real *scratch;            /* (nbody x DYNAMICS_SCRATCH) of the fast paths */
     struct arena *arena;      /* borrowed: scratch */
 };
 
@@ -37,16 +44,22 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a);
 #define dynamics_load REAL_NAME(dynamics_load)
 void dynamics_load(struct dynamics *d, const struct state *s);
 
-/* dynamics_place: transforms and subspaces of all bodies at q (nq). Called by the algorithms that need it. */
+/* dynamics_place: transforms and subspaces of all bodies at q (nq), in d->pose. */
 #define dynamics_place REAL_NAME(dynamics_place)
 void dynamics_place(struct dynamics *d, const real *q);
+
+/* dynamics_velocities: d->v (linear part too) and d->bias of all bodies at (q, u); after dynamics_place. */
+#define dynamics_velocities REAL_NAME(dynamics_velocities)
+void dynamics_velocities(struct dynamics *d, const real *u);
 
 /* rnea: joint forces tau (nu) that give accelerations ud (nu) at (q, u): Newton-Euler, physics (2.1)-(2.5).
  * Springs are not considered: tau is what actuators and springs supply together.
  *
- *   After return d->v, a, f hold velocities (angular part only), accelerations and joint forces in internal axes. */
+ *   rnea_full also leaves velocities (angular part only), accelerations and joint forces in d->v, a, f, internal axes. */
 #define rnea REAL_NAME(rnea)
 void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
+#define rnea_full REAL_NAME(rnea_full)
+void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
 
 /* aba: accelerations ud (nu) from joint forces tau (nu), articulated bodies, physics (2.6), (2.7); massless bodies
  * allowed. Returns false when an articulated inertia is singular along its joint. */
