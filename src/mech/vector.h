@@ -1,8 +1,8 @@
 /* vector.h - reference vectors: a multibody system, a state, and answers computed by others with 77 digits.
  *
- * The format is dynref-1 (JSON, SI units); tests/data/README.md states its conventions. What is read here is kept as
- * written: spatial vectors linear first, quaternions [x, y, z, w], bodies in their own frames. vector_model.h makes a
- * model and a state of it and translates answers back. */
+ * The format is dynref-1 (JSON, SI units); tests/data/vectors/README.md states its conventions. What is read here is
+ * kept as written: spatial vectors linear first, quaternions [x, y, z, w], bodies in their own frames. vector_model.h
+ * makes a model and a state of it. */
 #ifndef MECH_VECTOR_H
 #define MECH_VECTOR_H
 

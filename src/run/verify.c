@@ -1,0 +1,183 @@
+/* verify.c - one reference vector: read it, run what applies, judge every row and the case. */
+#include "run/verify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/progress.h"
+#include "base/text.h"
+#include "mech/lump.h"
+#include "mech/vector_model.h"
+#include "run/verify_rows.h"
+
+double verify_error(const double *x, const double *ref, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - ref[i]));
+        scale = fmax(scale, fabs(ref[i]));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm, const char *quantity)
+{
+    struct verify_report *r = v->report;
+    if (r->nrow == r->row_room) {
+        int room = r->row_room > 0 ? 2 * r->row_room : 32;
+        struct verify_row *larger = TAKE(r->arena, room, struct verify_row);
+        if (r->nrow > 0) memcpy(larger, r->row, (size_t)r->nrow * sizeof *larger);
+        r->row = larger;
+        r->row_room = room;
+    }
+    struct verify_row *row = &r->row[r->nrow++];
+    text_copy(row->algorithm, sizeof row->algorithm, algorithm);
+    text_copy(row->quantity, sizeof row->quantity, quantity);
+    return row;
+}
+
+void verify_row_skip(struct verify_case *v, const char *algorithm, const char *quantity, const char *why)
+{
+    struct verify_row *row = verify_row_add(v, algorithm, quantity);
+    row->verdict = VERIFY_NOT_APPLICABLE;
+    text_copy(row->note, sizeof row->note, why);
+}
+
+/* What was asked for, but not better than ten roundings of the inputs nor than the best library. */
+static double attainable(double asked, double floor, double peer)
+{
+    if (isfinite(floor)) asked = fmax(asked, 10 * floor);
+    return isfinite(peer) ? fmax(asked, peer) : asked;
+}
+
+double verify_tolerance_inverse(const struct verify_case *v)
+{
+    double asked = v->options->tolerance_inverse > 0 ? v->options->tolerance_inverse : 1e-12;
+    return attainable(asked, v->vector->floor_id, v->vector->peer_id.error);
+}
+
+double verify_tolerance_forward(const struct verify_case *v)
+{
+    double asked = v->options->tolerance_forward > 0 ? v->options->tolerance_forward : 1e-10;
+    return attainable(asked, v->vector->floor_fd, v->vector->peer_fd.error);
+}
+
+static double largest(const double *x, int n)
+{
+    double m = 0;
+    for (int i = 0; i < n; i++) m = fmax(m, fabs(x[i]));
+    return m;
+}
+
+double verify_backward_error(struct verify_case *v, const double *qdd)
+{
+    const struct dynamics_type *quad = dynamics_type_of(PRECISION_QUAD);
+    const struct model *m = v->model;
+    int n = m->nu;
+    struct work w = {0};
+    struct state s = *v->state;
+    double *tau = TAKE(v->arena, n + 1, double), *bias = TAKE(v->arena, n + 1, double);
+    double *zero = TAKE(v->arena, n + 1, double), *change = TAKE(v->arena, n + 1, double);
+    s.qdd = TAKE(v->arena, n + 1, double);
+    memcpy(s.qdd, qdd, (size_t)n * sizeof *qdd);
+    quad->inverse(m, &s, v->arena, tau, &w);
+    s.qdd = zero;
+    quad->inverse(m, &s, v->arena, bias, &w);
+    for (int i = 0; i < n; i++) change[i] = tau[i] - v->state->tau[i];
+    double scale = fmax(largest(v->state->tau, n), largest(bias, n)), error = largest(change, n);
+    return scale > 0 ? error / scale : error;
+}
+
+bool verify_unfit_body(const struct model *m, char *why, int size)
+{
+    if (m->has_phi) return false;
+    for (int i = 0; i < m->nbody; i++) {
+        const struct body_def *b = &m->body[i];
+        double trace = b->inertia[0] + b->inertia[3] + b->inertia[5];
+        if (b->mass > 0 && trace > 0) continue;
+        snprintf(why, (size_t)size, "%s body %d ('%s')", b->mass > 0 ? "point mass in" : "massless", i, b->name);
+        return true;
+    }
+    snprintf(why, (size_t)size, "a body's inertia has no inverse");
+    return true;
+}
+
+/* --- the verdict ----------------------------------------------------------------------------------------------- */
+
+/* Does some row of this row's quantity pass? Only asked of quantities that have an applicable row. */
+static bool quantity_passes(const struct verify_report *r, const char *quantity)
+{
+    for (int i = 0; i < r->nrow; i++)
+        if (r->row[i].verdict == VERIFY_PASS && strcmp(r->row[i].quantity, quantity) == 0) return true;
+    return false;
+}
+
+static void conclude(struct verify_report *r)
+{
+    r->passed = true;
+    for (int i = 0; i < r->nrow && r->passed; i++) {
+        const struct verify_row *row = &r->row[i];
+        if (row->verdict == VERIFY_FAIL) {
+            r->passed = false;
+            snprintf(r->text, sizeof r->text, "%s: %s is wrong by %.1e", row->algorithm, row->quantity, row->error);
+        } else if (row->verdict == VERIFY_ROUNDING && !quantity_passes(r, row->quantity)) {
+            r->passed = false;
+            snprintf(r->text, sizeof r->text, "no algorithm gives %s within the tolerance", row->quantity);
+        }
+    }
+    if (r->nrow == 0) {
+        r->passed = false;
+        snprintf(r->text, sizeof r->text, "nothing to compare");
+    }
+}
+
+static void report_begin(struct verify_report *r, const struct vector_case *c, struct arena *a)
+{
+    *r = (struct verify_report){.path = arena_text(a, c->path), .name = arena_text(a, c->name),
+                                .group = arena_text(a, c->group), .nbody = c->nbody, .nu = c->nv, .nrow_loop = c->nrow,
+                                .floor_id = c->floor_id, .floor_fd = c->floor_fd, .peer_id = c->peer_id.error,
+                                .peer_fd = c->peer_fd.error, .arena = a};
+    r->peer_id_name = arena_text(a, c->peer_id.name ? c->peer_id.name : "");
+    r->peer_fd_name = arena_text(a, c->peer_fd.name ? c->peer_fd.name : "");
+}
+
+/* Constraint forces need every body's inertia: bodies on fixed joints are lumped when that helps. */
+static bool lump(struct verify_case *v, struct err *e)
+{
+    v->lumped = v->model;
+    v->lumped_state = v->state;
+    if (v->model->has_phi) return true;
+    struct lumped lumped;
+    if (!lump_fixed(v->model, true, v->arena, &lumped, e)) return false;
+    if (!lumped.model || lumped.model->nbody == v->model->nbody) return true;
+    v->lumped = lumped.model;
+    v->lumped_state = lump_state(&lumped, v->model, v->state, v->arena);
+    return true;
+}
+
+bool verify_file(const char *path, const struct verify_options *o, struct arena *a, struct verify_report *r,
+                 struct err *e)
+{
+    double begin = host_seconds();
+    struct arena *own = arena_create();
+    struct vector_case c;
+    struct verify_case v = {.vector = &c, .options = o, .report = r, .arena = own};
+    bool good = vector_read(path, &c, own, e) && (v.model = vector_model(&c, own, e)) != NULL;
+    if (good) {
+        v.state = vector_state(&c, v.model, own);
+        report_begin(r, &c, a);
+        good = lump(&v, e);
+    }
+    if (good && c.ninstant > 0) {
+        good = verify_trajectory(&v, e);
+    } else if (good) {
+        verify_serial(&v);
+        good = !o->machine || verify_parallel(&v, e);
+    }
+    if (good) conclude(r);
+    arena_destroy(own);
+    r->host_s = host_seconds() - begin;
+    return good;
+}

@@ -1,0 +1,82 @@
+/* verify.h - every algorithm held against reference vectors computed by others.
+ *
+ * A row is one algorithm and one quantity of one case. It passes when its error, max |x - ref| / max |ref|, is within
+ * the tolerance; what no double-precision code attains is not asked for: the tolerance is never below ten times the
+ * change of the exact answer when the inputs are rounded, nor below the best of the libraries that the file quotes.
+ * A larger error is either explained by rounding - the same algorithm is right in quad precision, or its answer is the
+ * exact answer to torques changed by rounding - or it is a failure. A case passes when no row fails and every quantity
+ * has a row that passes. */
+#ifndef RUN_VERIFY_H
+#define RUN_VERIFY_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "spec/kernel_spec.h"
+#include "spec/machine_spec.h"
+
+struct verify_options {
+    double tolerance_inverse;  /* everything but accelerations and loop forces; 0: 1e-12 */
+    double tolerance_forward;  /* accelerations and loop forces; 0: 1e-10 */
+    enum precision precision;  /* of the algorithms under test */
+    const struct machine_spec *machine; /* for the parallel kernels; NULL: serial algorithms only */
+    bool all_ranks;            /* large cases too on P = 1, 2, 3, n/2, n; otherwise on 3 and n */
+};
+
+enum verify_verdict {
+    VERIFY_PASS,           /* within the tolerance */
+    VERIFY_ROUNDING,       /* above it, by rounding alone */
+    VERIFY_FAIL,           /* above it, or no number */
+    VERIFY_NOT_APPLICABLE  /* the note says why */
+};
+
+struct verify_row {
+    char algorithm[48];    /* "rnea", "aba", "forward direct pcr-symmetric" */
+    char quantity[16];     /* the field of the reference: "tau_id", "qdd_fd", ... */
+    bool parallel;
+    char ranks[32];        /* parallel: the numbers of ranks tried, "1,2,3,8,16" */
+    int worst_rank;        /* parallel: with how many the error was largest */
+    double error;          /* INFINITY: an answer that is no number */
+    double tolerance;
+    enum verify_verdict verdict;
+    char note[128];
+};
+
+struct verify_report {
+    const char *path, *name, *group;
+    int nbody, nu, nrow_loop;
+    double floor_id, floor_fd; /* change of the answers when inputs are rounded, NAN: unknown */
+    double peer_id, peer_fd;   /* error of the best library, NAN: unknown */
+    const char *peer_id_name, *peer_fd_name;
+    int nrow, row_room;
+    struct verify_row *row;    /* in the arena */
+    bool passed;
+    char text[160];            /* why it did not pass */
+    double host_s;             /* wall time, for progress only */
+    struct arena *arena;       /* borrowed */
+};
+
+/* verify_file: all applicable algorithms on one reference vector or trajectory.
+ *
+ *   a    in   memory of the report
+ *   r    out  filled when true is returned, r->passed or not
+ *
+ *   Returns false when the file cannot be used: ERR_NO_INPUT, ERR_IO, ERR_DATA (file and line). */
+bool verify_file(const char *path, const struct verify_options *o, struct arena *a, struct verify_report *r,
+                 struct err *e);
+
+/* verify_print: one case as a table. `brief` prints the heading and only rows that do not pass. */
+void verify_print(FILE *out, const struct verify_report *r, bool brief);
+
+/* verify_print_summary: the counts over n reports, by verdict. */
+void verify_print_summary(FILE *out, const struct verify_report *r, int n);
+
+/* verify_print_json: n reports as one document, keys sorted, numbers that are not finite as null. */
+void verify_print_json(FILE *out, const struct verify_report *r, int n);
+
+/* verify_verdict_word: "pass", "rounding", "fail", "not applicable". */
+const char *verify_verdict_word(enum verify_verdict v);
+
+#endif

@@ -1,0 +1,228 @@
+/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several numbers of ranks. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "kernel/kernel.h"
+#include "run/verify_rows.h"
+#include "vp/world.h"
+
+/* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
+struct variant {
+    const char *name;
+    struct kernel_spec kernel;
+};
+
+static const struct variant variant_table[] = {
+    {"parallel inverse incoming", {.name = "inverse", .composites_incoming = true}},
+    {"parallel inverse outgoing", {.name = "inverse"}},
+    {"parallel inverse dense operators", {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
+    {"parallel inverse balanced", {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
+#define FORWARD(text, ...) {"parallel forward " text, {.name = "forward", .composites_incoming = true, __VA_ARGS__}}
+#define BOTH(text, ...)                                                                                                \
+    FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                                             \
+    FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                                           \
+    FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, .outer_refinements = 1, __VA_ARGS__)
+    BOTH("thomas", .solver = SOLVER_THOMAS),
+    BOTH("cr", .solver = SOLVER_CR),
+    BOTH("pcr", .solver = SOLVER_PCR),
+    BOTH("pcr-symmetric", .solver = SOLVER_PCR_SYMMETRIC),
+    BOTH("cr-pcr", .solver = SOLVER_CR_PCR, .hybrid_levels = 1),
+    BOTH("partition+pcr", .solver = SOLVER_PARTITION, .part_solver = PART_PCR),
+    BOTH("partition+cr", .solver = SOLVER_PARTITION, .part_solver = PART_CR),
+    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR_SYMMETRIC, .operators = OPERATORS_DENSE),
+    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR, .partition = PARTITION_BALANCED),
+};
+enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
+
+struct launch {
+    const struct kernel_type *kernel;
+    const struct kernel_job *job;
+    char **workspace; /* (nrank) */
+};
+
+static void program(struct comm *c, void *context)
+{
+    struct launch *l = context;
+    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
+}
+
+/* P = 1, 2, 3, n/2, n without repetition; of large cases 3 and n. */
+static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANKS])
+{
+    enum { LARGE = 200 };
+    const int all[MAX_RANKS] = {1, 2, 3, n / 2, n}, few[2] = {3, n};
+    bool large = n > LARGE && !o->all_ranks;
+    int count = 0;
+    for (int i = 0; i < (large ? 2 : MAX_RANKS); i++) {
+        int p = large ? few[i] : all[i];
+        if (p >= 1 && p <= n && (count == 0 || p > rank[count - 1])) rank[count++] = p;
+    }
+    return count;
+}
+
+/* What one run gave. */
+struct outcome {
+    enum { ANSWERED, REFUSED, BROKEN } kind;
+    double *x, *lambda;  /* tau or qdd, loop forces */
+    int loop_rank;
+    char text[96];       /* refused, broken: why */
+};
+
+static bool job_make(struct verify_case *v, const struct kernel_type *kernel, const struct run_spec *spec, bool lumped,
+                     struct kernel_job *job, struct err *e)
+{
+    const struct model *m = lumped ? v->lumped : v->model;
+    *job = (struct kernel_job){.spec = spec, .model = m, .state = lumped ? v->lumped_state : v->state,
+                               .nrank = spec->nrank, .residual = TAKE(v->arena, spec->nrank, double),
+                               .loop_rank = TAKE(v->arena, 1, int)};
+    if (kernel->does_inverse) job->tau = TAKE(v->arena, m->nu + 1, double);
+    if (kernel->does_forward) job->qdd = TAKE(v->arena, m->nu + 1, double);
+    if (m->nrow > 0) job->lambda = TAKE(v->arena, m->nrow, double);
+    return kernel->accepts(spec, m, e) && kernel->prepare(job, v->arena, e);
+}
+
+/* Run a kernel on nrank virtual processors. */
+static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_spec, int nrank, struct outcome *out,
+                       struct err *e)
+{
+    const struct kernel_type *kernel = kernel_find_precision(kernel_spec->name, kernel_spec->precision);
+    struct run_spec *spec = TAKE(v->arena, 1, struct run_spec);
+    struct run_result *result = TAKE(v->arena, 1, struct run_result);
+    struct kernel_job job;
+    struct err refused;
+    err_clear(&refused);
+    *out = (struct outcome){.kind = REFUSED};
+    *spec = (struct run_spec){.machine = *v->options->machine, .kernel = *kernel_spec, .nrank = nrank};
+    if (!kernel) err_set(&refused, ERR_CONFIG, "there is no such kernel");
+    if (!kernel || !job_make(v, kernel, spec, kernel->does_forward, &job, &refused)) {
+        text_copy(out->text, sizeof out->text, refused.text);
+        return true;
+    }
+    struct launch l = {kernel, &job, TAKE(v->arena, nrank, char *)};
+    for (int i = 0; i < nrank; i++) l.workspace[i] = arena_take(v->arena, kernel->workspace_bytes(&job, i) + 64);
+    if (!world_run(&spec->machine, nrank, &spec->record, 0, kernel->nstage, kernel->stage_name, program, &l, v->arena,
+                   result, e))
+        return false;
+    *out = (struct outcome){result->status == RUN_OK ? ANSWERED : BROKEN, kernel->does_forward ? job.qdd : job.tau,
+                            job.lambda, *job.loop_rank, ""};
+    text_copy(out->text, sizeof out->text, result->text);
+    return true;
+}
+
+/* The errors of a variant over all numbers of ranks. */
+struct spread {
+    double error, lambda_error;
+    int worst, rank_deficiency;
+    bool answered;
+    char ranks[32], text[128];
+};
+
+static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x, int nrank, bool inverse)
+{
+    const struct vector_case *c = v->vector;
+    bool good = x->kind == ANSWERED;
+    double error = good ? verify_error(x->x, inverse ? c->tau_id : c->qdd_fd, c->nv) : INFINITY;
+    size_t used = strlen(s->ranks);
+    snprintf(s->ranks + used, sizeof s->ranks - used, "%s%d", used ? "," : "", nrank);
+    if (!good) text_copy(s->text, sizeof s->text, x->text);
+    if (!s->answered || error > s->error) {
+        s->error = error;
+        s->worst = nrank;
+    }
+    s->answered = true;
+    if (!inverse && c->lambda && good) {
+        s->lambda_error = fmax(s->lambda_error, verify_error(x->lambda, c->lambda, c->nrow));
+        if (x->loop_rank > 0 && x->loop_rank < c->nrow) s->rank_deficiency = c->nrow - x->loop_rank;
+    }
+}
+
+static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s, struct err *e)
+{
+    bool inverse = strcmp(kernel->name, "inverse") == 0;
+    int rank[MAX_RANKS], n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
+    *s = (struct spread){0};
+    for (int i = 0; i < n; i++) {
+        struct outcome x;
+        struct arena_mark mark = arena_mark(v->arena);
+        if (!kernel_run(v, kernel, rank[i], &x, e)) return false;
+        if (x.kind == REFUSED)
+            text_copy(s->text, sizeof s->text, x.text);
+        else
+            spread_add(s, v, &x, rank[i], inverse);
+        arena_release(v->arena, mark);
+    }
+    return true;
+}
+
+/* Above the tolerance: by rounding, if quad precision is right with the same ranks, or, where that takes long, if the
+ * answer is exact for slightly different torques. */
+static bool explain(struct verify_case *v, const struct kernel_spec *kernel, struct verify_row *row, struct err *e)
+{
+    enum { QUAD_LIMIT = 150 };
+    const struct vector_case *c = v->vector;
+    struct kernel_spec again = *kernel;
+    struct arena_mark mark = arena_mark(v->arena);
+    struct outcome x;
+    bool quad = c->nv <= QUAD_LIMIT;
+    if (quad) again.precision = PRECISION_QUAD;
+    if (!kernel_run(v, &again, row->worst_rank, &x, e)) return false;
+    double error = INFINITY;
+    if (x.kind == ANSWERED) error = quad ? verify_error(x.x, c->qdd_fd, c->nv) : verify_backward_error(v, x.x);
+    if (error <= (quad ? 1e-13 : 1e-9)) row->verdict = VERIFY_ROUNDING;
+    char before[64];
+    text_copy(before, sizeof before, row->note);
+    snprintf(row->note, sizeof row->note, "P=%d%s%s; %s %.1e", row->worst_rank, before[0] ? ": " : "", before,
+             quad ? "in quad precision" : "backward error", error);
+    arena_release(v->arena, mark);
+    return true;
+}
+
+static bool variant_row(struct verify_case *v, const struct variant *variant, struct err *e)
+{
+    struct kernel_spec kernel = variant->kernel;
+    bool inverse = strcmp(kernel.name, "inverse") == 0;
+    const char *quantity = inverse ? "tau_id" : "qdd_fd";
+    struct spread s;
+    kernel.precision = v->options->precision;
+    if (!variant_run(v, &kernel, &s, e)) return false;
+    if (!s.answered) {
+        verify_row_skip(v, variant->name, quantity, s.text);
+        v->report->row[v->report->nrow - 1].parallel = true;
+        return true;
+    }
+    struct verify_row *row = verify_row_add(v, variant->name, quantity);
+    row->parallel = true;
+    row->error = s.error;
+    row->worst_rank = s.worst;
+    row->tolerance = inverse ? verify_tolerance_inverse(v) : verify_tolerance_forward(v);
+    row->verdict = s.error <= row->tolerance ? VERIFY_PASS : VERIFY_FAIL;
+    text_copy(row->ranks, sizeof row->ranks, s.ranks);
+    text_copy(row->note, sizeof row->note, s.text);
+    if (row->verdict == VERIFY_FAIL && !inverse && !explain(v, &kernel, row, e)) return false;
+    if (inverse || !v->vector->lambda || s.rank_deficiency > 0) return true;
+    row = verify_row_add(v, variant->name, "lambda");
+    row->parallel = true;
+    row->error = s.lambda_error;
+    row->tolerance = verify_tolerance_forward(v);
+    row->verdict = s.lambda_error <= row->tolerance ? VERIFY_PASS : VERIFY_FAIL;
+    text_copy(row->ranks, sizeof row->ranks, s.ranks);
+    return true;
+}
+
+bool verify_parallel(struct verify_case *v, struct err *e)
+{
+    char unfit[96];
+    bool has_unfit = verify_unfit_body(v->lumped, unfit, sizeof unfit);
+    for (int i = 0; i < VARIANTS; i++) {
+        const struct variant *variant = &variant_table[i];
+        bool inverse = strcmp(variant->kernel.name, "inverse") == 0;
+        if (!(inverse ? v->vector->tau_id : v->vector->qdd_fd)) continue;
+        if (!inverse && has_unfit)
+            verify_row_skip(v, variant->name, "qdd_fd", unfit);
+        else if (!variant_row(v, variant, e))
+            return false;
+    }
+    return true;
+}

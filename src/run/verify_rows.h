@@ -1,0 +1,46 @@
+/* verify_rows.h - what the parts of verify share: the case under test and how a row is judged. */
+#ifndef RUN_VERIFY_ROWS_H
+#define RUN_VERIFY_ROWS_H
+
+#include "mech/dynamics_table.h"
+#include "mech/model.h"
+#include "mech/vector.h"
+#include "run/verify.h"
+
+struct verify_case {
+    const struct vector_case *vector;
+    const struct verify_options *options;
+    const struct model *model;    /* a body for each of the file's */
+    const struct state *state;
+    const struct model *lumped;   /* bodies on fixed joints made one with their parents; the same model without any */
+    const struct state *lumped_state;
+    struct verify_report *report;
+    struct arena *arena;          /* of the case, given back at its end */
+};
+
+/* verify_error: max |x - ref| / max |ref|, absolute where ref is zero; INFINITY if an x is no number. */
+double verify_error(const double *x, const double *ref, int n);
+
+/* verify_row_add: a new row with its algorithm and quantity, everything else zero. */
+struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm, const char *quantity);
+
+/* verify_row_skip: a new row that says why the algorithm does not apply. */
+void verify_row_skip(struct verify_case *v, const char *algorithm, const char *quantity, const char *why);
+
+/* verify_tolerance_inverse, verify_tolerance_forward: what is asked for in this case. */
+double verify_tolerance_inverse(const struct verify_case *v);
+double verify_tolerance_forward(const struct verify_case *v);
+
+/* verify_backward_error: how much the torques would have to change for `qdd` to be exact, relative to the largest
+ * torque in the problem, computed in quad precision. Closed chains: with the loop forces `lambda`. */
+double verify_backward_error(struct verify_case *v, const double *qdd);
+
+/* verify_unfit_body: why constraint forces do not apply to m, as text in `why`; false when they do. */
+bool verify_unfit_body(const struct model *m, char *why, int size);
+
+/* The parts: rows of the serial algorithms, of the parallel kernels, of a trajectory. */
+void verify_serial(struct verify_case *v);
+bool verify_parallel(struct verify_case *v, struct err *e);
+bool verify_trajectory(struct verify_case *v, struct err *e);
+
+#endif

@@ -1,0 +1,199 @@
+/* verify_serial.c - rows of the serial algorithms: inverse dynamics, kinematics, mass matrix, every way forward. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "mech/dynamics.h"
+#include "run/verify_rows.h"
+
+static const struct dynamics_type *type_of(const struct verify_case *v) { return dynamics_type_of(v->options->precision); }
+
+/* Judge a row whose answer is rounded once more than the reference: no explanation but the tolerance. */
+static void judge(struct verify_row *row, double error, double tolerance)
+{
+    row->error = error;
+    row->tolerance = tolerance;
+    row->verdict = error <= tolerance ? VERIFY_PASS : VERIFY_FAIL;
+}
+
+static void row_plain(struct verify_case *v, const char *algorithm, const char *quantity, double error)
+{
+    judge(verify_row_add(v, algorithm, quantity), error, verify_tolerance_inverse(v));
+}
+
+/* --- inverse dynamics ------------------------------------------------------------------------------------------ */
+
+/* tau for the case's state with some of it set to zero. */
+static void rnea_row(struct verify_case *v, const char *quantity, const struct state *s, const double *ref)
+{
+    if (!ref) return;
+    double *tau = TAKE(v->arena, v->model->nu + 1, double);
+    struct work w = {0};
+    type_of(v)->inverse(v->model, s, v->arena, tau, &w);
+    row_plain(v, "rnea", quantity, verify_error(tau, ref, v->model->nu));
+}
+
+static void inverse_rows(struct verify_case *v)
+{
+    const struct vector_case *c = v->vector;
+    struct state bias = *v->state, rest = *v->state;
+    bias.qdd = rest.qdd = rest.qd = TAKE(v->arena, v->model->nu + 1, double);
+    rest.fext = NULL;
+    rnea_row(v, "tau_id", v->state, c->tau_id);
+    rnea_row(v, "bias", &bias, c->bias);
+    rnea_row(v, "gravity_torque", &rest, c->gravity_torque);
+}
+
+/* --- kinematics, joint wrenches, totals ------------------------------------------------------------------------ */
+
+static double pose_error(const struct body_motion *x, const struct vector_pose *ref)
+{
+    double e = verify_error(x->r, ref->R, 9);
+    e = fmax(e, verify_error(x->p, ref->p, 3));
+    e = fmax(e, verify_error(x->v, ref->v, 3));
+    e = fmax(e, verify_error(x->w, ref->w, 3));
+    e = fmax(e, verify_error(x->a, ref->a, 3));
+    return fmax(e, verify_error(x->alpha, ref->alpha, 3));
+}
+
+static void kinematics_row(struct verify_case *v, struct dynamics *d)
+{
+    const struct vector_case *c = v->vector;
+    if (c->npose == 0) return;
+    struct body_motion *motion = TAKE(v->arena, v->model->nbody, struct body_motion);
+    forward_kinematics(d, v->state->q, v->state->qd, v->state->qdd, motion);
+    double error = 0;
+    for (int i = 0; i < c->npose; i++) error = fmax(error, pose_error(&motion[c->pose[i].body], &c->pose[i]));
+    row_plain(v, "kinematics", "fk", error);
+}
+
+/* The joint forces that RNEA leaves behind, from internal [moment; force] to the user's [force; moment]. */
+static void wrench_row(struct verify_case *v, struct dynamics *d)
+{
+    const struct vector_case *c = v->vector;
+    if (!c->joint_wrench) return;
+    int n = v->model->nbody;
+    double *tau = TAKE(v->arena, v->model->nu + 1, double), *wrench = TAKE(v->arena, 6 * n, double);
+    struct work w = {0};
+    dynamics_load(d, v->state);
+    rnea(d, v->state->q, v->state->qd, v->state->qdd, tau, &w);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 3; l++) {
+                double turn = d->body[i].user[3 * k + l];
+                wrench[6 * i + k] += turn * d->f[6 * i + 3 + l];
+                wrench[6 * i + 3 + k] += turn * d->f[6 * i + l];
+            }
+    row_plain(v, "rnea", "joint_wrench_id", verify_error(wrench, c->joint_wrench, 6 * n));
+}
+
+static void totals_rows(struct verify_case *v)
+{
+    const struct vector_case *c = v->vector;
+    struct dynamics_totals t;
+    type_of(v)->totals(v->model, v->state, v->arena, &t);
+    if (c->has_energy) {
+        const double x[2] = {t.kinetic, t.potential}, ref[2] = {c->kinetic, c->potential};
+        row_plain(v, "totals", "energy", verify_error(x, ref, 2));
+    }
+    if (c->has_momentum)
+        row_plain(v, "totals", "momentum",
+                  fmax(verify_error(t.linear, c->linear, 3), verify_error(t.angular, c->angular, 3)));
+    if (c->has_com)
+        row_plain(v, "totals", "com_world",
+                  fmax(verify_error(t.com, c->com_world, 3), verify_error(&t.mass, &c->total_mass, 1)));
+}
+
+static void mass_row(struct verify_case *v)
+{
+    if (!v->vector->mass_matrix) return;
+    int n = v->model->nu;
+    double *mass = TAKE(v->arena, n * n, double);
+    struct work w = {0};
+    type_of(v)->mass_matrix(v->model, v->state, v->arena, mass, &w);
+    row_plain(v, "crba", "M", verify_error(mass, v->vector->mass_matrix, n * n));
+}
+
+/* --- forward dynamics ------------------------------------------------------------------------------------------ */
+
+struct answer {
+    double *qdd, *lambda;
+    struct forward_report report;
+    bool good;
+};
+
+static struct answer forward(struct verify_case *v, const struct dynamics_type *type, enum forward_method method)
+{
+    bool cfa = method >= FORWARD_CFA_PAPER;
+    const struct model *m = cfa ? v->lumped : v->model;
+    const struct state *s = cfa ? v->lumped_state : v->state;
+    struct answer x = {.qdd = TAKE(v->arena, m->nu + 1, double), .lambda = TAKE(v->arena, m->nrow + 1, double)};
+    struct work w = {0};
+    x.good = type->forward(m, s, method, v->arena, x.qdd, x.lambda, &x.report, &w);
+    return x;
+}
+
+/* A large error is by rounding when the same algorithm is right in quad precision, or, where that would take long, when
+ * the answer is exact for torques changed by rounding. */
+static void explain(struct verify_case *v, enum forward_method method, const struct answer *x, struct verify_row *row)
+{
+    enum { QUAD_LIMIT = 150 };
+    const struct vector_case *c = v->vector;
+    if (x->good && c->nv > QUAD_LIMIT && c->nrow == 0) {
+        double backward = verify_backward_error(v, x->qdd);
+        if (backward <= 1e-9) row->verdict = VERIFY_ROUNDING;
+        snprintf(row->note, sizeof row->note, "backward error %.1e", backward);
+        return;
+    }
+    struct answer quad = forward(v, dynamics_type_of(PRECISION_QUAD), method);
+    double error = quad.good ? verify_error(quad.qdd, c->qdd_fd, c->nv) : INFINITY;
+    if (error <= 1e-13) row->verdict = VERIFY_ROUNDING;
+    snprintf(row->note, sizeof row->note, "%sin quad precision %.1e", x->good ? "" : "breaks down; ", error);
+}
+
+static void lambda_row(struct verify_case *v, const char *name, const struct answer *x)
+{
+    const struct vector_case *c = v->vector;
+    if (!c->lambda) return;
+    if (x->report.rank < x->report.nrow) {
+        char why[96];
+        snprintf(why, sizeof why, "redundant loops (rank %d of %d): lambda is not unique", x->report.rank, x->report.nrow);
+        verify_row_skip(v, name, "lambda", why);
+        return;
+    }
+    judge(verify_row_add(v, name, "lambda"), verify_error(x->lambda, c->lambda, c->nrow), verify_tolerance_forward(v));
+}
+
+static void forward_rows(struct verify_case *v)
+{
+    const struct vector_case *c = v->vector;
+    char unfit[96];
+    bool has_unfit = verify_unfit_body(v->lumped, unfit, sizeof unfit);
+    for (int k = 0; c->qdd_fd && k < FORWARD_METHODS; k++) {
+        enum forward_method method = (enum forward_method)k;
+        const char *name = forward_method_name(method);
+        if (method >= FORWARD_CFA_PAPER && has_unfit) {
+            verify_row_skip(v, name, "qdd_fd", unfit);
+            continue;
+        }
+        struct answer x = forward(v, type_of(v), method);
+        struct verify_row *row = verify_row_add(v, name, "qdd_fd");
+        judge(row, x.good ? verify_error(x.qdd, c->qdd_fd, c->nv) : INFINITY, verify_tolerance_forward(v));
+        if (row->verdict == VERIFY_FAIL) explain(v, method, &x, row);
+        if (x.good && c->nrow > 0) lambda_row(v, name, &x);
+    }
+}
+
+void verify_serial(struct verify_case *v)
+{
+    inverse_rows(v);
+    if (v->options->precision == PRECISION_DOUBLE) {
+        struct dynamics *d = dynamics_take(v->model, v->arena);
+        wrench_row(v, d);
+        kinematics_row(v, d);
+    }
+    totals_rows(v);
+    mass_row(v);
+    forward_rows(v);
+}
