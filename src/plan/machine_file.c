@@ -36,11 +36,9 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
         static const char *const known[] = {"value", "min", "max", "class", "source"};
         bool is_known = false;
         for (int i = 0; i < 5; i++) is_known = is_known || strcmp(n->key, known[i]) == 0;
-        const char *near = text_nearest(n->key, known, 5);
         if (!is_known)
             return err_set_at(e, ERR_DATA, v->file, n->line,
-                              "%s: unknown key '%.80s'; expected value, min, max, class or source%s%s", key, n->key,
-                              near != NULL ? "; did you mean " : "", near != NULL ? near : "");
+                              "%s: unknown key '%.80s'; expected value, min, max, class or source", key, n->key);
         if (strcmp(n->key, "value") == 0) continue;
         if (n->kind != YAML_SCALAR)
             return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' has to be one value", key, n->key);

@@ -3,13 +3,11 @@
  * A list where a single value belongs is an axis of the sweep; the first axis in the file changes slowest. */
 #include "plan/scenario_file.h"
 
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "plan/data_dir.h"
-
-enum { MAX_REPETITIONS = 100000 };
 
 static bool is_list_field(const char *key)
 {
@@ -103,39 +101,37 @@ struct top {
 
 static bool refuse(struct top *t, const struct yaml_node *n, const char *expected)
 {
-    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "%s: '%.80s'; expected %s", n->key,
+    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "%s: '%.80s': %s", n->key,
                       n->text != NULL ? n->text : "a list or mapping", expected);
 }
 
 static bool read_version(struct top *t, const struct yaml_node *n)
 {
-    return (n->text != NULL && strcmp(n->text, "1") == 0) || refuse(t, n, "version 1");
+    return (n->text != NULL && strcmp(n->text, "1") == 0) || refuse(t, n, "this program reads version 1");
 }
 
 static bool read_question(struct top *t, const struct yaml_node *n)
 {
-    if (n->text == NULL) return refuse(t, n, "one line of text");
+    if (n->text == NULL) return refuse(t, n, "expected one line of text");
     t->scenario->question = n->text;
     return true;
 }
 
 static bool read_repetitions(struct top *t, const struct yaml_node *n)
 {
-    char *end = NULL;
-    long v = n->text != NULL ? strtol(n->text, &end, 10) : 0;
-    if (v < 1 || v > MAX_REPETITIONS || *end != '\0') return refuse(t, n, "a whole number from 1 to 100000");
-    t->scenario->repetitions = (int)v;
-    t->scenario->repetitions_line = n->line;
-    return true;
+    static const struct field count = {.key = "repetitions", .kind = FIELD_INT, .min = 1, .max = 100000};
+    char why[256] = "expected a whole number";
+    if (n->text != NULL && field_set(&count, &t->scenario->repetitions, n->text, NULL, why, (int)sizeof why)) return true;
+    return refuse(t, n, why);
 }
 
 static bool read_figures(struct top *t, const struct yaml_node *n)
 {
     struct scenario *s = t->scenario;
-    if (n->kind != YAML_SEQUENCE) return refuse(t, n, "a list such as [fig5, fig6]");
+    if (n->kind != YAML_SEQUENCE) return refuse(t, n, "expected a list such as [fig5, fig6]");
     s->figure = TAKE(t->arena, n->nchild + 1, const char *);
     for (const struct yaml_node *f = n->child; f != NULL; f = f->next) {
-        if (f->text == NULL || f->text[0] == '\0') return refuse(t, n, "a list such as [fig5, fig6]");
+        if (f->text == NULL || f->text[0] == '\0') return refuse(t, n, "expected a list such as [fig5, fig6]");
         s->figure[s->nfigure++] = f->text;
     }
     return true;
@@ -145,7 +141,7 @@ static bool read_condition(struct top *t, const struct yaml_node *n, const char 
 {
     if (text != NULL && strcmp(text, "n >= ranks") == 0) return t->scenario->only_bodies_for_all = true;
     if (text != NULL && strcmp(text, "ranks <= processors") == 0) return t->scenario->only_fitting = true;
-    return refuse(t, n, "'n >= ranks' or 'ranks <= processors', or a list of both");
+    return refuse(t, n, "expected 'n >= ranks' or 'ranks <= processors', or a list of both");
 }
 
 static bool read_only(struct top *t, const struct yaml_node *n)
@@ -153,12 +149,12 @@ static bool read_only(struct top *t, const struct yaml_node *n)
     if (n->kind == YAML_SCALAR) return read_condition(t, n, n->text);
     for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
         if (!read_condition(t, n, c->text)) return false;
-    return n->kind == YAML_SEQUENCE || refuse(t, n, "a list of conditions");
+    return n->kind == YAML_SEQUENCE || refuse(t, n, "expected a list of conditions");
 }
 
 static bool read_sweep(struct top *t, const struct yaml_node *n)
 {
-    if (n->kind != YAML_MAPPING) return refuse(t, n, "axes such as {n: [2, 4, 8]}");
+    if (n->kind != YAML_MAPPING) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
     for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
         if (!add_axis(t->scenario, c->key, c, t->arena, t->err)) return false;
     return true;
@@ -263,6 +259,14 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     char *name = arena_text(a, set);
     name[equals - set] = '\0';
     const char *full = setting_key(name);
+    if (strcmp(name, "repetitions") == 0) {
+        struct scenario named = {.path = "--set", .repetitions = s->repetitions};
+        struct top t = {.scenario = &named, .arena = a, .err = e};
+        struct yaml_node n = {.key = name, .text = equals + 1};
+        bool fine = read_repetitions(&t, &n);
+        s->repetitions = named.repetitions;
+        return fine;
+    }
     if (!setting_is_key(full)) return setting_unknown("", name, "--set", 0, e);
     remove_axis(s, full);
     remove_setting(&s->set, full);

@@ -28,7 +28,7 @@ struct scenario {
     struct setting_list set;    /* --set, after everything else */
     int naxis;
     struct axis axis[SCENARIO_MAX_AXES];
-    int repetitions, repetitions_line;
+    int repetitions;
     bool only_bodies_for_all;   /* leave out points with n < P */
     bool only_fitting;          /* leave out points with P > processors */
     int nfigure;

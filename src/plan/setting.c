@@ -115,7 +115,7 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     struct text all = {0};
     for (int i = 0; i < n && group[0] != '\0'; i++) text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
     err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s%s", key, in,
-               all.s != NULL ? all.s : "; `mimdsim config` lists all keys");
+               all.s != NULL ? all.s : "; expected ranks, seed, record.*, machine.*, model.* or kernel.*");
     text_free(&all);
     return false;
 }
@@ -138,7 +138,8 @@ bool setting_walk(const struct yaml_node *mapping, const char *prefix, const cha
     for (const struct yaml_node *n = mapping->child; n != NULL; n = n->next) {
         int length = snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
         if (length >= (int)sizeof key) return setting_unknown(prefix, n->key, file, n->line, e);
-        const char *full = prefix[0] == '\0' && n->kind != YAML_MAPPING ? setting_key(key) : key;
+        bool may_be_short = prefix[0] == '\0' && (n->kind != YAML_MAPPING || !setting_is_group(key));
+        const char *full = may_be_short ? setting_key(key) : key;
         bool ok;
         if (setting_is_key(full))
             ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);

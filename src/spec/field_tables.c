@@ -35,9 +35,13 @@ const struct field *field_find_full(const char *key, const struct field_table **
 
 void fields_print(const struct field_table *t, const void *base, bool labels, struct text *out)
 {
+    size_t prefix = strlen(t->prefix);
     for (int i = 0; i < t->nfield; i++) {
         if (t->field[i].label && !labels) continue;
-        text_add(out, "%s%s%s = ", t->prefix, t->prefix[0] != '\0' ? "." : "", t->field[i].key);
+        text_add_bytes(out, t->prefix, prefix);
+        if (prefix > 0) text_add_bytes(out, ".", 1);
+        text_add_bytes(out, t->field[i].key, strlen(t->field[i].key));
+        text_add_bytes(out, " = ", 3);
         field_print(&t->field[i], base, out);
         text_add_bytes(out, "\n", 1);
     }

@@ -18,6 +18,18 @@ static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
+static const char *idle_with_own_nodes(const struct run_spec *r)
+{
+    enum topology_family f = r->machine.topology.family;
+    return f == TOPOLOGY_FAT_TREE || f == TOPOLOGY_DRAGONFLY ? "topology.dims says how many nodes a router has" : NULL;
+}
+
+static const char *idle_without_links(const struct run_spec *r)
+{
+    enum topology_family f = r->machine.topology.family;
+    return f == TOPOLOGY_CROSSBAR || f == TOPOLOGY_BUS ? "the topology has no links between routers" : NULL;
+}
+
 static const char *idle_unless_ring(const struct run_spec *r)
 {
     return r->machine.topology.family == TOPOLOGY_TORUS ? NULL : "only a torus has two equally long ways round";
@@ -116,10 +128,11 @@ static const struct field fields[] = {
             "dragonfly: [terminals per router, routers per group, global links per router, groups]; others: [routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH, AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
-     .doc = "link rate of each dimension (fat-tree: of each level from the nodes up; dragonfly: local, global), "
-            "0: network.link.bandwidth"},
+     .idle = idle_without_links,
+     .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; dragonfly: local, global; "
+            "hypercube: cube, Xpress), 0: network.link.bandwidth"},
     {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1, .max = 4096,
-     .fallback = "1", .doc = "nodes on each router"},
+     .fallback = "1", .idle = idle_with_own_nodes, .doc = "nodes on each router"},
     {.key = "topology.processors_per_node", .kind = FIELD_INT, AT(topology.processors_per_node), .min = 1,
      .max = 4096, .fallback = "1", .doc = "processors that share a node's port to the network"},
     {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
