@@ -10,6 +10,13 @@ static const struct net_type *const levels[] = {
     [LEVEL_LINK] = &net_link,
 };
 
+/* a bus is one resource, served first come first served: all levels mean the same, which is what `link` does */
+static const struct net_type *level_of(const struct machine_spec *m)
+{
+    enum network_level level = m->topology.family == TOPOLOGY_BUS ? LEVEL_LINK : m->network.level;
+    return (size_t)level < sizeof levels / sizeof *levels ? levels[level] : NULL;
+}
+
 static struct net_rate rate_make(const struct network_spec *w, double bandwidth, double least_s_per_byte)
 {
     double s_per_byte = bandwidth > 0 ? 1 / bandwidth : 0;
@@ -66,13 +73,9 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
 {
     const struct network_spec *w = &m->network;
     struct net *n = TAKE(a, 1, struct net);
-    CHECK((unsigned)w->level < LEVEL_AUTO + 1u);
-    if (w->level >= sizeof levels / sizeof *levels || !levels[w->level]) {
-        err_set(e, ERR_CONFIG, "this level is not there");
-        return NULL;
-    }
-    if (!sizes_fit(t, e)) return NULL;
-    *n = (struct net){.type = levels[w->level], .machine = m, .topology = t, .sim = s, .arena = a,
+    if (!level_of(m)) err_set(e, ERR_CONFIG, "network level %d is not there", (int)w->level);
+    if (!level_of(m) || !sizes_fit(t, e)) return NULL;
+    *n = (struct net){.type = level_of(m), .machine = m, .topology = t, .sim = s, .arena = a,
                       .deliver = deliver, .context = context};
     n->nnode = t->nnode;
     n->nlink = t->nlink;
