@@ -58,10 +58,11 @@ static const struct kind {
                              {"s/bit", DOWN, 0, 3, 0}, {"s/b", DOWN, 0, 3, 0}}, -12, 0},
     [UNIT_FREQUENCY] = {"a frequency", "300 MHz", "Hz", {{"Hz", UP, 0, 0, 0}}, 0, 12},
     [UNIT_FLOP_RATE] = {"a floating-point rate", "50 Mflop/s", "flop_per_s", {{"flop/s", UP, 0, 0, 0}}, 0, 15},
-    [UNIT_CYCLES] = {"a number of cycles", "31 cycles", "cycles", {{"cycles", 0, 0, 0, 0}, {"cycle", 0, 0, 0, 0}}, 0, 0},
+    [UNIT_CYCLES] = {"a number of cycles", "31 cycles", "cycles",
+                     {{"cycles", 0, 0, 0, 0}, {"cycle", 0, 0, 0, 0}}, 0, 0},
     [UNIT_LENGTH] = {"a length", "0.5 m", "m", {{"m", UP | DOWN, 0, 0, 0}, {"angstrom", 0, -10, 0, 0}}, -12, 3},
-    [UNIT_MASS] = {"a mass", "1.5 kg", "kg", {{"kg", 0, 0, 0, 0}, {"g", DOWN, -3, 0, 0}, {"amu", 0, -27, 0, 1.66053906660}},
-                   0, 0},
+    [UNIT_MASS] = {"a mass", "1.5 kg", "kg",
+                   {{"kg", 0, 0, 0, 0}, {"g", DOWN, -3, 0, 0}, {"amu", 0, -27, 0, 1.66053906660}}, 0, 0},
     [UNIT_ANGLE] = {"an angle", "30 deg", "rad", {{"rad", DOWN, 0, 0, 0}, {"deg", 0, 0, 0, DEGREE}}, -3, 0},
     [UNIT_ANGULAR_RATE] = {"an angular rate", "0.2 rad/s", "rad_per_s",
                            {{"rad/s", DOWN, 0, 0, 0}, {"deg/s", 0, 0, 0, DEGREE}}, -3, 0},
@@ -73,7 +74,8 @@ static const struct kind {
                       {{"N m s/rad", UP | DOWN, 0, 0, 0}, {"Nms/rad", UP | DOWN, 0, 0, 0}}, 0, 6},
     [UNIT_TORQUE] = {"a torque", "4 N m", "Nm", {{"N m", UP | DOWN, 0, 0, 0}, {"Nm", UP | DOWN, 0, 0, 0}}, 0, 6},
     [UNIT_FORCE] = {"a force", "10 N", "N", {{"N", UP | DOWN, 0, 0, 0}}, 0, 6},
-    [UNIT_ANGULAR_ACCELERATION] = {"an angular acceleration", "2 rad/s^2", "rad_per_s2", {{"rad/s^2", DOWN, 0, 0, 0}}, 0, 0},
+    [UNIT_ANGULAR_ACCELERATION] = {"an angular acceleration", "2 rad/s^2", "rad_per_s2",
+                                   {{"rad/s^2", DOWN, 0, 0, 0}}, 0, 0},
 };
 
 static const struct kind *kind_of(enum unit unit)
@@ -106,7 +108,8 @@ static bool prefix_fits(const struct prefix *p, const struct symbol *s)
 }
 
 /* unit_find: the prefix and symbol of kind k that together spell `name`. */
-static bool unit_find(const struct kind *k, const char *name, const struct prefix **prefix, const struct symbol **symbol)
+static bool unit_find(const struct kind *k, const char *name, const struct prefix **prefix,
+                      const struct symbol **symbol)
 {
     for (const struct symbol *s = k->symbol; s < k->symbol + NSYMBOL && s->name; s++) {
         for (const struct prefix *p = PREFIXES; p < PREFIXES + NPREFIX; p++) {
@@ -236,8 +239,8 @@ bool units_parse(const char *text, enum unit unit, double *value, char *why, int
     while (isspace((unsigned char)*text)) text++;
     size_t span = number_span(text, &mantissa);
     if (span == 0 || mantissa > NUMBER_MAX) {
-        snprintf(why, (size_t)size, "'%.40s' does not start with a finite decimal number; expected %s such as '%s'", text,
-                 k->name, k->example);
+        snprintf(why, (size_t)size, "'%.40s' does not start with a finite decimal number; expected %s such as '%s'",
+                 text, k->name, k->example);
         return false;
     }
     unit_spelling(text + span, name, sizeof name);

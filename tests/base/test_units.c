@@ -52,6 +52,7 @@ static void units_of_every_kind_are_read(void **state)
     reads("2 kg", UNIT_MASS, 2);
     reads("180 deg", UNIT_ANGLE, 3.14159265358979323846);
     reads("0.2 rad/s", UNIT_ANGULAR_RATE, 0.2);
+    reads("2 rad/s^2", UNIT_ANGULAR_ACCELERATION, 2);
     reads("9.81 m/s^2", UNIT_ACCELERATION, 9.81);
     reads("5 %", UNIT_PERCENT, 0.05);
     reads("2 kN m/rad", UNIT_STIFFNESS, 2000);
