@@ -1,0 +1,21 @@
+-- Figure 6: speedup of the complete parallel dynamics for n = P on the Cray T3E, one curve per serial baseline, and the
+-- degree of parallelism f that each point has by Amdahl's law, 1/S = (1 - f) + f/P; how much longer the run takes with
+-- contention (the finest level of the network that is stored) than without (loggp).
+-- needs: mimdsim run scenarios/speedup-t3e.yaml
+WITH point AS (
+    SELECT *, row_number() OVER (PARTITION BY baseline, n, level = 'loggp'
+                                 ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
+                                          level = 'link' DESC, precision = 'double' DESC, run_id DESC) AS choice
+    FROM v_speedup
+    WHERE machine LIKE 't3e%' AND kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
+          AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),
+finest AS (
+    SELECT * FROM point a WHERE choice = 1
+        AND (level <> 'loggp' OR NOT EXISTS (SELECT 1 FROM point WHERE n = a.n AND level <> 'loggp')))
+SELECT dense_rank() OVER (ORDER BY a.baseline_ordinal, a.baseline) AS series, replace(a.baseline, ',', ' –') AS baseline,
+       a.P, a.makespan_ps, a.baseline_ps, a.speedup, a.parallel_fraction,
+       100.0 * (a.makespan_ps - b.makespan_ps) / b.makespan_ps AS contention_percent,
+       a.machine, a.level, a.formulation, a.solver, a.operators, a.run_id
+FROM finest a LEFT JOIN point b ON b.choice = 1 AND b.level = 'loggp' AND a.level <> 'loggp' AND b.n = a.n
+     AND b.baseline = a.baseline AND b.formulation = a.formulation AND b.solver = a.solver AND b.operators = a.operators
+ORDER BY series, a.P;

@@ -1,0 +1,64 @@
+/* csv.c - tables as comma-separated values after RFC 4180. */
+#include "report/csv.h"
+
+#include <string.h>
+
+#include "base/text.h"
+
+struct writer {
+    FILE *out;
+    int64_t nrow;
+    void (*run_id)(void *context, int64_t id);
+    void *context;
+};
+
+void csv_cell(FILE *out, const char *s, bool last)
+{
+    if (s == NULL) s = "";
+    size_t n = strlen(s);
+    bool outer_blank = n > 0 && (s[0] == ' ' || s[n - 1] == ' ');
+    if (!outer_blank && strpbrk(s, "\",\r\n") == NULL) fputs(s, out);
+    else {
+        putc('"', out);
+        for (; *s; s++) {
+            if (*s == '"') putc('"', out);
+            putc(*s, out);
+        }
+        putc('"', out);
+    }
+    fputs(last ? "\r\n" : ",", out);
+}
+
+static bool header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    struct writer *w = context;
+    (void)value;
+    for (int i = 0; i < ncolumn; i++) csv_cell(w->out, name[i], i + 1 == ncolumn);
+    return true;
+}
+
+static bool row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    struct writer *w = context;
+    for (int i = 0; i < ncolumn; i++) {
+        char buffer[40] = "";
+        const char *s = buffer;
+        if (value[i].kind == STORE_INT) snprintf(buffer, sizeof buffer, "%lld", (long long)value[i].integer);
+        else if (value[i].kind == STORE_REAL) text_real(buffer, value[i].real);
+        else if (value[i].kind == STORE_TEXT) s = value[i].text;
+        csv_cell(w->out, s, i + 1 == ncolumn);
+        if (w->run_id != NULL && value[i].kind == STORE_INT && strcmp(name[i], "run_id") == 0)
+            w->run_id(w->context, value[i].integer);
+    }
+    w->nrow++;
+    return true;
+}
+
+bool csv_write(struct store *s, const char *sql, int nparam, const char *const *param, FILE *out,
+               void (*run_id)(void *context, int64_t id), void *context, int64_t *nrow, struct err *e)
+{
+    struct writer w = {out, 0, run_id, context};
+    bool ok = store_query(s, sql, nparam, param, header, row, &w, e);
+    *nrow = w.nrow;
+    return ok;
+}

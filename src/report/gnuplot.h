@@ -1,0 +1,14 @@
+/* gnuplot.h - running the one optional program that draws. */
+#ifndef REPORT_GNUPLOT_H
+#define REPORT_GNUPLOT_H
+
+#include <stdbool.h>
+
+#include "base/err.h"
+
+/* gnuplot_run: run script `file` in folder `dir` with gnuplot from $MIMDSIM_GNUPLOT or PATH, without start-up files.
+ *
+ *   Returns false with ERR_UNAVAILABLE when the program is missing or fails (its first complaint in the text). */
+bool gnuplot_run(const char *dir, const char *file, struct err *e);
+
+#endif

@@ -1,0 +1,295 @@
+/* report_figure.c - a figure is two files in plots/: what to ask the database, and how gnuplot draws it.
+ *
+ * NAME.sql holds one statement, or several of which each after the first follows a line "-- table: x"; the first
+ * gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command fills the database for it. The
+ * script that is run is made of the figure's name and provenance, style.gp and NAME.gp, and stays beside the images:
+ * gnuplot NAME.gp redraws them from the CSV without this program. */
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/arena.h"
+#include "base/check.h"
+#include "base/digest.h"
+#include "base/text.h"
+#include "report/csv.h"
+#include "report/gnuplot.h"
+#include "report/report.h"
+
+/* One figure in the making. */
+struct figure {
+    struct store *s;
+    const char *plots;      /* folder of the descriptions */
+    const char *name;
+    const char *dir;        /* folder of the results */
+    struct text run_ids;    /* JSON array of the runs shown, for its provenance */
+    int64_t nrow;           /* of the first table */
+};
+
+static char *joined(const char *a, const char *b, const char *c)
+{
+    struct text t = {0};
+    text_add(&t, "%s%s%s", a, b, c);
+    return t.s;
+}
+
+/* Stem of a file in plots/ that is a figure: it has both parts. NULL otherwise. */
+static char *figure_stem(const char *plots, const char *file)
+{
+    size_t n = strlen(file);
+    if (n < 5 || strcmp(file + n - 4, ".sql") != 0) return NULL;
+    struct text script = {0};
+    text_add(&script, "%s/%.*s.gp", plots, (int)(n - 4), file);
+    bool drawn = access(script.s, R_OK) == 0;
+    text_free(&script);
+    return drawn ? strndup(file, n - 4) : NULL;
+}
+
+int report_figures(const char *data_dir, char ***name)
+{
+    char *plots = joined(data_dir, "/plots", "");
+    struct dirent **entry = NULL;
+    int nentry = scandir(plots, &entry, NULL, alphasort), n = 0;
+    *name = calloc((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
+    CHECK(*name != NULL);
+    for (int i = 0; i < nentry; i++) {
+        char *stem = figure_stem(plots, entry[i]->d_name);
+        if (stem != NULL) (*name)[n++] = stem;
+        free(entry[i]);
+    }
+    free(entry);
+    free(plots);
+    return n;
+}
+
+static bool no_such_figure(const char *data_dir, const char *wanted, struct err *e)
+{
+    char **name;
+    int n = report_figures(data_dir, &name);
+    const char *nearest = text_nearest(wanted, (const char *const *)name, n);
+    struct text all = {0};
+    for (int i = 0; i < n; i++) text_add(&all, "%s%s", i ? ", " : "", name[i]);
+    if (nearest != NULL) err_set(e, ERR_NO_INPUT, "there is no figure '%s'; did you mean '%s'?", wanted, nearest);
+    else err_set(e, ERR_NO_INPUT, "there is no figure '%s'; there are: %s", wanted, n > 0 ? all.s : "none");
+    for (int i = 0; i < n; i++) free(name[i]);
+    free(name);
+    text_free(&all);
+    return false;
+}
+
+/* The rest of the line in `sql` that begins with `mark`, copied into `word`; returns what follows the line. */
+static const char *marked_line(const char *sql, const char *mark, char *word, size_t size)
+{
+    size_t n = strlen(mark);
+    for (const char *line = sql; *line;) {
+        const char *end = strchrnul(line, '\n');
+        if (strncmp(line, mark, n) == 0) {
+            size_t length = (size_t)(end - line) - n;
+            if (length >= size) length = size - 1;
+            memcpy(word, line + n, length);
+            word[length] = '\0';
+            return *end ? end + 1 : end;
+        }
+        line = *end ? end + 1 : end;
+    }
+    return NULL;
+}
+
+static void remember_run(void *context, int64_t id)
+{
+    struct text *ids = context;
+    text_add(ids, "%s%lld", ids->length == 0 ? "[" : ",", (long long)id);
+}
+
+/* One table of the figure into its file. */
+static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow, struct err *e)
+{
+    struct text path = {0};
+    text_add(&path, "%s/%s%s%s.csv", f->dir, f->name, *table ? "." : "", table);
+    FILE *out = fopen(path.s, "w");
+    if (out == NULL) {
+        err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
+        text_free(&path);
+        return false;
+    }
+    bool ok = csv_write(f->s, sql, 0, NULL, out, remember_run, &f->run_ids, nrow, e);
+    if (!ok) err_in(e, f->name);
+    if (fclose(out) != 0 && ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
+    if (!ok) unlink(path.s);
+    text_free(&path);
+    return ok;
+}
+
+/* All tables of NAME.sql. */
+static bool write_tables(struct figure *f, const char *sql, struct err *e)
+{
+    char table[64] = "", next[64];
+    for (const char *from = sql; from != NULL;) {
+        const char *after = marked_line(from, "-- table: ", next, sizeof next);
+        struct text statement = {0};
+        int64_t nrow;
+        text_add(&statement, "%s", from);
+        /* Each statement ends where the next table's mark begins. */
+        if (after != NULL) *strstr(statement.s, "-- table: ") = '\0';
+        bool ok = write_table(f, statement.s, table, &nrow, e);
+        text_free(&statement);
+        if (!ok) return false;
+        if (*table == '\0') f->nrow = nrow;
+        text_copy(table, sizeof table, next);
+        from = after;
+    }
+    return true;
+}
+
+static bool add_source(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    (void)ncolumn;
+    (void)name;
+    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "", value[0]);
+    return true;
+}
+
+static bool add_hash(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    (void)ncolumn;
+    (void)name;
+    text_add(context, "%s", value[0]);
+    return true;
+}
+
+/* "mimdsim 0.1.0 (commit), 28 runs, configurations 3f2a91c07b11": from the rows that are shown. */
+static bool provenance(struct figure *f, struct text *out, struct err *e)
+{
+    if (f->run_ids.length == 0) return true;
+    struct text sources = {0}, hashes = {0};
+    char hash[65];
+    text_add(&f->run_ids, "]");
+    const char *const ids[] = {f->run_ids.s};
+    bool ok = store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM v_provenance "
+                                 "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1", 1, ids, add_source,
+                           &sources, e) &&
+              store_select(f->s, "SELECT config_hash FROM run WHERE id IN (SELECT value FROM json_each(?1)) "
+                                 "ORDER BY config_hash, seed, rep", 1, ids, add_hash, &hashes, e);
+    size_t nrun = hashes.length / 64;
+    if (ok && nrun == 1) text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
+    else if (ok && nrun > 1) {
+        digest_sha256_hex(hashes.s, hashes.length, hash);
+        text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
+    }
+    text_free(&sources);
+    text_free(&hashes);
+    return ok;
+}
+
+/* name = 'value' in gnuplot's language, where a quote inside quotes is doubled. */
+static void add_assignment(struct text *script, const char *name, const char *value)
+{
+    text_add(script, "%s = '", name);
+    for (; *value; value++)
+        if (*value == '\'') text_add(script, "''");
+        else if ((unsigned char)*value >= ' ') text_add_bytes(script, value, 1);
+    text_add(script, "'\n");
+}
+
+static bool add_file(struct text *script, const char *plots, const char *name, struct err *e)
+{
+    struct text path = {0}, content = {0};
+    text_add(&path, "%s/%s.gp", plots, name);
+    bool ok = text_read_file(&content, path.s, e);
+    if (ok) text_add_bytes(script, content.s ? content.s : "", content.length);
+    text_free(&path);
+    text_free(&content);
+    return ok;
+}
+
+static bool write_script(struct figure *f, struct err *e)
+{
+    struct text script = {0}, source = {0}, path = {0};
+    bool ok = provenance(f, &source, e);
+    add_assignment(&script, "figure", f->name);
+    add_assignment(&script, "provenance", source.s ? source.s : "");
+    ok = ok && add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
+    text_add(&path, "%s/%s.gp", f->dir, f->name);
+    FILE *out = ok ? fopen(path.s, "w") : NULL;
+    if (ok && out == NULL) ok = err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
+    if (out != NULL) {
+        bool written = fwrite(script.s, 1, script.length, out) == script.length;
+        if ((fclose(out) != 0 || !written) && ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
+    }
+    text_free(&script);
+    text_free(&source);
+    text_free(&path);
+    return ok;
+}
+
+/* Images of an earlier drawing must not be taken for this one's. */
+static void remove_images(const struct figure *f)
+{
+    static const char *const suffix[] = {".png", ".svg"};
+    for (int i = 0; i < 2; i++) {
+        struct text path = {0};
+        text_add(&path, "%s/%s%s", f->dir, f->name, suffix[i]);
+        unlink(path.s);
+        text_free(&path);
+    }
+}
+
+/* Make `dir` and the folders above it. */
+static bool make_folder(const char *dir, struct err *e)
+{
+    char *path = strdup(dir);
+    CHECK(path != NULL);
+    for (char *slash = strchr(path + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        mkdir(path, 0777);
+        *slash = '/';
+    }
+    struct stat info;
+    bool ok = mkdir(path, 0777) == 0 || errno == EEXIST;
+    if (!ok) err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
+    else if (stat(path, &info) == 0 && !S_ISDIR(info.st_mode)) ok = err_set(e, ERR_CREATE, "%s is not a folder", dir);
+    free(path);
+    return ok;
+}
+
+static bool no_rows(const struct figure *f, const char *sql, struct err *e)
+{
+    char needs[200] = "";
+    marked_line(sql, "-- needs: ", needs, sizeof needs);
+    return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s), f->name,
+                   *needs ? "; first: " : "", needs);
+}
+
+static bool draw(struct figure *f, const char *sql, struct err *e)
+{
+    struct text script = {0};
+    remove_images(f);
+    bool ok = write_tables(f, sql, e);
+    if (ok && f->nrow == 0) ok = no_rows(f, sql, e);
+    text_add(&script, "%s.gp", f->name);
+    ok = ok && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
+    if (!ok) remove_images(f);
+    text_free(&script);
+    return ok;
+}
+
+bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
+{
+    char *plots = joined(data_dir, "/plots", ""), *file = joined(name, ".sql", "");
+    char *stem = strchr(name, '/') == NULL ? figure_stem(plots, file) : NULL;
+    char *path = joined(plots, "/", file);
+    struct figure f = {.s = s, .plots = plots, .name = name, .dir = dir};
+    struct text sql = {0};
+    bool ok = stem != NULL || no_such_figure(data_dir, name, e);
+    ok = ok && text_read_file(&sql, path, e) && make_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
+    text_free(&f.run_ids);
+    text_free(&sql);
+    free(stem);
+    free(plots);
+    free(file);
+    free(path);
+    return ok;
+}

@@ -1,0 +1,307 @@
+/* test_figure.c - figures come out of the database alone, the same bytes each time, and fail with a reason. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../support/made_run.h"
+#include "../support/scratch.h"
+#include "base/arena.h"
+#include "base/text.h"
+#include "report/report.h"
+
+struct fixture {
+    char folder[200], out[256];
+    struct store *s;
+    struct err e;
+};
+
+static void write_file(struct fixture *f, const char *name, const char *text)
+{
+    char path[256];
+    FILE *out = fopen(scratch_path(path, sizeof path, f->folder, name), "w");
+    assert_non_null(out);
+    fputs(text, out);
+    fclose(out);
+}
+
+static const char *const points = "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 ORDER BY P;\n";
+static const char *const script =
+    "set encoding utf8\n"
+    "do for [format in \"png svg\"] {\n"
+    "set terminal (format eq 'png' ? 'pngcairo' : 'svg'); set output figure.'.'.format\n"
+    "set title provenance noenhanced; plot figure.'.csv' using 'P':'speedup' with linespoints; unset output }\n";
+
+static int make_fixture(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    char path[256];
+    scratch_make(f->folder, sizeof f->folder);
+    scratch_path(f->out, sizeof f->out, f->folder, "a/b");
+    mkdir(scratch_path(path, sizeof path, f->folder, "plots"), 0777);
+    write_file(f, "plots/style.gp", "set datafile separator comma\nset datafile columnheaders\n");
+    write_file(f, "plots/curve.sql", points);
+    write_file(f, "plots/curve.gp", script);
+    write_file(f, "plots/not-drawn.sql", points);
+    f->s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
+    assert_non_null(f->s);
+    struct arena *a = arena_create();
+    for (int p = 2; p <= 128; p *= 2)
+        for (int level = 0; level < 2; level++) {
+            struct run_spec spec = made_spec(a, "t3e-300", p, p, 0);
+            spec.machine.network.level = level ? LEVEL_LINK : LEVEL_LOGGP;
+            made_identity(&spec, a);
+            struct run_result r = made_result(a, &spec);
+            assert_true(store_put(f->s, &spec, &r, NULL, &f->e));
+        }
+    arena_destroy(a);
+    *state = f;
+    return 0;
+}
+
+static int drop_fixture(void **state)
+{
+    struct fixture *f = *state;
+    store_close(f->s);
+    scratch_remove(f->folder);
+    unsetenv("MIMDSIM_GNUPLOT");
+    free(f);
+    return 0;
+}
+
+static struct text read_out(struct fixture *f, const char *name)
+{
+    char path[256];
+    struct text t = {0};
+    struct err e = {0};
+    if (!text_read_file(&t, scratch_path(path, sizeof path, f->out, name), &e)) fail_msg("%s", e.text);
+    return t;
+}
+
+static bool exists(struct fixture *f, const char *name)
+{
+    char path[256];
+    return access(scratch_path(path, sizeof path, f->out, name), F_OK) == 0;
+}
+
+static bool has_gnuplot(void) { return system("command -v gnuplot >/dev/null 2>&1") == 0; }
+
+/* Draw, or skip the test where gnuplot is not installed. */
+static void draw(struct fixture *f, const char *data_dir, const char *name)
+{
+    if (!has_gnuplot()) skip();
+    if (!report_figure(f->s, data_dir, name, f->out, &f->e)) fail_msg("%s", f->e.text);
+}
+
+static void a_figure_is_four_files(void **state)
+{
+    struct fixture *f = *state;
+    draw(f, f->folder, "curve");
+    struct text png = read_out(f, "curve.png"), svg = read_out(f, "curve.svg"), csv = read_out(f, "curve.csv");
+    assert_memory_equal(png.s, "\x89PNG", 4);
+    assert_non_null(strstr(svg.s, "</svg>"));
+    assert_memory_equal(csv.s, "run_id,P,speedup\r\n", 18);
+    int lines = 0;
+    for (const char *c = csv.s; *c; c++) lines += *c == '\n';
+    assert_int_equal(lines, 1 + 14);
+    text_free(&png);
+    text_free(&svg);
+    text_free(&csv);
+}
+
+static void drawing_again_gives_the_same_bytes(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const file[] = {"curve.png", "curve.svg", "curve.csv", "curve.gp"};
+    struct text first[4];
+    draw(f, f->folder, "curve");
+    for (int i = 0; i < 4; i++) first[i] = read_out(f, file[i]);
+    draw(f, f->folder, "curve");
+    for (int i = 0; i < 4; i++) {
+        struct text again = read_out(f, file[i]);
+        assert_int_equal(again.length, first[i].length);
+        assert_memory_equal(again.s, first[i].s, again.length);
+        text_free(&again);
+        text_free(&first[i]);
+    }
+}
+
+static void the_script_redraws_without_this_program(void **state)
+{
+    struct fixture *f = *state;
+    draw(f, f->folder, "curve");
+    struct text first = read_out(f, "curve.svg"), command = {0};
+    text_add(&command, "cd '%s' && rm curve.svg && gnuplot -d curve.gp", f->out);
+    assert_int_equal(system(command.s), 0);
+    struct text again = read_out(f, "curve.svg");
+    assert_string_equal(again.s, first.s);
+    text_free(&first);
+    text_free(&again);
+    text_free(&command);
+}
+
+static void the_picture_names_version_runs_and_configurations(void **state)
+{
+    struct fixture *f = *state;
+    draw(f, f->folder, "curve");
+    struct text gp = read_out(f, "curve.gp");
+    assert_non_null(strstr(gp.s, "figure = 'curve'\nprovenance = 'mimdsim "));
+    assert_non_null(strstr(gp.s, ", 14 runs, configurations "));
+    text_free(&gp);
+}
+
+static void without_gnuplot_data_and_script_are_written(void **state)
+{
+    struct fixture *f = *state;
+    setenv("MIMDSIM_GNUPLOT", "/nonexistent/gnuplot", 1);
+    assert_false(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_UNAVAILABLE);
+    assert_non_null(strstr(f->e.text, "gnuplot-nox"));
+    assert_true(exists(f, "curve.csv") && exists(f, "curve.gp"));
+    assert_false(exists(f, "curve.png") || exists(f, "curve.svg"));
+}
+
+static void an_old_image_does_not_outlive_a_failed_drawing(void **state)
+{
+    struct fixture *f = *state;
+    draw(f, f->folder, "curve");
+    write_file(f, "plots/curve.gp", "set output 'curve.png'\nplot nonsense(x)\n");
+    assert_false(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_UNAVAILABLE);
+    assert_non_null(strstr(f->e.text, "line "));
+    assert_non_null(strstr(f->e.text, "nonsense"));
+    assert_false(exists(f, "curve.png") || exists(f, "curve.svg"));
+}
+
+static void several_tables_become_several_files(void **state)
+{
+    struct fixture *f = *state;
+    struct text sql = {0};
+    text_add(&sql, "-- needs: x\n%s-- table: stages\nSELECT name FROM v_stage WHERE P = 2 ORDER BY run_id, stage;\n"
+                   "-- table: none\nSELECT 1 AS x WHERE 0;\n", points);
+    write_file(f, "plots/curve.sql", sql.s);
+    text_free(&sql);
+    setenv("MIMDSIM_GNUPLOT", "true", 1);
+    assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    struct text stages = read_out(f, "curve.stages.csv"), none = read_out(f, "curve.none.csv");
+    assert_memory_equal(stages.s, "name\r\nPre-processing\r\nNE[1]\r\n", 29);
+    assert_string_equal(none.s, "x\r\n");
+    text_free(&stages);
+    text_free(&none);
+}
+
+static void cells_are_quoted_where_rfc_4180_says_so(void **state)
+{
+    struct fixture *f = *state;
+    write_file(f, "plots/curve.sql", "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, 1e300*10 AS big, "
+                                     "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
+    setenv("MIMDSIM_GNUPLOT", "true", 1);
+    assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    struct text csv = read_out(f, "curve.csv");
+    assert_string_equal(csv.s, "\"x\"\"y\",q,n,r,big,t,blank,e\r\n"
+                               "\"a,b\",\"say \"\"hi\"\"\",,0.1,1e+301,\"two\nlines\",\" b \",end\r\n");
+    text_free(&csv);
+}
+
+static void an_unknown_figure_names_the_nearest(void **state)
+{
+    struct fixture *f = *state;
+    assert_false(report_figure(f->s, f->folder, "cruve", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_NO_INPUT);
+    assert_non_null(strstr(f->e.text, "did you mean 'curve'"));
+    static const char *const bad[] = {"zzzzzz", "../plots/curve", "not-drawn", "", "style"};
+    for (int i = 0; i < 5; i++) {
+        err_clear(&f->e);
+        assert_false(report_figure(f->s, f->folder, bad[i], f->out, &f->e));
+        assert_int_equal(f->e.kind, ERR_NO_INPUT);
+    }
+}
+
+static void a_figure_without_rows_says_what_to_run(void **state)
+{
+    struct fixture *f = *state;
+    write_file(f, "plots/curve.sql", "-- About nothing.\n-- needs: mimdsim run x.yaml\nSELECT 1 AS x WHERE 0;\n");
+    assert_false(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_NO_INPUT);
+    assert_non_null(strstr(f->e.text, "first: mimdsim run x.yaml"));
+}
+
+static void wrong_sql_names_the_figure(void **state)
+{
+    struct fixture *f = *state;
+    write_file(f, "plots/curve.sql", "SELECT nonsense FROM run");
+    assert_false(report_figure(f->s, f->folder, "curve", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_DATA);
+    assert_non_null(strstr(f->e.text, "curve"));
+    assert_non_null(strstr(f->e.text, "nonsense"));
+    assert_false(exists(f, "curve.csv"));
+}
+
+static void a_folder_that_cannot_be_made_is_said(void **state)
+{
+    struct fixture *f = *state;
+    char path[256];
+    write_file(f, "file", "x");
+    assert_false(report_figure(f->s, f->folder, "curve", scratch_path(path, sizeof path, f->folder, "file/x"), &f->e));
+    assert_int_equal(f->e.kind, ERR_CREATE);
+    err_clear(&f->e);
+    assert_false(report_figure(f->s, f->folder, "curve", scratch_path(path, sizeof path, f->folder, "file"), &f->e));
+    assert_int_equal(f->e.kind, ERR_CREATE);
+}
+
+static void figures_are_listed_in_order(void **state)
+{
+    struct fixture *f = *state;
+    write_file(f, "plots/another.sql", points);
+    write_file(f, "plots/another.gp", "");
+    char **name;
+    assert_int_equal(report_figures(f->folder, &name), 2);
+    assert_string_equal(name[0], "another");
+    assert_string_equal(name[1], "curve");
+    for (int i = 0; i < 2; i++) free(name[i]);
+    free(name);
+    assert_int_equal(report_figures("/nonexistent", &name), 0);
+    free(name);
+}
+
+/* The figures that the program ships, drawn from made data: gnuplot has nothing to complain about. */
+static void the_paper_figures_can_be_drawn(void **state)
+{
+    struct fixture *f = *state;
+    draw(f, MIMDSIM_SRCDIR, "fig6");
+    draw(f, MIMDSIM_SRCDIR, "fig5");
+    struct text csv = read_out(f, "fig6.csv");
+    assert_non_null(strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel_fraction"));
+    text_free(&csv);
+    assert_true(exists(f, "fig6.png") && exists(f, "fig5.svg"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_fixture, drop_fixture)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_figure_is_four_files),
+        TEST(drawing_again_gives_the_same_bytes),
+        TEST(the_script_redraws_without_this_program),
+        TEST(the_picture_names_version_runs_and_configurations),
+        TEST(without_gnuplot_data_and_script_are_written),
+        TEST(an_old_image_does_not_outlive_a_failed_drawing),
+        TEST(several_tables_become_several_files),
+        TEST(cells_are_quoted_where_rfc_4180_says_so),
+        TEST(an_unknown_figure_names_the_nearest),
+        TEST(a_figure_without_rows_says_what_to_run),
+        TEST(wrong_sql_names_the_figure),
+        TEST(a_folder_that_cannot_be_made_is_said),
+        TEST(figures_are_listed_in_order),
+        TEST(the_paper_figures_can_be_drawn),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
