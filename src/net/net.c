@@ -8,6 +8,8 @@
 static const struct net_type *const levels[] = {
     [LEVEL_LOGGP] = &net_loggp,
     [LEVEL_LINK] = &net_link,
+    [LEVEL_PACKET] = &net_packet,
+    [LEVEL_AUTO] = &net_auto,
 };
 
 /* a bus is one resource, served first come first served: all levels mean the same, which is what `link` does */

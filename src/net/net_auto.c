@@ -1,0 +1,283 @@
+/* net_auto.c - level auto: the answer of level packet, bit for bit, without simulating messages that meet nobody.
+ *
+ * Because a granted packet never stalls, a message alone follows a closed form. When a message starts, its closed
+ * form is compared with the claims of other such messages on its resources and with the earliest possible arrivals of
+ * simulated ones. If nothing can interfere, the claims are noted and one event, the delivery, is posted. Otherwise it
+ * is simulated, and so is every optimistic message that it might meet (net_auto_simulate.c): up to now each of those
+ * is exactly where its closed form says, so nothing has to be taken back. */
+#include "net/net_auto.h"
+
+static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
+
+/* ---- lists of passes ---- */
+
+static struct pass **pass_list(struct fabric *f, const struct pass *s)
+{
+    struct resource *o = &f->resource[s->resource];
+    return s->state == PASS_CLAIM ? &o->claim : &o->pending;
+}
+
+void pass_unlink(struct fabric *f, struct pass *s)
+{
+    if (s->state == PASS_NONE) return;
+    if (s->prev)
+        s->prev->next = s->next;
+    else
+        *pass_list(f, s) = s->next;
+    if (s->next) s->next->prev = s->prev;
+    if (s->hop == 0 && f->source[s->resource].last_claim == s) f->source[s->resource].last_claim = s->prev;
+    s->state = PASS_NONE;
+}
+
+/* into the claims, which are in the order of time */
+static void pass_claim(struct fabric *f, struct pass *s)
+{
+    struct resource *o = &f->resource[s->resource];
+    struct pass *before = NULL, *after = o->claim;
+    if (s->hop == 0) {
+        before = f->source[s->resource].last_claim;
+        after = NULL;
+        f->source[s->resource].last_claim = s;
+    }
+    while (after && after->begin < s->begin) {
+        before = after;
+        after = after->next;
+    }
+    s->prev = before;
+    s->next = after;
+    *(before ? &before->next : &o->claim) = s;
+    if (after) after->prev = s;
+    s->state = PASS_CLAIM;
+}
+
+/* ---- the closed form ---- */
+
+int auto_overlap(const struct fabric *f, const struct flight *w, int h)
+{
+    sim_ps pace = auto_pace(w), stay = f->net->tau + pace - w->pass[0].flit + w->pass[h + 1].flit;
+    return (int)((stay + pace - 1) / pace);
+}
+
+int auto_lane(const struct fabric *f, const struct flight *w, int index, int h)
+{
+    const struct pass *s = &w->pass[h];
+    if (s->nchannel == 1 || w->npacket == 1) return s->channel;
+    return s->channel + index % auto_overlap(f, w, h);
+}
+
+/* In a message of several packets none waits for the one before when the injection port is the slowest resource and
+ * each finds room: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
+ * net_packet.c) it may, whichever packet `ahead` of it one looks at. */
+static bool train_flows(const struct fabric *f, const struct flight *w)
+{
+    if (w->npacket == 1) return true;
+    sim_ps flit = w->pass[0].flit, tau = f->net->tau, credit = f->net->credit;
+    if (flit < w->slowest) return false;
+    for (int64_t apart = w->full; apart - w->full < f->buffer; apart += w->full) {
+        if (apart + w->full <= f->buffer) continue;
+        int64_t ahead = apart - f->buffer, k0 = ahead < 0 ? -ahead : 0, k1 = w->full - 1 - (ahead > 0 ? ahead : 0);
+        sim_ps since = apart * flit - tau;
+        if (since < 0 || since < (k0 + ahead) * flit + credit - k0 * f->fastest) return false;
+        if (since < (k1 + ahead) * flit + credit - k1 * f->fastest) return false;
+    }
+    for (int h = 0; h < w->nhop; h++)
+        if (w->pass[h].nchannel > 1 && auto_overlap(f, w, h) > w->pass[h].nchannel) return false;
+    return true;
+}
+
+/* fill in the claims of w, starting at `start`; returns when it will be delivered */
+static sim_ps closed_form(const struct fabric *f, struct flight *w, sim_ps start)
+{
+    const struct net *n = f->net;
+    sim_ps slow = 0, train = (w->npacket - 1) * auto_pace(w);
+    w->clear = 0;
+    for (int h = 0; h <= w->nhop; h++) {
+        struct pass *s = &w->pass[h];
+        slow = later(slow, s->flit);
+        s->begin = start + h * n->tau;
+        s->end = s->begin + train + (w->last - 1) * slow + s->flit;
+        s->follow = later(s->end, s->begin + train + n->tau + s->flit);
+    }
+    for (int h = 0; h <= w->nhop; h++) {
+        struct pass *s = &w->pass[h];
+        bool plain = s->nchannel == 1 && w->slowest == f->fastest;
+        sim_ps clear = auto_clear(f, s);
+        if (!plain || h == w->nhop) s->follow = clear;
+        w->clear = later(w->clear, clear);
+    }
+    return w->pass[w->nhop].begin + train + (w->last - 1) * w->slowest + n->end;
+}
+
+/* ---- may it stay optimistic? ---- */
+
+sim_ps auto_earliest(const struct fabric *f, const struct pass *s, sim_ps now)
+{
+    const struct flight *w = s->flight;
+    int g = s->hop - 1;
+    while (g >= 0 && w->pass[g].granted <= s->granted) g--;
+    sim_ps at = now;
+    if (g >= 0 && w->pass[g].granted == s->granted + 1) at = later(now, w->pass[g].last + f->net->tau);
+    return at + (s->hop - g - 1) * f->net->tau;
+}
+
+static bool same_fifo(const struct pass *a, const struct pass *b)
+{
+    return a->channel == b->channel;
+}
+
+static bool meets_claims(const struct resource *o, const struct pass *s)
+{
+    for (const struct pass *c = o->claim; c; c = c->next) {
+        const struct pass *first = c->begin < s->begin ? c : s, *second = first == c ? s : c;
+        sim_ps free = same_fifo(first, second) ? first->follow : first->end;
+        if (second->begin < free) return true;
+        if (c->begin > s->follow && c->begin > s->end) return false;
+    }
+    return false;
+}
+
+static bool meets_simulated(const struct fabric *f, const struct resource *o, const struct pass *s, sim_ps now)
+{
+    enum { MOST = 32 };
+    if (s->hop > 0 && o->free > s->begin) return true;
+    int looked = 0;
+    for (const struct pass *d = o->pending; d; d = d->next)
+        if (looked++ == MOST || auto_earliest(f, d, now) < auto_clear(f, s)) return true;
+    if (s->hop == s->flight->nhop || !o->fifo) return false;
+    for (int i = s->channel; i < s->channel + s->nchannel; i++) {
+        const struct fifo *q = &o->fifo[i];
+        if (q->front || q->left > s->begin || q->home > s->begin) return true;
+    }
+    return false;
+}
+
+/* a message of this node that was admitted at this same time but comes after w in the order of sending */
+static bool overtakes(const struct fabric *f, const struct flight *w)
+{
+    const struct pass *s = f->source[w->m->src].last_claim;
+    const struct net_message *o = s ? s->flight->m : NULL;
+    return o && (o->ready > w->m->ready || (o->ready == w->m->ready && o->id > w->m->id));
+}
+
+/* when w, alone, will be delivered; SIM_NEVER when it might meet somebody */
+static sim_ps foresee(struct fabric *f, struct flight *w, sim_ps now)
+{
+    if (f->source[w->m->src].front || overtakes(f, w) || !train_flows(f, w) || f->net->tau == 0) return SIM_NEVER;
+    sim_ps arrival = closed_form(f, w, later(now, f->resource[w->m->src].free));
+    for (int h = 0; h <= w->nhop; h++) {
+        const struct resource *o = &f->resource[w->pass[h].resource];
+        if (meets_simulated(f, o, &w->pass[h], now) || meets_claims(o, &w->pass[h])) return SIM_NEVER;
+    }
+    return arrival;
+}
+
+static void admit(struct fabric *f, struct flight *w, sim_ps arrival)
+{
+    struct resource *port = &f->resource[w->m->src];
+    f->nadmitted++;
+    w->optimistic = true;
+    w->port_before = port->free;
+    port->free = later(w->pass[0].end, w->pass[0].end - w->pass[0].flit + f->net->gap);
+    w->m->injected = w->pass[0].begin;
+    for (int h = 0; h <= w->nhop; h++) pass_claim(f, &w->pass[h]);
+    packet_deliver_at(f, w, arrival);
+    w->foreseen = arrival;
+}
+
+/* ---- after delivery ---- */
+
+void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s, int granted)
+{
+    const struct flight *w = s->flight;
+    sim_ps at = auto_begin(w, granted - 1, s->hop);
+    if (s->hop == 0 || at < o->turn_time) return;
+    o->turn = (uint32_t)(s[-1].port * f->nchannel + auto_lane(f, w, granted - 1, s->hop - 1)) + 1;
+    o->turn_time = at;
+}
+
+int auto_granted(const struct flight *w, int h, sim_ps now)
+{
+    sim_ps since = now - w->pass[h].begin;
+    if (since <= 0) return 0;
+    if (w->npacket == 1) return 1;
+    sim_ps count = (since + auto_pace(w) - 1) / auto_pace(w);
+    return count < w->npacket ? (int)count : w->npacket;
+}
+
+void auto_catch_up(struct fabric *f, struct resource *o, sim_ps now)
+{
+    for (const struct pass *s = o->claim; s && s->begin < now; s = s->next)
+        auto_turn(f, o, s, auto_granted(s->flight, s->hop, now));
+}
+
+static void auto_account(struct fabric *f, const struct flight *w, sim_ps wait)
+{
+    sim_ps slow = 0;
+    for (int h = 0; h <= w->nhop; h++) {
+        const struct pass *s = &w->pass[h];
+        slow = later(slow, s->flit);
+        int64_t gaps = (int64_t)(w->npacket - 1) * (w->full - 1) + w->last - 1;
+        net_account(f->net, s->resource, 1, w->m->bytes, gaps * slow + w->npacket * s->flit, h == 0 ? wait : 0);
+    }
+}
+
+/* forget messages whose last trace is gone */
+static void retire(struct fabric *f, sim_ps now)
+{
+    while (f->retired && f->retired->clear <= now) {
+        struct flight *w = f->retired;
+        f->retired = w->next;
+        for (int h = 0; h <= w->nhop; h++) {
+            struct pass *s = &w->pass[h];
+            if (s->state == PASS_CLAIM) auto_turn(f, &f->resource[s->resource], s, w->npacket);
+            pass_unlink(f, s);
+        }
+        flight_return(f, w);
+    }
+}
+
+void auto_delivered(struct fabric *f, struct flight *w)
+{
+    if (f->net->load) auto_account(f, w, w->m->injected - w->m->ready);
+    w->m = NULL;
+    w->next = NULL;
+    *(f->retired ? &f->retired_back->next : &f->retired) = w;
+    f->retired_back = w;
+    retire(f, sim_now(f->net->sim));
+}
+
+/* ---- the level ---- */
+
+static void auto_start(struct fabric *f, struct flight *w, sim_ps now)
+{
+    flight_measure(f, w);
+    sim_ps arrival = foresee(f, w, now);
+    if (arrival != SIM_NEVER)
+        admit(f, w, arrival);
+    else
+        auto_simulate(f, w, now);
+}
+
+static void start_event(void *subject, uint64_t argument, sim_ps now)
+{
+    auto_start(subject, (struct flight *)(uintptr_t)argument, now);
+}
+
+static bool auto_create(struct net *n, struct err *e)
+{
+    n->state = packet_fabric(n, true, e);
+    return n->state != NULL;
+}
+
+static void auto_send(struct net *n, struct net_message *m)
+{
+    struct fabric *f = n->state;
+    struct flight *w = flight_take(f, m);
+    sim_ps now = sim_now(n->sim);
+    if (m->ready == now)
+        auto_start(f, w, now);
+    else
+        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), start_event, f, (uintptr_t)w);
+}
+
+const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, packet_stuck};

@@ -1,0 +1,376 @@
+/* net_packet.c - level packet: one event per resource and packet.
+ *
+ * An event of a resource looks at the FIFO fronts that ask for it, grants it to one whose flits will find room behind
+ * it, and works out at once everything that follows from the grant: until when the resource is taken, when the packet
+ * may ask for its next one, when the packet behind it may ask, when it has arrived. */
+#include "net/net_packet.h"
+
+/* Second look of a resource at the same time: for packets that go where another has just made room. */
+enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
+
+static void resource_look(void *subject, uint64_t argument, sim_ps now);
+
+static void wake_in(struct fabric *f, int r, sim_ps at, unsigned lane)
+{
+    struct resource *o = &f->resource[r];
+    if (o->wake && o->wake <= at + 1) return;
+    o->wake = at + 1;
+    sim_at(f->net->sim, at, lane, (uint64_t)r, resource_look, f, (uint64_t)(lane == LANE_AGAIN) << 32 | (uint64_t)r);
+}
+
+void packet_wake(struct fabric *f, int r, sim_ps at) { wake_in(f, r, at, NET_LANE_ARBITRATE); }
+
+static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
+
+/* ---- room behind a resource ---- */
+
+/* when flit j of a packet that left as told by c had crossed, at the latest */
+static sim_ps credit_left(const struct credit *c, int64_t j)
+{
+    if (c->flits < 2) return c->at;
+    sim_ps span = c->tail - c->at, n = c->flits - 1;
+    return c->at + (j * span + n - 1) / n;
+}
+
+/* Earliest time for a packet that starts `apart` flits behind c in the FIFO: each flit needs the credit of the flit a
+ * buffer's size before it. All times are linear, so the first and the last flit concerned decide. */
+static sim_ps credit_bound(const struct fabric *f, const struct credit *c, int64_t apart, int32_t flits, sim_ps flit)
+{
+    int64_t ahead = apart - f->buffer, k0 = ahead < 0 ? -ahead : 0, k1 = c->flits - 1 - ahead;
+    if (k1 > flits - 1) k1 = flits - 1;
+    sim_ps at = c->at;
+    if (k0 > k1) return at;
+    at = later(at, credit_left(c, k0 + ahead) + f->net->credit - k0 * flit);
+    return later(at, credit_left(c, k1 + ahead) + f->net->credit - k1 * flit);
+}
+
+static void credits_drop(struct fabric *f, struct fifo *q)
+{
+    while (q->first) {
+        struct credit *c = q->first;
+        q->first = c->next;
+        credit_return(f, c);
+    }
+    q->last = NULL;
+}
+
+sim_ps fifo_room(struct fabric *f, struct fifo *q, int32_t flits, sim_ps flit, sim_ps now)
+{
+    if (q->first && q->home <= now) credits_drop(f, q);
+    int32_t spare = f->buffer - flits;
+    if (q->front && (int32_t)(q->position - q->front->position) > spare) {
+        q->starved = true;
+        return SIM_NEVER;
+    }
+    sim_ps at = now;
+    for (const struct credit *c = q->first; c; c = c->next) {
+        int32_t apart = (int32_t)(q->position - c->position);
+        if (apart > spare) at = later(at, credit_bound(f, c, apart, flits, flit));
+    }
+    return at;
+}
+
+void packet_left(struct fabric *f, struct fifo *q, uint32_t position, int32_t flits, sim_ps at, sim_ps tail,
+                 sim_ps flit)
+{
+    struct credit *c = credit_take(f);
+    *c = (struct credit){.at = at, .tail = tail, .position = position, .flits = flits};
+    if (q->last)
+        q->last->next = c;
+    else
+        q->first = c;
+    q->last = c;
+    q->left = tail + flit;
+    q->home = tail + f->net->credit;
+}
+
+/* the channel for a packet that takes s: an idle one if there is one, else one with room */
+static sim_ps channel_room(struct fabric *f, struct resource *o, const struct pass *s, int32_t flits, sim_ps now,
+                           int *channel)
+{
+    sim_ps best = SIM_NEVER;
+    for (int i = s->channel; i < s->channel + s->nchannel; i++) {
+        struct fifo *q = fifo_of(f, o, i);
+        sim_ps at = fifo_room(f, q, flits, s->flit, now);
+        if (at < best) {
+            best = at;
+            *channel = i;
+        }
+        if (at == now && !q->front && q->left <= now) {
+            *channel = i;
+            return now;
+        }
+    }
+    return best;
+}
+
+/* ---- grants ---- */
+
+static void request(struct fabric *f, struct packet *p)
+{
+    const struct pass *s = &p->flight->pass[p->hop + 1];
+    struct resource *o = &f->resource[s->resource];
+    p->next_request = o->request;
+    o->request = p;
+    packet_wake(f, s->resource, later(p->ask, o->free));
+}
+
+void packet_enter(struct fabric *f, struct packet *p)
+{
+    struct pass *s = &p->flight->pass[p->hop];
+    struct fifo *q = fifo_of(f, &f->resource[s->resource], p->channel);
+    p->input = s->port * f->nchannel + p->channel;
+    p->position = q->position;
+    q->position += (uint32_t)p->flits;
+    p->next = NULL;
+    if (q->front) {
+        q->back->next = p;
+        q->back = p;
+        return;
+    }
+    q->front = q->back = p;
+    p->ask = later(p->arrive, q->left);
+    request(f, p);
+}
+
+/* p, front of its FIFO, goes on to its next resource */
+static void fifo_pop(struct fabric *f, struct packet *p, sim_ps now, sim_ps tail, sim_ps flit)
+{
+    const struct pass *s = &p->flight->pass[p->hop];
+    struct resource *o = &f->resource[s->resource];
+    struct fifo *q = &o->fifo[p->channel];
+    packet_left(f, q, p->position, p->flits, now, tail, flit);
+    q->front = p->next;
+    if (q->front) {
+        q->front->ask = later(q->front->arrive, q->left);
+        request(f, q->front);
+    }
+    if (!q->starved) return;
+    q->starved = false;
+    wake_in(f, s->resource, later(now, o->free), LANE_AGAIN);
+}
+
+static void packet_delivered(void *subject, uint64_t argument, sim_ps now)
+{
+    struct fabric *f = subject;
+    struct flight *w = (struct flight *)(uintptr_t)argument;
+    struct net_message *m = w->m;
+    if (w->arrival != now) return; /* it was foreseen, but met somebody since */
+    m->arrival = now;
+    if (w->optimistic)
+        auto_delivered(f, w);
+    else
+        flight_return(f, w);
+    net_arrive(f->net, m);
+}
+
+void packet_deliver_at(struct fabric *f, struct flight *w, sim_ps arrival)
+{
+    w->arrival = arrival;
+    if (w->foreseen == arrival) return;
+    sim_at(f->net->sim, arrival, NET_LANE_FREE, (uint64_t)w->m->dst, packet_delivered, f, (uintptr_t)w);
+}
+
+/* Packet p is granted its next resource o now; returns when its tail crosses it. */
+static sim_ps grant(struct fabric *f, struct resource *o, struct packet *p, sim_ps now)
+{
+    struct flight *w = p->flight;
+    struct pass *s = &w->pass[p->hop + 1];
+    sim_ps tail = now + (p->flits - 1) * s->flit;
+    if (p->hop >= 0) {
+        tail = later(tail, p->tail + f->net->tau);
+        fifo_pop(f, p, now, tail, s->flit);
+    }
+    o->free = tail + s->flit;
+    net_account(f->net, s->resource, p->index == 0, p->index == 0 ? w->m->bytes : 0, o->free - now, now - p->ask);
+    s->granted++;
+    s->last = now;
+    if (s->state == PASS_PENDING && s->granted == w->npacket) pass_unlink(f, s);
+    p->hop++;
+    p->tail = tail;
+    p->arrive = now + f->net->tau;
+    return tail;
+}
+
+/* ---- ejection ports and links ---- */
+
+static void eject(struct fabric *f, struct packet *p, sim_ps tail)
+{
+    struct flight *w = p->flight;
+    if (++w->ejected == w->npacket) packet_deliver_at(f, w, tail + f->net->end);
+    packet_return(f, p);
+}
+
+struct choice {
+    struct packet *best, **link; /* link: where it hangs in the list of requests */
+    int channel;
+    sim_ps again;                /* when another may become eligible */
+    bool wait;                   /* one may become eligible later at this same time */
+};
+
+static bool better(const struct fabric *f, const struct resource *o, const struct packet *p, const struct packet *q)
+{
+    if (f->first_come && p->ask != q->ask) return p->ask < q->ask;
+    uint32_t turn = f->first_come ? 0 : o->turn;
+    return (uint32_t)p->input - turn < (uint32_t)q->input - turn;
+}
+
+/* a packet that blocks the way of s may yet be granted at this time */
+static bool fronts_move(const struct fabric *f, const struct resource *o, const struct pass *s, sim_ps now)
+{
+    for (int i = s->channel; i < s->channel + s->nchannel; i++) {
+        const struct packet *p = o->fifo[i].front;
+        if (p && p->ask <= now && f->resource[p->flight->pass[p->hop + 1].resource].wake == now + 1) return true;
+    }
+    return false;
+}
+
+static struct choice choose(struct fabric *f, struct resource *o, sim_ps now)
+{
+    struct choice c = {.again = SIM_NEVER};
+    for (struct packet **link = &o->request; *link; link = &(*link)->next_request) {
+        struct packet *p = *link;
+        const struct pass *s = &p->flight->pass[p->hop + 1];
+        int channel = 0;
+        sim_ps at = p->ask;
+        if (at <= now && s->hop < p->flight->nhop) at = channel_room(f, o, s, p->flits, now, &channel);
+        if (at > now) {
+            if (at < c.again) c.again = at;
+            c.wait = c.wait || (at == SIM_NEVER && fronts_move(f, o, s, now));
+        } else if (!c.best || better(f, o, p, c.best)) {
+            c.best = p;
+            c.link = link;
+            c.channel = channel;
+        }
+    }
+    return c;
+}
+
+static void resource_serve(struct fabric *f, int r, bool again, sim_ps now)
+{
+    struct resource *o = &f->resource[r];
+    if (o->claim) auto_catch_up(f, o, now);
+    struct choice c = choose(f, o, now);
+    struct packet *p = c.best;
+    if (c.wait && !again) {
+        wake_in(f, r, now, LANE_AGAIN);
+        return;
+    }
+    if (!p) {
+        if (c.again != SIM_NEVER) packet_wake(f, r, c.again);
+        return;
+    }
+    *c.link = p->next_request;
+    o->turn = (uint32_t)p->input + 1;
+    o->turn_time = now;
+    sim_ps tail = grant(f, o, p, now);
+    p->channel = c.channel;
+    if (p->hop == p->flight->nhop)
+        eject(f, p, tail);
+    else
+        packet_enter(f, p);
+    if (o->request) packet_wake(f, r, o->free);
+}
+
+/* ---- injection ports ---- */
+
+void source_enter(struct fabric *f, struct flight *w)
+{
+    sim_ps now = sim_now(f->net->sim);
+    const struct net_message *m = w->m;
+    struct source *z = &f->source[m->src];
+    struct flight **link = &z->front;
+    const struct net_message *b = z->back ? z->back->m : NULL;
+    if (b && (b->ready < m->ready || (b->ready == m->ready && b->id < m->id))) link = &z->back->next;
+    for (; *link; link = &(*link)->next) {
+        const struct net_message *o = (*link)->m;
+        if (o->ready > m->ready || (o->ready == m->ready && o->id > m->id)) break;
+    }
+    w->next = *link;
+    *link = w;
+    if (!w->next) z->back = w;
+    if (z->front == w) packet_wake(f, m->src, later(now, later(m->ready, f->resource[m->src].free)));
+}
+
+void flight_measure(struct fabric *f, struct flight *w)
+{
+    if (w->measured) return;
+    const struct net *n = f->net;
+    struct net_message *m = w->m;
+    w->measured = true;
+    int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
+    sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
+    sim_ps at = later(m->ready, *port);
+    *port = at + net_port_busy(n, flits);
+    m->uncontended = at + w->nhop * n->tau + (flits - 1) * w->slowest + n->end;
+}
+
+/* the next packet of w leaves its node; the gap between messages follows the last one */
+static void inject(struct fabric *f, struct flight *w, int channel, sim_ps now)
+{
+    struct resource *o = &f->resource[w->m->src];
+    struct packet *p = packet_take(f);
+    sim_ps ask = w->injected == 0 ? w->m->ready : o->free;
+    *p = (struct packet){.flight = w, .index = w->injected, .hop = -1, .channel = channel, .ask = ask};
+    p->flits = flight_packet_flits(w, p->index);
+    if (w->injected++ == 0) {
+        w->m->injected = now;
+        flight_measure(f, w);
+    }
+    sim_ps tail = grant(f, o, p, now);
+    if (w->injected == w->npacket) o->free = later(o->free, tail + f->net->gap);
+    packet_enter(f, p);
+}
+
+static void source_serve(struct fabric *f, int node, sim_ps now)
+{
+    struct source *z = &f->source[node];
+    struct flight *w = z->front;
+    if (!w) return;
+    if (w->m->ready > now) {
+        packet_wake(f, node, w->m->ready);
+        return;
+    }
+    int channel = 0;
+    sim_ps at = channel_room(f, &f->resource[node], &w->pass[0], flight_packet_flits(w, w->injected), now, &channel);
+    if (at > now) {
+        if (at != SIM_NEVER) packet_wake(f, node, at);
+        return;
+    }
+    inject(f, w, channel, now);
+    if (w->injected == w->npacket && !(z->front = w->next)) z->back = NULL;
+    if (z->front) packet_wake(f, node, later(z->front->m->ready, f->resource[node].free));
+}
+
+static void resource_look(void *subject, uint64_t argument, sim_ps now)
+{
+    struct fabric *f = subject;
+    int r = (int)(argument & INT32_MAX);
+    bool again = argument >> 32 != 0;
+    struct resource *o = &f->resource[r];
+    if (o->wake != now + 1) return; /* another event came before and did it */
+    o->wake = 0;
+    if (o->free > now) {
+        packet_wake(f, r, o->free);
+    } else if (net_is_injection(f->net, r)) {
+        source_serve(f, r, now);
+    } else {
+        resource_serve(f, r, again, now);
+    }
+}
+
+/* ---- the level ---- */
+
+static bool packet_create(struct net *n, struct err *e)
+{
+    n->state = packet_fabric(n, false, e);
+    return n->state != NULL;
+}
+
+static void packet_send(struct net *n, struct net_message *m)
+{
+    struct fabric *f = n->state;
+    source_enter(f, flight_take(f, m));
+}
+
+const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_stuck};

@@ -1,0 +1,196 @@
+/* net_packet_fabric.c - the state of cut-through levels: checks of the machine, pools, messages on their routes.
+ *
+ * Records come from chunks of the arena and go back to lists, so that a steady load allocates nothing. */
+#include "net/net_packet.h"
+
+enum { CHUNK = 128, FLIGHT_STEP = 4 };
+
+bool packet_config(const struct net *n, struct err *e)
+{
+    const struct network_spec *w = &n->machine->network;
+    if (w->flit_bytes < 1)
+        return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit_bytes of at least 1 B", n->type->name);
+    if (n->link.flit < 1 || n->injection.flit < 1 || n->ejection.flit < 1)
+        return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link_bandwidth", n->type->name);
+    if (w->virtual_channels < 1 || w->virtual_channels > 1024)
+        return err_set(e, ERR_CONFIG, "network.virtual_channels is %d; level %s needs 1 to 1024", w->virtual_channels,
+                       n->type->name);
+    if (w->buffer_flits < 1)
+        return err_set(e, ERR_CONFIG, "network.buffer_flits is %d; level %s needs at least 1", w->buffer_flits,
+                       n->type->name);
+    if (n->topology->max_hops > INT16_MAX - 2)
+        return err_set(e, ERR_CONFIG, "routes of up to %d links; level %s can follow %d", n->topology->max_hops,
+                       n->type->name, INT16_MAX - 2);
+    return true;
+}
+
+/* slowest and fastest flit time of any resource */
+static sim_ps fastest_flit(const struct net *n)
+{
+    sim_ps best = n->injection.flit < n->ejection.flit ? n->injection.flit : n->ejection.flit;
+    if (!n->link_rate) return best < n->link.flit ? best : n->link.flit;
+    for (int l = 0; l < n->nlink; l++)
+        if (n->link_rate[l].flit < best) best = n->link_rate[l].flit;
+    return best;
+}
+
+/* The credit round trip, in flits, is what a buffer must hold for a packet to follow another without a gap. */
+static bool cut_through_config(const struct net *n, struct err *e)
+{
+    const struct network_spec *w = &n->machine->network;
+    sim_ps flit = fastest_flit(n), trip = n->tau + (n->credit > flit ? n->credit : flit);
+    int64_t least = (trip + flit - 1) / flit;
+    if (w->buffer_flits < least)
+        return err_set(e, ERR_CONFIG,
+                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + credit_latency = %lld ps "
+                       "in flits of %lld ps)",
+                       w->buffer_flits, n->type->name, (long long)least, (long long)trip, (long long)flit);
+    if (w->packet_bytes <= 0) return true;
+    int64_t flits = net_flits(n, w->packet_bytes);
+    if (flits > w->buffer_flits)
+        return err_set(e, ERR_CONFIG,
+                       "network.packet_bytes %lld with network.header_bytes %lld makes packets of %lld flits, but "
+                       "network.buffer_flits is %d; level %s needs whole packets to fit: buffer_flits >= %lld or "
+                       "packet_bytes <= %lld",
+                       (long long)w->packet_bytes, (long long)w->header_bytes, (long long)flits, w->buffer_flits,
+                       n->type->name, (long long)flits,
+                       (long long)(w->buffer_flits * w->flit_bytes - w->header_bytes));
+    return true;
+}
+
+struct fabric *packet_fabric(struct net *n, bool optimistic, struct err *e)
+{
+    if (!packet_config(n, e) || !cut_through_config(n, e)) return NULL;
+    const struct network_spec *w = &n->machine->network;
+    struct fabric *f = TAKE(n->arena, 1, struct fabric);
+    f->net = n;
+    f->nprocessor = n->topology->spec->processors_per_node;
+    f->nchannel = w->virtual_channels;
+    f->nclass = f->nchannel < n->topology->nclass ? 1 : n->topology->nclass;
+    f->nlane = f->nchannel / f->nclass;
+    f->buffer = w->buffer_flits;
+    f->fastest = fastest_flit(n);
+    f->first_come = w->arbitration == ARBITRATION_FIRST_COME;
+    f->optimistic = optimistic;
+    f->resource = TAKE(n->arena, n->nresource, struct resource);
+    f->source = TAKE(n->arena, n->nnode, struct source);
+    f->own_port = TAKE(n->arena, (int64_t)n->nnode * f->nprocessor, sim_ps);
+    f->way = TAKE(n->arena, n->topology->max_hops + 2, struct hop);
+    f->free_flight = TAKE(n->arena, (n->topology->max_hops + 2) / FLIGHT_STEP + 1, struct flight *);
+    return f;
+}
+
+struct packet *packet_take(struct fabric *f)
+{
+    if (!f->free_packet) {
+        struct packet *chunk = TAKE(f->net->arena, CHUNK, struct packet);
+        for (int i = 0; i < CHUNK; i++) packet_return(f, &chunk[i]);
+    }
+    struct packet *p = f->free_packet;
+    f->free_packet = p->next;
+    return p;
+}
+
+void packet_return(struct fabric *f, struct packet *p)
+{
+    p->next = f->free_packet;
+    f->free_packet = p;
+}
+
+struct credit *credit_take(struct fabric *f)
+{
+    if (!f->free_credit) {
+        struct credit *chunk = TAKE(f->net->arena, CHUNK, struct credit);
+        for (int i = 0; i < CHUNK; i++) credit_return(f, &chunk[i]);
+    }
+    struct credit *c = f->free_credit;
+    f->free_credit = c->next;
+    return c;
+}
+
+void credit_return(struct fabric *f, struct credit *c)
+{
+    c->next = f->free_credit;
+    f->free_credit = c;
+}
+
+struct fifo *fifo_of(struct fabric *f, struct resource *r, int channel)
+{
+    if (!r->fifo) {
+        if (f->nfree_fifo < f->nchannel) {
+            int n = f->nchannel > CHUNK ? f->nchannel : CHUNK;
+            f->free_fifo = TAKE(f->net->arena, n, struct fifo);
+            f->nfree_fifo = n;
+        }
+        r->fifo = f->free_fifo;
+        f->free_fifo += f->nchannel;
+        f->nfree_fifo -= f->nchannel;
+    }
+    return &r->fifo[channel];
+}
+
+static struct flight *flight_alloc(struct fabric *f, int nhop)
+{
+    int kind = nhop / FLIGHT_STEP;
+    struct flight *w = f->free_flight[kind];
+    if (!w) {
+        size_t npass = (size_t)(kind + 1) * FLIGHT_STEP, size = sizeof *w + npass * sizeof(struct pass);
+        size = (size + 63) / 64 * 64;
+        size_t count = size > 16384 ? 1 : 32768 / size;
+        char *chunk = arena_take(f->net->arena, count * size);
+        for (size_t i = 0; i < count; i++) {
+            w = (struct flight *)(void *)(chunk + i * size);
+            w->next = f->free_flight[kind];
+            f->free_flight[kind] = w;
+        }
+    }
+    f->free_flight[kind] = w->next;
+    return w;
+}
+
+void flight_return(struct fabric *f, struct flight *w)
+{
+    int kind = w->nhop / FLIGHT_STEP;
+    w->next = f->free_flight[kind];
+    f->free_flight[kind] = w;
+}
+
+/* cut the message into packets; one that is larger than a buffer travels in pieces of a buffer's size */
+static void flight_cut(const struct fabric *f, struct flight *w)
+{
+    const struct net *n = f->net;
+    int64_t bytes = w->m->bytes, packets = net_packets(n, bytes);
+    int64_t last = net_packet_flits(n, bytes, packets - 1), full = packets > 1 ? net_packet_flits(n, bytes, 0) : last;
+    if (packets == 1 && last > f->buffer) {
+        packets = (last + f->buffer - 1) / f->buffer;
+        full = f->buffer;
+        last -= (packets - 1) * full;
+    }
+    CHECK(packets <= INT32_MAX);
+    w->npacket = (int)packets;
+    w->full = (int32_t)full;
+    w->last = (int32_t)last;
+}
+
+static void pass_init(struct fabric *f, struct flight *w, int h, const struct hop *way)
+{
+    struct pass *s = &w->pass[h];
+    int class = way->vc_class < f->nclass ? way->vc_class : f->nclass - 1;
+    *s = (struct pass){.flight = w, .hop = (int16_t)h, .resource = way->link, .port = way->port};
+    s->channel = (int16_t)(h == 0 ? 0 : class * f->nlane);
+    s->nchannel = (int16_t)(h == 0 ? f->nchannel : f->nlane);
+    s->flit = net_resource_rate(f->net, way->link).flit;
+}
+
+struct flight *flight_take(struct fabric *f, struct net_message *m)
+{
+    struct hop *way = f->way;
+    struct net_rate slowest;
+    int nhop = net_route(f->net, m, way, &slowest);
+    struct flight *w = flight_alloc(f, nhop);
+    *w = (struct flight){.m = m, .nhop = nhop, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
+    flight_cut(f, w);
+    for (int h = 0; h <= nhop; h++) pass_init(f, w, h, &way[h]);
+    f->nflight++;
+    return w;
+}
