@@ -77,17 +77,4 @@ bool dense_invert(int c, real *A, struct work *w);
 #define dense_solve_general REAL_NAME(dense_solve_general)
 bool dense_solve_general(int n, int m, real *A, real *B, struct work *w);
 
-/* dense_least_norm: x of least norm with S x = s for symmetric positive semi-definite S (n x n, full storage).
- *
- *   scale  in       (n) diagonal of the block that S was reduced from: rounding errors of S are of that size, so it,
- *                   never diag S, sets the scaling and what counts as zero
- *   S      in       destroyed
- *   s      in/out   (n) right-hand side, then x
- *   work   scratch  (n x n + 2n) elements
- *
- * Eigenvalues of the scaled S (cyclic Jacobi) above 1e-10 max(largest, 1) are kept (of the square root of the
- * precision in float). Returns the rank. Cost: the rotations done, 12 n each pair and sweep, added to w. */
-#define dense_least_norm REAL_NAME(dense_least_norm)
-int dense_least_norm(int n, const real *scale, real *S, real *s, real *work, struct work *w);
-
 #endif

@@ -1,0 +1,125 @@
+/* assembly.c - the blocks of the constraint force system (assembly.h). */
+#include "kernel/assembly.h"
+
+#include <string.h>
+
+#include "linalg/dense.h"
+
+void assembly_inverse_inertia(struct chain *ch, int i, real *phi)
+{
+    const struct body *b = &ch->shared->body[i];
+    if (!ch->dense) {
+        sym6_expand(phi, &b->phi);
+        return;
+    }
+    chain_shifted_inertia(b, phi, &ch->work);
+    dense_invert(6, phi, &ch->work);
+}
+
+/* transpose: a 6x6 matrix in place. */
+static void transpose(real *M)
+{
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < i; j++) {
+            const real t = M[6 * i + j];
+            M[6 * i + j] = M[6 * j + i];
+            M[6 * j + i] = t;
+        }
+}
+
+/* move_rows: row_k <- X^T row_k: M X for the 6x6 matrix M, in place. */
+static void move_rows(struct chain *ch, const real *X, real *M)
+{
+    for (int k = 0; k < 6; k++) xform_motion(M + 6 * k, (const struct xform *)X, M + 6 * k);
+    ch->work.flop += 6 * XFORM_MOTION_FLOP;
+    ch->work.call++;
+}
+
+void assembly_operators(struct chain *ch, int i, real *D, real *E)
+{
+    if (D) assembly_inverse_inertia(ch, i, D);
+    if (i == 0) {
+        memset(E, 0, 36 * sizeof *E);
+        return;
+    }
+    const real *X = chain_transform(ch, i);
+    real phi[36], moved[36];
+    assembly_inverse_inertia(ch, i - 1, phi);
+    if (ch->dense) {
+        dense_product_tn(6, 6, 6, X, phi, E, &ch->work);
+        if (D) dense_product(6, 6, 6, E, X, moved, &ch->work);
+    } else {
+        memcpy(E, phi, sizeof phi);
+        move_rows(ch, X, E);
+        transpose(E); /* X^T Phi */
+        if (D) {
+            memcpy(moved, E, sizeof moved);
+            move_rows(ch, X, moved);
+        }
+    }
+    if (D) {
+        for (int k = 0; k < 36; k++) D[k] += moved[k];
+        ch->work.flop += ch->dense ? 36 : 21;
+    }
+    for (int k = 0; k < 36; k++) E[k] = -E[k];
+}
+
+/* expand: out (6 x 6) = [H W] as a matrix. */
+static void expand(const struct subspace *s, real *out)
+{
+    for (int k = 0; k < 6; k++) {
+        real column[6];
+        subspace_column(s, k, column);
+        for (int i = 0; i < 6; i++) out[6 * i + k] = column[i];
+    }
+}
+
+/* turn_part: out (na x nb) = (columns from a0 of Q_a)^T M (columns from b0 of Q_b), by full products. */
+static void turn_part(struct chain *ch, const struct subspace *a, int a0, const real *M, const struct subspace *b,
+                      int b0, real *out)
+{
+    const int na = 6 - a0, nb = 6 - b0;
+    real left[36], right[36], product[36], part[36];
+    expand(a, left);
+    expand(b, right);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < nb; j++) part[i * nb + j] = right[6 * i + b0 + j];
+    dense_product(6, nb, 6, M, part, product, &ch->work);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < na; j++) part[i * na + j] = left[6 * i + a0 + j];
+    dense_product_tn(na, nb, 6, part, product, out, &ch->work);
+}
+
+void assembly_project(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out)
+{
+    if (ch->dense) {
+        turn_part(ch, a, a->d, M, b, b->d, out);
+        return;
+    }
+    subspace_project(a, true, M, b, true, out);
+    ch->work.flop += (uint64_t)((b->pick ? 0 : 66 * b->c) + (a->pick ? 0 : 11 * a->c * b->c));
+    ch->work.call++;
+}
+
+void assembly_turn(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out)
+{
+    if (ch->dense || !a->pick || !b->pick) {
+        turn_part(ch, a, 0, M, b, 0, out);
+        return;
+    }
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) out[6 * i + j] = M[6 * a->pick[i] + b->pick[j]];
+}
+
+void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real *x, real *y)
+{
+    subspace_h_transposed(s, x, y);
+    subspace_w_transposed(s, x, y + s->d);
+    if (!s->pick) ch->work.flop += 66;
+}
+
+void assembly_pack(int c, const real *M, int stride, real *packed)
+{
+    for (int i = 0; i < c; i++)
+        for (int j = 0; j <= i; j++) packed[packed_index(i, j)] = M[i * stride + j];
+}

@@ -1,0 +1,182 @@
+/* blocks.c - local elimination around the reduction of the interface rows (blocks.h). */
+#include "kernel/blocks.h"
+
+#include <string.h>
+
+#include "kernel/scan.h"
+#include "kernel/tags.h"
+
+void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
+                  const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep)
+{
+    b->size = size;
+    b->nrow = nrow;
+    b->lo = block_first(nrow, nrank, rank);
+    b->hi = block_first(nrow, nrank, rank + 1);
+    b->m = m;
+    b->keep = keep;
+    b->d_stride = packed_size(largest);
+    b->l_stride = largest * largest;
+    b->r_stride = largest * m;
+    b->factor_stride = block_factor_size(largest, largest, largest);
+    const int rows = b->hi - b->lo;
+    enum solver method = spec->solver;
+    if (method == SOLVER_PARTITION) method = spec->part_solver == PART_CR ? SOLVER_CR : SOLVER_PCR_SYMMETRIC;
+    reduction_carve(&b->reduction, c, spec, method, interface, rank, nrank, largest, m, keep);
+    b->left = CARVE(c, largest * m, real);
+    b->message = CARVE(c, block_update_size(largest, m) + largest * largest, real);
+    if (method == SOLVER_THOMAS) blocks_serial_carve(b, c, rank);
+    if (rows == 1) { /* the reduction's own row, nothing is copied */
+        b->D = b->reduction.D;
+        b->r = b->reduction.r;
+        b->L = reduction_left(&b->reduction);
+        return;
+    }
+    b->D = CARVE(c, rows * b->d_stride, real);
+    b->L = CARVE(c, rows * b->l_stride, real);
+    b->r = CARVE(c, rows * b->r_stride, real);
+    b->factor = CARVE(c, (rows - 1) * b->factor_stride, real);
+}
+
+/* transpose: out (n x m) from in (m x n). */
+static void transpose(int m, int n, const real *in, real *out)
+{
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < n; j++) out[j * m + i] = in[i * n + j];
+}
+
+/* add: sum += x, n elements. */
+static void add(int n, real *sum, const real *x, struct work *w)
+{
+    for (int i = 0; i < n; i++) sum[i] += x[i];
+    w->flop += (uint64_t)n;
+}
+
+/* orders of what a rank couples to: the row before its block, the last row of the next block. */
+static int order_left(const struct blocks *b) { return b->lo > 0 ? b->size[b->lo - 1] : 0; }
+static int order_right(const struct blocks *b)
+{
+    return b->hi < b->nrow ? b->reduction.size[comm_rank(b->comm) + 1] : 0;
+}
+
+/* spread_nothing: a pivot failed; whatever follows is not a number, on every rank. */
+static void spread_nothing(struct blocks *b, real *a_side, int na, real *b_side, int nb)
+{
+    b->broken = true;
+    for (int i = 0; i < na; i++) a_side[i] = (real)__builtin_nan("");
+    for (int i = 0; i < nb; i++) b_side[i] = (real)__builtin_nan("");
+}
+
+/* eliminate_inside: rows lo .. hi-2 by (5.3). The spike S, the coupling to the previous interface, ends in place of the
+ * last row's L; `sum` collects what the previous interface row gets. */
+static void eliminate_inside(struct blocks *b, real *sum, struct work *w)
+{
+    const int m = b->m, cs = order_left(b);
+    struct reduction *red = &b->reduction; /* its buffers are still free */
+    const int nsum = block_update_size(cs, m);
+    for (int i = 0; i < nsum; i++) sum[i] = 0;
+    for (int i = b->lo; i < b->hi - 1; i++) {
+        const int c = b->size[i], cn = b->size[i + 1];
+        real up[BLOCK_FULL];
+        transpose(cn, c, blocks_row_L(b, i + 1), up);
+        if (!block_row_eliminate(c, cs, cn, m, blocks_row_D(b, i), blocks_row_L(b, i), up, blocks_row_r(b, i),
+                                 b->factor + (i - b->lo) * b->factor_stride, red->y, red->out_a, red->out_b, w))
+            spread_nothing(b, red->out_a, nsum + cs * cn, red->out_b, block_update_size(cn, m) + cs * cn);
+        memcpy(blocks_row_r(b, i), red->y, (size_t)(c * m) * sizeof(real));
+        dense_subtract(packed_size(cn), blocks_row_D(b, i + 1), red->out_b, w);
+        dense_subtract(cn * m, blocks_row_r(b, i + 1), red->out_b + packed_size(cn), w);
+        if (cs == 0) continue;
+        memcpy(blocks_row_L(b, i + 1), red->out_b + block_update_size(cn, m), (size_t)(cn * cs) * sizeof(real));
+        add(nsum, sum, red->out_a, w);
+    }
+}
+
+/* couple: the local Schur complement to the left, the right neighbour's into D, r and U. */
+static void couple(struct blocks *b, struct work *w)
+{
+    struct comm *comm = b->comm;
+    const int k = comm_rank(comm), P = comm_size(comm), m = b->m, rows = b->hi - b->lo;
+    const int c = b->size[b->hi - 1], cs = order_left(b), cr = order_right(b);
+    if (k > 0) { /* [S, dD, dr] */
+        memcpy(b->message, blocks_row_L(b, b->hi - 1), (size_t)(c * cs) * sizeof(real));
+        const int n = c * cs + (rows > 1 ? block_update_size(cs, m) : 0);
+        comm_send(comm, k - 1, TAG_INTERFACE, b->message, n * (int64_t)sizeof(real));
+    }
+    if (k + 1 < P) {
+        const int theirs = block_first(b->nrow, P, k + 2) - b->hi;
+        const int n = cr * c + (theirs > 1 ? block_update_size(c, m) : 0);
+        comm_recv(comm, k + 1, TAG_INTERFACE, b->message, n * (int64_t)sizeof(real));
+        transpose(cr, c, b->message, reduction_right(&b->reduction));
+        if (theirs > 1) {
+            dense_subtract(packed_size(c), b->reduction.D, b->message + cr * c, w);
+            dense_subtract(c * m, b->reduction.r, b->message + cr * c + packed_size(c), w);
+            work_report(comm, w);
+        }
+    }
+}
+
+/* back: the interface solution to the right, then the rows inside from the end. */
+static void back(struct blocks *b, struct work *w)
+{
+    struct comm *comm = b->comm;
+    const int k = comm_rank(comm), P = comm_size(comm), m = b->m, c = b->size[b->hi - 1], cs = order_left(b);
+    if (b->hi - b->lo > 1) memcpy(blocks_row_r(b, b->hi - 1), b->reduction.r, (size_t)(c * m) * sizeof(real));
+    if (k + 1 < P) comm_send(comm, k + 1, TAG_BACK, b->reduction.r, c * m * (int64_t)sizeof(real));
+    if (k > 0) comm_recv(comm, k - 1, TAG_BACK, b->left, cs * m * (int64_t)sizeof(real));
+    for (int i = b->hi - 2; i >= b->lo; i--)
+        block_row_resubstitute(b->size[i], cs, b->size[i + 1], m, b->factor + (i - b->lo) * b->factor_stride,
+                               blocks_row_r(b, i), b->left, blocks_row_r(b, i + 1), w);
+    work_report(comm, w);
+}
+
+void blocks_solve(struct blocks *b, struct work *w)
+{
+    const int last = b->hi - 1, rows = b->hi - b->lo, c = b->size[last], cs = order_left(b);
+    b->reduction.comm = b->comm;
+    if (b->reduction.method == SOLVER_THOMAS) {
+        blocks_serial_solve(b, false, w);
+        return;
+    }
+    if (rows > 1) {
+        eliminate_inside(b, b->message + c * cs, w);
+        memcpy(b->reduction.D, blocks_row_D(b, last), (size_t)packed_size(c) * sizeof(real));
+        memcpy(b->reduction.r, blocks_row_r(b, last), (size_t)(c * b->m) * sizeof(real));
+        memcpy(reduction_left(&b->reduction), blocks_row_L(b, last), (size_t)(c * cs) * sizeof(real));
+    }
+    work_report(b->comm, w);
+    couple(b, w);
+    reduction_run(&b->reduction, TAG_REDUCE, w);
+    b->broken = b->broken || b->reduction.broken;
+    back(b, w);
+}
+
+void blocks_resolve(struct blocks *b, struct work *w)
+{
+    struct comm *comm = b->comm;
+    const int k = comm_rank(comm), P = comm_size(comm), m = b->m, rows = b->hi - b->lo, last = b->hi - 1;
+    const int cs = order_left(b), c = b->size[last];
+    struct reduction *red = &b->reduction;
+    if (red->method == SOLVER_THOMAS) {
+        blocks_serial_solve(b, true, w);
+        return;
+    }
+    for (int i = 0; i < cs * m; i++) b->message[i] = 0;
+    for (int i = b->lo; i < last; i++) {
+        const int cn = b->size[i + 1];
+        block_row_reduce(b->size[i], cs, cn, m, b->factor + (i - b->lo) * b->factor_stride, blocks_row_r(b, i), red->y,
+                         red->out_a, red->out_b, w);
+        memcpy(blocks_row_r(b, i), red->y, (size_t)(b->size[i] * m) * sizeof(real));
+        dense_subtract(cn * m, blocks_row_r(b, i + 1), red->out_b, w);
+        add(cs * m, b->message, red->out_a, w);
+    }
+    if (rows > 1) memcpy(red->r, blocks_row_r(b, last), (size_t)(c * m) * sizeof(real));
+    work_report(comm, w);
+    if (k > 0 && rows > 1) comm_send(comm, k - 1, TAG_INTERFACE, b->message, cs * m * (int64_t)sizeof(real));
+    if (k + 1 < P && block_first(b->nrow, P, k + 2) - b->hi > 1) {
+        comm_recv(comm, k + 1, TAG_INTERFACE, b->message, c * m * (int64_t)sizeof(real));
+        dense_subtract(c * m, red->r, b->message, w);
+        work_report(comm, w);
+    }
+    reduction_rerun(red, TAG_REDUCE, w);
+    back(b, w);
+}

@@ -1,0 +1,79 @@
+/* blocks.h - block tridiagonal systems whose rows lie in contiguous blocks on the ranks.
+ *
+ * Rank k owns rows lo .. hi-1. Rows but the last are eliminated locally (substructuring, physics 5.4 a), leaving one
+ * interface row per rank for a reduction; with one row per rank nothing is left to eliminate. Or all rows take part in
+ * the reduction (5.4 b), or rank 0 gathers and solves everything (block Thomas). */
+#ifndef KERNEL_BLOCKS_H
+#define KERNEL_BLOCKS_H
+
+#include <stdbool.h>
+
+#include "kernel/reduction.h"
+#include "linalg/block_tridiag.h"
+
+struct blocks {
+    struct comm *comm;
+    const unsigned char *size;  /* (nrow of the whole system) orders */
+    int nrow, lo, hi;           /* rows in all; own rows */
+    int m;                      /* right-hand sides */
+    int d_stride, l_stride, r_stride, factor_stride;
+    real *D, *L, *r;            /* own rows: packed; coupling to the row before; right-hand side, then solution */
+    real *factor;               /* of the rows eliminated locally */
+    real *message;              /* [S, dD, dr] */
+    real *left;                 /* (c x m) solution of the row before lo, after blocks_solve */
+    bool keep;
+    bool broken;                /* a local pivot was not positive */
+    struct reduction reduction; /* of the interface row */
+    struct block_tridiag *whole;/* SOLVER_THOMAS, rank 0: the whole system */
+    real *x, *gathered;         /* and its solution (nrow x 6 m); messages of rows */
+};
+
+/* block_first: first row of rank k of nrank when nrow rows are split evenly, larger blocks first. */
+static inline int block_first(int nrow, int nrank, int k)
+{
+    const int rest = nrow % nrank;
+    return k * (nrow / nrank) + (k < rest ? k : rest);
+}
+
+/* block_owner: the rank that owns row i. */
+static inline int block_owner(int nrow, int nrank, int i)
+{
+    const int q = nrow / nrank, rest = nrow % nrank, cut = rest * (q + 1);
+    return i < cut ? i / (q + 1) : rest + (i - cut) / q;
+}
+
+/* blocks_carve: room for rank `rank`'s rows.
+ *
+ *   size       in  (nrow) orders of all rows
+ *   interface  in  (nrank) orders of the last row of each block
+ *   largest    in  the largest order
+ *   m, keep    in  right-hand sides; whether further ones will follow */
+#define blocks_carve REAL_NAME(blocks_carve)
+void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
+                  const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep);
+
+/* blocks_row_D, _L, _r: where the parts of own row i go before blocks_solve: D packed, L (c_i x c_{i-1}), r (c_i x m). */
+static inline real *blocks_row_D(const struct blocks *b, int i) { return b->D + (i - b->lo) * b->d_stride; }
+static inline real *blocks_row_L(const struct blocks *b, int i) { return b->L + (i - b->lo) * b->l_stride; }
+static inline real *blocks_row_r(const struct blocks *b, int i) { return b->r + (i - b->lo) * b->r_stride; }
+
+/* blocks_solve: the solution into the rows' r and into `left`; D and L are used up. Every rank must call.
+ *
+ *   Messages beside the reduction's: one to the left (8 c^2 bytes for one row, with the Schur complement of more rows),
+ *   one with the interface solution to the right. */
+#define blocks_solve REAL_NAME(blocks_solve)
+void blocks_solve(struct blocks *b, struct work *w);
+
+/* blocks_resolve: another right-hand side in the rows' r, with the factors of blocks_solve (keep). */
+#define blocks_resolve REAL_NAME(blocks_resolve)
+void blocks_resolve(struct blocks *b, struct work *w);
+
+/* blocks_serial_solve: SOLVER_THOMAS: gather to rank 0, solve, scatter. */
+#define blocks_serial_solve REAL_NAME(blocks_serial_solve)
+void blocks_serial_solve(struct blocks *b, bool again, struct work *w);
+
+/* blocks_serial_carve: room for it: the whole system on rank 0. */
+#define blocks_serial_carve REAL_NAME(blocks_serial_carve)
+void blocks_serial_carve(struct blocks *b, struct carve *c, int rank);
+
+#endif

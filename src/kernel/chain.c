@@ -1,0 +1,303 @@
+/* chain.c - parallel Newton-Euler on blocks of a chain (chain.h). */
+#include "kernel/chain.h"
+
+#include <string.h>
+
+#include "kernel/assembly.h"
+#include "kernel/blocks.h"
+#include "kernel/tags.h"
+#include "linalg/dense.h"
+
+int chain_nu(const struct chain_shared *shared, int lo, int hi)
+{
+    const struct body *last = &shared->body[hi - 1];
+    return last->u_at + last->d - shared->body[lo].u_at;
+}
+
+int chain_nq(const struct chain_shared *shared, int lo, int hi)
+{
+    const struct body *last = &shared->body[hi - 1];
+    return last->q_at + last->nq - shared->body[lo].q_at;
+}
+
+struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a)
+{
+    const struct model *model = job->model;
+    struct chain_shared *s = TAKE(a, 1, struct chain_shared);
+    unsigned char *size = TAKE(a, model->nbody, unsigned char), *interface = TAKE(a, job->nrank, unsigned char);
+    s->body = bodies_make(model, a);
+    for (int i = 0; i < model->nbody; i++) {
+        size[i] = (unsigned char)(6 - s->body[i].d);
+        if (size[i] > s->largest) s->largest = size[i];
+    }
+    for (int k = 0; k < job->nrank && job->nrank <= model->nbody; k++)
+        interface[k] = size[block_first(model->nbody, job->nrank, k + 1) - 1];
+    s->size = size;
+    s->interface = interface;
+    s->ncolumn = 1 + model->nrow;
+    for (int i = 0; i < 6; i++)
+        s->base[i] = (real)job->state->base_acceleration[i] - (i < 3 ? 0 : (real)model->gravity[i - 3]);
+    return s;
+}
+
+void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge)
+{
+    const struct chain_shared *s = job->shared;
+    const int n = job->model->nbody, lo = block_first(n, job->nrank, rank), hi = block_first(n, job->nrank, rank + 1);
+    const int room = hi - lo + (edge && hi < n ? 1 : 0);
+    ch->job = job;
+    ch->shared = s;
+    ch->n = n, ch->lo = lo, ch->hi = hi;
+    ch->dense = job->spec->kernel.operators == OPERATORS_DENSE;
+    ch->q = CARVE(c, chain_nq(s, lo, hi), real);
+    ch->u = CARVE(c, chain_nu(s, lo, hi), real);
+    ch->pose = CARVE(c, room, struct body_pose);
+    ch->matrix = CARVE(c, ch->dense ? 36 * room : 0, real);
+    ch->h = CARVE(c, 6 * (hi - lo), real);
+    ch->v = CARVE(c, 6 * (hi - lo), real);
+    ch->a = CARVE(c, 6 * (hi - lo), real);
+    ch->f = CARVE(c, 6 * (hi - lo), real);
+    ch->b = CARVE(c, 6 * (hi - lo), real);
+    scan_carve(&ch->scan, c, ch->dense, job->spec->kernel.composites_incoming, rank, job->nrank);
+}
+
+void chain_load(struct chain *ch)
+{
+    const struct state *state = ch->job->state;
+    const struct body *first = &ch->shared->body[ch->lo];
+    const int nq = chain_nq(ch->shared, ch->lo, ch->hi), nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    for (int k = 0; k < nq; k++) ch->q[k] = (real)state->q[first->q_at + k];
+    for (int k = 0; k < nu; k++) ch->u[k] = (real)state->qd[first->u_at + k];
+}
+
+void chain_place(struct chain *ch)
+{
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const struct body *b = &ch->shared->body[i];
+        const struct joint_cost *cost = joint_cost_of(b->joint);
+        struct body_pose *pose = &ch->pose[i - ch->lo];
+        body_place(b, ch->q + chain_q_at(ch, i), pose);
+        body_rate(pose, ch->u + chain_u_at(ch, i), chain_at(ch, ch->h, i));
+        ch->work.flop += (uint64_t)(cost->place + (ch->dense ? 6 * b->d : cost->rate));
+        ch->work.trig += (uint64_t)cost->place_trig;
+        ch->work.div += (uint64_t)cost->place_div;
+        ch->work.call += 2;
+        if (ch->dense) transform_expand(true, ch->matrix + 36 * (i - ch->lo), &pose->x, &ch->work);
+    }
+    chain_report(ch);
+}
+
+/* compose_block: C = X_lo o .. o X_{hi-1}, the transform from this block's end to the end of the block before. */
+static void compose_block(struct chain *ch, real *C)
+{
+    const int size = ch->scan.size;
+    real next[36];
+    memcpy(C, chain_transform(ch, ch->lo), (size_t)size * sizeof(real));
+    for (int i = ch->lo + 1; i < ch->hi; i++) {
+        transform_compose(ch->dense, next, C, chain_transform(ch, i), &ch->work);
+        memcpy(C, next, (size_t)size * sizeof(real));
+    }
+}
+
+/* begin_composites: level 0 of the scan's transforms. In the outgoing form it is the right neighbour's. */
+static void begin_composites(struct chain *ch)
+{
+    const int k = comm_rank(ch->comm);
+    const int64_t bytes = ch->scan.size * (int64_t)sizeof(real);
+    if (ch->scan.incoming) {
+        if (k > 0) compose_block(ch, ch->scan.level);
+        return;
+    }
+    if (k > 0) {
+        compose_block(ch, ch->scan.in);
+        chain_report(ch);
+        comm_send(ch->comm, k - 1, TAG_COMPOSITE, ch->scan.in, bytes);
+    }
+    if (k + 1 < comm_size(ch->comm)) comm_recv(ch->comm, k + 1, TAG_COMPOSITE, ch->scan.level, bytes);
+}
+
+/* sweep_up: x_i = X_i^T x_{i-1} + x_i for i = from .. to-1, in place; `before` (6) is x_{from-1}. */
+static void sweep_up(struct chain *ch, real *x, const real *before, int from, int to)
+{
+    for (int i = from; i < to; i++) {
+        real moved[6], *now = chain_at(ch, x, i);
+        transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
+        six_add(now, moved);
+        ch->work.flop += SIX_ADD_FLOP;
+        before = now;
+    }
+}
+
+/* end_of_block: x at the block's last body when x before the block is zero; x is not changed. */
+static void end_of_block(struct chain *ch, real *x, real *end)
+{
+    six_copy(end, chain_at(ch, x, ch->lo));
+    for (int i = ch->lo + 1; i < ch->hi; i++) {
+        transform_motion(ch->dense, end, chain_transform(ch, i), end, &ch->work);
+        six_add(end, chain_at(ch, x, i));
+        ch->work.flop += SIX_ADD_FLOP;
+    }
+}
+
+/* scan_up: x_i += X_i^T x_{i-1} along the whole chain, in place (physics 3.1, 3.3). */
+static void scan_up(struct chain *ch, real *x, bool first, int tag)
+{
+    struct comm *c = ch->comm;
+    const int k = comm_rank(c), P = comm_size(c), m = ch->hi - ch->lo;
+    const int next = k + 1 < P ? block_first(ch->n, P, k + 2) - ch->hi : 0;
+    const int shift = TAG_SHIFT + tag / TAG_STEP;
+    real end[6], before[6];
+    if (first) begin_composites(ch);
+    end_of_block(ch, x, end);
+    if (first) scan_first(&ch->scan, tag, end, &ch->work);
+    else scan_motion(&ch->scan, tag, end, &ch->work);
+    if (next > 1) comm_send(c, k + 1, shift, end, (int64_t)sizeof end);
+    if (m > 1 && k > 0) {
+        comm_recv(c, k - 1, shift, before, (int64_t)sizeof before);
+        sweep_up(ch, x, before, ch->lo, ch->hi - 1);
+    } else if (m > 1) {
+        sweep_up(ch, x, x, ch->lo + 1, ch->hi - 1);
+    }
+    six_copy(chain_at(ch, x, ch->hi - 1), end);
+    chain_report(ch);
+}
+
+/* sweep_down: f_i += X_{i+1} f_{i+1} inside the block, in place. */
+static void sweep_down(struct chain *ch, real *f)
+{
+    for (int i = ch->hi - 2; i >= ch->lo; i--) {
+        real moved[6];
+        transform_force(ch->dense, moved, chain_transform(ch, i + 1), chain_at(ch, f, i + 1), &ch->work);
+        six_add(chain_at(ch, f, i), moved);
+        ch->work.flop += SIX_ADD_FLOP;
+    }
+}
+
+/* entering: total force that enters the block at its last body, from the blocks' own sums (shift first, then scan, so
+ * that the composites of the motions are the right ones). */
+static void entering(struct chain *ch, real *total)
+{
+    struct comm *c = ch->comm;
+    const int k = comm_rank(c);
+    real sum[6];
+    six_copy(sum, chain_at(ch, ch->f, ch->hi - 1));
+    for (int i = ch->hi - 1; i > ch->lo; i--) {
+        transform_force(ch->dense, sum, chain_transform(ch, i), sum, &ch->work);
+        six_add(sum, chain_at(ch, ch->f, i - 1));
+        ch->work.flop += SIX_ADD_FLOP;
+    }
+    if (k > 0) {
+        transform_force(ch->dense, sum, chain_transform(ch, ch->lo), sum, &ch->work);
+        chain_report(ch);
+        comm_send(c, k - 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, sum, (int64_t)sizeof sum);
+    }
+    six_zero(total);
+    if (k + 1 < comm_size(c)) comm_recv(c, k + 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, total, (int64_t)(6 * sizeof *total));
+    scan_force(&ch->scan, TAG_FORCE, total, &ch->work);
+}
+
+void chain_velocity(struct chain *ch)
+{
+    memcpy(ch->v, ch->h, (size_t)(6 * (ch->hi - ch->lo)) * sizeof(real));
+    scan_up(ch, ch->v, true, TAG_VELOCITY);
+}
+
+void chain_bias(struct chain *ch)
+{
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const struct body *b = &ch->shared->body[i];
+        body_bias(b, &ch->pose[i - ch->lo], chain_at(ch, ch->v, i), chain_at(ch, ch->h, i), ch->u + chain_u_at(ch, i),
+                  chain_at(ch, ch->b, i));
+        ch->work.flop += (uint64_t)joint_cost_of(b->joint)->bias;
+        ch->work.call++;
+    }
+}
+
+void chain_acceleration(struct chain *ch, const real *ud)
+{
+    memcpy(ch->a, ch->b, (size_t)(6 * (ch->hi - ch->lo)) * sizeof(real));
+    for (int i = ch->lo; i < ch->hi && ud; i++) {
+        const struct body *b = &ch->shared->body[i];
+        subspace_h(&ch->pose[i - ch->lo].s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));
+        ch->work.flop += (uint64_t)(ch->dense ? 12 * b->d : joint_cost_of(b->joint)->h);
+    }
+    if (ch->lo == 0) {
+        real moved[6];
+        transform_motion(ch->dense, moved, chain_transform(ch, 0), ch->shared->base, &ch->work);
+        six_add(ch->a, moved);
+        ch->work.flop += SIX_ADD_FLOP;
+    }
+    scan_up(ch, ch->a, false, TAG_ACCELERATION);
+}
+
+void chain_gyro(struct chain *ch, int i, real *f)
+{
+    const struct body *b = &ch->shared->body[i];
+    const double *fext = ch->job->state->fext;
+    body_gyro(b, chain_at(ch, ch->v, i), f);
+    ch->work.flop += BODY_GYRO_FLOP;
+    ch->work.call++;
+    if (!fext) return;
+    real load[6];
+    body_load(b, fext + 6 * i, load);
+    six_sub(f, load);
+    ch->work.flop += BODY_LOAD_FLOP + SIX_ADD_FLOP;
+}
+
+void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
+{
+    real shift[36] = {0}, about[36] = {0}, product[36];
+    static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
+    shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
+    for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->jc[at[i]];
+    for (int i = 3; i < 6; i++) about[7 * i] = b->m;
+    dense_product(6, 6, 6, shift, about, product, w);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < i; j++) {
+            const real t = shift[6 * i + j];
+            shift[6 * i + j] = shift[6 * j + i];
+            shift[6 * j + i] = t;
+        }
+    dense_product(6, 6, 6, product, shift, inertia, w);
+}
+
+/* load: f = I a + P - Fext of own body i. */
+static void load(struct chain *ch, int i)
+{
+    const struct body *b = &ch->shared->body[i];
+    real inertial[6], *f = chain_at(ch, ch->f, i);
+    chain_gyro(ch, i, f);
+    if (ch->dense) {
+        real inertia[36];
+        chain_shifted_inertia(b, inertia, &ch->work);
+        dense_product(6, 1, 6, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
+        ch->work.flop += SIX_ADD_FLOP;
+    } else {
+        body_force(b, chain_at(ch, ch->a, i), inertial);
+        ch->work.flop += BODY_FORCE_FLOP;
+        ch->work.call++;
+    }
+    six_add(f, inertial);
+}
+
+void chain_force(struct chain *ch, real *tau)
+{
+    for (int i = ch->lo; i < ch->hi; i++) load(ch, i);
+    if (ch->n == comm_size(ch->comm)) {
+        scan_force(&ch->scan, TAG_FORCE, ch->f, &ch->work);
+    } else {
+        real total[6];
+        entering(ch, total);
+        six_add(chain_at(ch, ch->f, ch->hi - 1), total);
+        ch->work.flop += SIX_ADD_FLOP;
+        sweep_down(ch, ch->f);
+    }
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const struct body *b = &ch->shared->body[i];
+        subspace_h_transposed(&ch->pose[i - ch->lo].s, chain_at(ch, ch->f, i), tau + chain_u_at(ch, i));
+        ch->work.flop += (uint64_t)(ch->dense ? 11 * b->d : joint_cost_of(b->joint)->h_transposed);
+    }
+    chain_report(ch);
+}

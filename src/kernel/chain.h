@@ -1,0 +1,111 @@
+/* chain.h - one rank's share of a chain: a contiguous block of bodies, and parallel Newton-Euler on it.
+ *
+ * Inverse dynamics is three linear recurrences along the chain with the same transforms (physics 3; Lee and Chang
+ * 1986): velocities and accelerations upwards, forces downwards. Each is a sweep over the block, a scan over the
+ * ranks, and with more than one body a second sweep. */
+#ifndef KERNEL_CHAIN_H
+#define KERNEL_CHAIN_H
+
+#include <stdbool.h>
+
+#include "kernel/carve.h"
+#include "kernel/kernel.h"
+#include "kernel/scan.h"
+#include "mech/body.h"
+#include "mech/model.h"
+
+/* What all ranks share, made by prepare; read-only. */
+struct chain_shared {
+    const struct body *body;       /* (nbody) constants */
+    const unsigned char *size;     /* (nbody) constraints of each joint */
+    const unsigned char *interface;/* (nrank) constraints of the last joint of each block */
+    int largest;                   /* largest number of constraints of a joint */
+    int ncolumn;                   /* right-hand sides of the constraint system: 1 + rows of all loops */
+    real base[6];                  /* acceleration of the base minus gravity */
+};
+
+/* One rank's share. Arrays over own bodies are indexed by i - lo. */
+struct chain {
+    struct comm *comm;
+    const struct kernel_job *job;
+    const struct chain_shared *shared;
+    int n, lo, hi;
+    bool dense;              /* operators as full 6x6 matrices */
+    struct work work;        /* done since the last report */
+    real *q, *u;             /* coordinates and rates of own bodies, from q_at and u_at of body lo */
+    struct body_pose *pose;  /* own; one more behind for the neighbour's first body if asked for */
+    real *matrix;            /* dense: the transforms as matrices, (36) each */
+    struct scan scan;
+    real *h;                 /* (6) joint velocity H u */
+    real *v, *a, *f;         /* (6) velocity, acceleration, force */
+    real *b;                 /* (6) joint bias acceleration */
+};
+
+/* chain_shared_make: from a job's model, state and number of ranks. */
+#define chain_shared_make REAL_NAME(chain_shared_make)
+struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a);
+
+/* chain_carve: room for rank `rank`'s share; `edge`: with a pose for the right neighbour's first body. */
+#define chain_carve REAL_NAME(chain_carve)
+void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge);
+
+/* chain_load: coordinates and rates of own bodies from the job's state. */
+#define chain_load REAL_NAME(chain_load)
+void chain_load(struct chain *ch);
+
+/* chain_place: transforms, subspaces and joint velocities of own bodies. */
+#define chain_place REAL_NAME(chain_place)
+void chain_place(struct chain *ch);
+
+/* chain_velocity: v of own bodies; builds the composites of the scan. Stage NE[1]. */
+#define chain_velocity REAL_NAME(chain_velocity)
+void chain_velocity(struct chain *ch);
+
+/* chain_bias: b of own bodies from v. */
+#define chain_bias REAL_NAME(chain_bias)
+void chain_bias(struct chain *ch);
+
+/* chain_acceleration: a of own bodies from b and u' (ud over own joints, NULL: zero). Stage NE[2]. */
+#define chain_acceleration REAL_NAME(chain_acceleration)
+void chain_acceleration(struct chain *ch, const real *ud);
+
+/* chain_force: f of own bodies, and joint forces tau over own joints. Stage NE[3]. */
+#define chain_force REAL_NAME(chain_force)
+void chain_force(struct chain *ch, real *tau);
+
+/* chain_gyro: P - Fext of own body i into f (6). */
+#define chain_gyro REAL_NAME(chain_gyro)
+void chain_gyro(struct chain *ch, int i, real *f);
+
+/* chain_transform: the transform of own body i (or of body hi) in the form that the operators use. */
+static inline const real *chain_transform(const struct chain *ch, int i)
+{
+    return ch->dense ? ch->matrix + 36 * (i - ch->lo) : (const real *)&ch->pose[i - ch->lo].x;
+}
+
+/* chain_at: element i of an array of 6-vectors over own bodies. */
+static inline real *chain_at(const struct chain *ch, real *array, int i) { return array + 6 * (i - ch->lo); }
+
+/* chain_u_at, chain_q_at: place of body i's first rate (coordinate) in arrays over own joints. */
+static inline int chain_u_at(const struct chain *ch, int i)
+{
+    return ch->shared->body[i].u_at - ch->shared->body[ch->lo].u_at;
+}
+static inline int chain_q_at(const struct chain *ch, int i)
+{
+    return ch->shared->body[i].q_at - ch->shared->body[ch->lo].q_at;
+}
+
+/* chain_nu, chain_nq: rates (coordinates) of own joints. */
+#define chain_nu REAL_NAME(chain_nu)
+int chain_nu(const struct chain_shared *shared, int lo, int hi);
+#define chain_nq REAL_NAME(chain_nq)
+int chain_nq(const struct chain_shared *shared, int lo, int hi);
+
+/* chain_report: tell the machine what was done since the last report. */
+static inline void chain_report(struct chain *ch) { work_report(ch->comm, &ch->work); }
+
+/* The stages of all kernels of dynamics. */
+enum { STAGE_PLACE, STAGE_VELOCITY, STAGE_ACCELERATION, STAGE_FORCE, STAGE_ASSEMBLY, STAGE_SOLVE, STAGE_FINISH };
+
+#endif

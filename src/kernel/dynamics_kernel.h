@@ -1,0 +1,16 @@
+/* dynamics_kernel.h - the kernels of multibody dynamics in the build's precision, for the table in kernel.c. */
+#ifndef KERNEL_DYNAMICS_KERNEL_H
+#define KERNEL_DYNAMICS_KERNEL_H
+
+#include "kernel/kernel.h"
+#include "linalg/real.h"
+
+/* inverse: parallel Newton-Euler; forward: constraint force algorithm; dynamics: both, a barrier between them. */
+#define inverse_kernel REAL_NAME(inverse_kernel)
+extern const struct kernel_type inverse_kernel;
+#define forward_kernel REAL_NAME(forward_kernel)
+extern const struct kernel_type forward_kernel;
+#define dynamics_kernel REAL_NAME(dynamics_kernel)
+extern const struct kernel_type dynamics_kernel;
+
+#endif

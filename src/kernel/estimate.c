@@ -1,0 +1,174 @@
+/* estimate.c - costs of the dynamics kernels by formula (estimate.h). */
+#include "kernel/estimate.h"
+
+#include "kernel/blocks.h"
+#include "kernel/chain.h"
+#include "mech/model.h"
+
+/* What the formulas need of a spec: P ranks, n bodies, orders of a typical joint (that of the last body). */
+struct outline {
+    double P, n, steps;   /* steps: ceil(log2 P) */
+    double pairs;         /* sum over the steps of the ranks that have a partner: messages of one scan */
+    double triples;       /* of the ranks with partners on both sides, the receiving one's sender having another */
+    double c, d, nq;
+    double x, y, T;       /* flops of a transform and of a composition; numbers of a transform */
+    bool split;           /* more than one body on some rank */
+    double shifts, many;  /* ranks with several bodies that have a left neighbour; ranks with several bodies */
+};
+
+static struct outline outline_of(const struct run_spec *spec, const struct model *model)
+{
+    const int P = spec->nrank, n = model->nbody, last = n - 1;
+    struct outline o = {.P = P, .n = n};
+    for (int d = 1; d < P; d *= 2) {
+        o.steps += 1;
+        o.pairs += P - d;
+        o.triples += P > 2 * d ? P - 2 * d : 0;
+    }
+    o.d = model->u_at[last + 1] - model->u_at[last];
+    o.nq = model->q_at[last + 1] - model->q_at[last];
+    o.c = 6 - o.d;
+    const bool dense = spec->kernel.operators == OPERATORS_DENSE;
+    o.x = dense ? 66 : XFORM_FORCE_FLOP;
+    o.y = dense ? 396 : XFORM_COMPOSE_FLOP;
+    o.T = dense ? 36 : 12;
+    o.split = n > P;
+    o.many = !o.split ? 0 : n >= 2 * P ? P : n - P;
+    o.shifts = o.many > 0 ? o.many - 1 : 0;
+    return o;
+}
+
+/* add: messages of `numbers` reals each. */
+static void add(struct kernel_estimate *e, double messages, double numbers)
+{
+    e->messages += messages;
+    e->bytes += messages * numbers * (double)sizeof(real);
+}
+
+/* velocity_scan, vector_scan: physics 3.1 to 3.3. */
+static void velocity_scan(const struct outline *o, bool incoming, struct kernel_estimate *e)
+{
+    const double inside = o->n - o->P;
+    add(e, o->pairs, 6);
+    if (incoming) {
+        e->bytes += o->triples * o->T * (double)sizeof(real);
+    } else {
+        add(e, o->triples + o->P - 1, o->T);
+    }
+    add(e, o->shifts, 6);
+    e->flops += o->pairs * (o->x + 6) + o->triples * o->y;
+    e->flops += inside * (2 * (o->x + 6) + o->y);
+}
+
+static void vector_scan(const struct outline *o, bool force, struct kernel_estimate *e)
+{
+    const double inside = o->n - o->P;
+    add(e, o->pairs, 6);
+    add(e, force ? (o->split ? o->P - 1 : 0) : o->shifts, 6);
+    e->flops += o->pairs * (o->x + 6) + 2 * inside * (o->x + 6) + (force && o->split ? (o->P - 1) * o->x : 0);
+}
+
+/* bodies: local work of inverse dynamics. */
+static void local_inverse(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+{
+    const bool dense = spec->kernel.operators == OPERATORS_DENSE;
+    const double place = 58, bias = 45, load = 39 + 66;
+    e->flops += o->n * (place + bias + load + 3 * o->d) + (dense ? o->n * (396 + 792) : 0);
+}
+
+/* reduction of one interface row per rank: physics (5.2), 5.3. */
+static void interface(const struct run_spec *spec, const struct outline *o, double m, struct kernel_estimate *e)
+{
+    const double c = o->c, packed = c * (c + 1) / 2;
+    const double factor = c * (c + 1) * (2 * c + 1) / 6, triangular = c * c, product = c * (2 * c - 1);
+    const double one = factor + m * triangular + c * triangular + packed * (2 * c - 1) + m * product;
+    const double two = one + c * triangular + packed * (2 * c - 1) + m * product + c * product;
+    const double update = packed + c * m;
+    const enum solver s = spec->kernel.solver;
+    const bool cyclic = s == SOLVER_CR || s == SOLVER_CR_PCR || (s == SOLVER_PARTITION && spec->kernel.part_solver == PART_CR);
+    if (s == SOLVER_THOMAS) {
+        add(e, o->P - 1, o->n / o->P * (packed + c * c + c * m) + 0);
+        add(e, o->P - 1, (o->n / o->P + 1) * c * m);
+        e->flops += o->n * (factor + triangular * c + packed * 2 * c + m * (2 * triangular + 4 * c * c));
+    } else if (s == SOLVER_PCR) {
+        add(e, 2 * o->pairs, 3 * c * c + c * m);
+        e->flops += 2 * o->pairs * (2 * c * c * c + 3 * c * product + c * c + m * (product + c));
+        e->flops += o->P * (2 * c * c * c + m * product);
+    } else if (cyclic) {
+        const double messages = 2 * (o->P - 1) - o->steps;
+        add(e, messages, update + c * c);
+        add(e, messages, c * m);
+        e->flops += o->P * (two + m * (triangular + 2 * product + 2 * c)) + messages * update;
+    } else {
+        add(e, 2 * o->pairs, update);
+        e->bytes += 2 * o->triples * c * c * (double)sizeof(real);
+        const double edges = 2 * (o->pairs - o->triples), both = o->P * o->steps - edges;
+        e->flops += both * two + edges * one + 2 * o->pairs * update + o->P * (factor + 2 * m * triangular);
+    }
+}
+
+/* solution: the block tridiagonal system. */
+static void solution(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+{
+    const double c = o->c, packed = c * (c + 1) / 2;
+    interface(spec, o, 1, e);
+    if (spec->kernel.solver == SOLVER_THOMAS) return;
+    add(e, o->P - 1, c * c); /* coupling to the left, with the Schur complement of several rows */
+    e->bytes += o->shifts * (packed + c) * (double)sizeof(real);
+    add(e, o->P - 1, c); /* interface solution to the right */
+    const double inside = o->n - o->P, factor = c * (c + 1) * (2 * c + 1) / 6, product = c * (2 * c - 1);
+    e->flops += inside * (factor + c * c * (2 * c + 1) + 2 * (packed * (2 * c - 1) + product + packed + c) + c * product);
+    e->flops += inside * (c * c + 2 * (product + c));
+}
+
+/* steps: a scan's transforms that one rank holds. */
+static double rank_memory(const struct outline *o, bool keep)
+{
+    const double c = o->c, update = c * (c + 1) / 2 + c + c * c, factor = c * (c + 1) / 2 + 2 * c * c, m = o->n / o->P;
+    const double row = 4 * update + factor * (keep ? o->steps + 1 : 1) + 4 * c + c * (c + 1) / 2;
+    const double rows = m > 1 ? m * (c * (c + 1) / 2 + c * c + c + factor) : 0;
+    return (m * (12 + 36 + 60) + o->T * (o->steps + 1) + row + rows) * (double)sizeof(real) + 512;
+}
+
+void estimate_inverse(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    const struct outline o = outline_of(spec, model);
+    *out = (struct kernel_estimate){0};
+    velocity_scan(&o, spec->kernel.composites_incoming, out);
+    vector_scan(&o, false, out);
+    vector_scan(&o, true, out);
+    local_inverse(spec, &o, out);
+    out->rank_bytes = (o.n / o.P * (12 + 36 + 36) + o.T * (o.steps + 2)) * (double)sizeof(real) + 512;
+}
+
+void estimate_forward(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    const struct outline o = outline_of(spec, model);
+    const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
+    *out = (struct kernel_estimate){0};
+    velocity_scan(&o, spec->kernel.composites_incoming, out);
+    if (!direct) {
+        vector_scan(&o, false, out);
+        vector_scan(&o, true, out);
+    }
+    local_inverse(spec, &o, out);
+    const double edges = o.P - 1;
+    add(out, 2 * edges, o.nq);
+    add(out, edges, o.d);
+    add(out, edges, o.d + (direct ? 6 : 0));
+    solution(spec, &o, out);
+    add(out, edges, o.c);
+    out->flops += o.n * 525 + (direct ? 2 * o.n * (2 * o.x + 66 + 24) + 2 * edges * (66 + 12 + o.x) : o.n * 60 + edges * 310);
+    out->rank_bytes = rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
+}
+
+void estimate_dynamics(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    struct kernel_estimate inverse, forward;
+    estimate_inverse(spec, model, &inverse);
+    estimate_forward(spec, model, &forward);
+    *out = forward;
+    out->messages += inverse.messages;
+    out->bytes += inverse.bytes;
+    out->flops += inverse.flops;
+}

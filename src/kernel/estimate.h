@@ -1,0 +1,15 @@
+/* estimate.h - messages, bytes, flops and memory of the dynamics kernels by formula (physics 3.1, 4.5, 5). */
+#ifndef KERNEL_ESTIMATE_H
+#define KERNEL_ESTIMATE_H
+
+#include "kernel/kernel.h"
+#include "linalg/real.h"
+
+#define estimate_inverse REAL_NAME(estimate_inverse)
+void estimate_inverse(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+#define estimate_forward REAL_NAME(estimate_forward)
+void estimate_forward(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+#define estimate_dynamics REAL_NAME(estimate_dynamics)
+void estimate_dynamics(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+
+#endif

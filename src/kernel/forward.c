@@ -1,0 +1,440 @@
+/* forward.c - the constraint force algorithm on a block of a chain (forward.h). Symbols as in physics 4. */
+#include "kernel/forward.h"
+
+#include <string.h>
+
+#include "kernel/assembly.h"
+#include "kernel/tags.h"
+
+void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank)
+{
+    const struct kernel_spec *spec = &job->spec->kernel;
+    const struct chain_shared *s = job->shared;
+    struct chain *ch = &f->chain;
+    chain_carve(ch, c, job, rank, true);
+    const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
+    f->direct = spec->formulation == FORMULATION_DIRECT;
+    f->tau = CARVE(c, nu, real);
+    f->ud = CARVE(c, nu, real);
+    f->force = CARVE(c, 6 * m, real);
+    f->force_left = CARVE(c, 6, real);
+    f->force_right = CARVE(c, 6, real);
+    f->gain = CARVE(c, f->direct || spec->outer_refinements > 0 ? 6 * m : 0, real);
+    f->gain_left = CARVE(c, 6, real);
+    f->z = CARVE(c, 6 * m, real);
+    f->D = CARVE(c, f->direct ? 0 : 36 * m, real);
+    f->E = CARVE(c, f->direct ? 0 : 36 * (m + 1), real);
+    f->message = CARVE(c, 14, real);
+    blocks_carve(&f->blocks, c, spec, s->size, s->interface, ch->n, rank, job->nrank, s->largest, 1,
+                 spec->inner_refinements + spec->outer_refinements > 0);
+}
+
+void forward_set(struct forward *f, struct comm *c)
+{
+    f->chain.comm = f->chain.scan.comm = f->blocks.comm = f->blocks.reduction.comm = c;
+}
+
+static bool has_left(const struct forward *f) { return f->chain.lo > 0; }
+static bool has_right(const struct forward *f) { return f->chain.hi < f->chain.n; }
+static const struct body *body_of(const struct forward *f, int i) { return &f->chain.shared->body[i]; }
+
+/* subspace_of: H and W of joint i, own or beside the block. */
+static const struct subspace *subspace_of(const struct forward *f, int i)
+{
+    return i < f->chain.lo ? &f->left : &f->chain.pose[i - f->chain.lo].s;
+}
+
+/* exchange_joints: coordinates of the edge joints both ways; the neighbours' subspaces and transform from them. */
+static void exchange_joints(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    struct comm *c = ch->comm;
+    const int k = comm_rank(c), last = ch->hi - 1;
+    const int64_t size = sizeof(real);
+    if (has_left(f)) comm_send(c, k - 1, TAG_JOINT, ch->q, body_of(f, ch->lo)->nq * size);
+    if (has_right(f)) comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last), body_of(f, last)->nq * size);
+    if (has_right(f)) {
+        const struct body *b = body_of(f, ch->hi);
+        const struct joint_cost *cost = joint_cost_of(b->joint);
+        comm_recv(c, k + 1, TAG_JOINT, f->message, b->nq * size);
+        body_place(b, f->message, &ch->pose[ch->hi - ch->lo]);
+        ch->work.flop += (uint64_t)cost->place;
+        ch->work.trig += (uint64_t)cost->place_trig;
+        ch->work.div += (uint64_t)cost->place_div;
+        if (ch->dense) transform_expand(true, ch->matrix + 36 * (ch->hi - ch->lo), &ch->pose[ch->hi - ch->lo].x, &ch->work);
+    }
+    if (has_left(f)) {
+        const struct body *b = body_of(f, ch->lo - 1);
+        comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
+        body_subspace(b, f->message, &f->left);
+        if (!f->left.pick) {
+            ch->work.flop += (uint64_t)joint_cost_of(b->joint)->place;
+            ch->work.trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
+        }
+    }
+    chain_report(ch);
+}
+
+/* given_forces: tau of own joints, springs included. */
+static void given_forces(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    const int first = body_of(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    for (int k = 0; k < nu; k++) f->tau[k] = (real)ch->job->state->tau[first + k];
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const struct body *b = body_of(f, i);
+        if (!b->has_spring) continue;
+        body_spring(b, ch->q + chain_q_at(ch, i), ch->u + chain_u_at(ch, i), f->tau + chain_u_at(ch, i));
+        ch->work.flop += BODY_SPRING_FLOP;
+    }
+}
+
+/* assemble_direct: A_ii and L_i only. */
+static void assemble_direct(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    for (int i = ch->lo; i < ch->hi; i++) {
+        real D[36], E[36], A[36];
+        assembly_operators(ch, i, D, E);
+        assembly_project(ch, subspace_of(f, i), D, subspace_of(f, i), A);
+        assembly_pack(subspace_of(f, i)->c, A, subspace_of(f, i)->c, blocks_row_D(&f->blocks, i));
+        if (i > 0) assembly_project(ch, subspace_of(f, i), E, subspace_of(f, i - 1), blocks_row_L(&f->blocks, i));
+    }
+}
+
+/* assemble_paper: D and E in joint axes, which hold A, B and C. */
+static void assemble_paper(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    for (int i = ch->lo; i < ch->hi + has_right(f); i++) {
+        real D[36], E[36], *turned = f->E + 36 * (i - ch->lo);
+        const bool own = i < ch->hi;
+        const struct subspace *s = subspace_of(f, i);
+        assembly_operators(ch, i, own ? D : NULL, E);
+        if (i > 0) assembly_turn(ch, s, E, subspace_of(f, i - 1), turned);
+        if (!own) continue;
+        real *diagonal = f->D + 36 * (i - ch->lo), *L = blocks_row_L(&f->blocks, i);
+        assembly_turn(ch, s, D, s, diagonal);
+        assembly_pack(s->c, diagonal + 7 * s->d, 6, blocks_row_D(&f->blocks, i));
+        if (i == 0) continue;
+        const int before = subspace_of(f, i - 1)->d, nbefore = 6 - before;
+        for (int r = 0; r < s->c; r++)
+            memcpy(L + r * nbefore, turned + 6 * (s->d + r) + before, (size_t)nbefore * sizeof(real));
+    }
+}
+
+/* active_force: F = H x for joint i, x (d). */
+static void active_force(struct forward *f, int i, const real *x, real *force)
+{
+    six_zero(force);
+    subspace_h(subspace_of(f, i), x, force);
+    f->chain.work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->h;
+}
+
+/* add_reaction: F += W x for joint i, x (c). */
+static void add_reaction(struct forward *f, int i, const real *x, real *force)
+{
+    subspace_w(subspace_of(f, i), x, force);
+    f->chain.work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->w;
+}
+
+/* begin_forces: F = H x of own joints and, by messages, of those beside the block; direct: the gain of body lo-1 comes
+ * along when `gain` is set. */
+static void begin_forces(struct forward *f, const real *x, bool gain)
+{
+    struct chain *ch = &f->chain;
+    struct comm *c = ch->comm;
+    const int k = comm_rank(c), last = ch->hi - 1, d = body_of(f, last)->d;
+    const int64_t size = sizeof(real);
+    for (int i = ch->lo; i < ch->hi; i++) active_force(f, i, x + chain_u_at(ch, i), chain_at(ch, f->force, i));
+    chain_report(ch);
+    if (has_left(f)) comm_send(c, k - 1, TAG_ACTIVE, x, body_of(f, ch->lo)->d * size);
+    if (has_right(f)) {
+        memcpy(f->message, x + chain_u_at(ch, last), (size_t)d * sizeof(real));
+        if (gain) six_copy(f->message + d, chain_at(ch, f->gain, last));
+        comm_send(c, k + 1, TAG_ACTIVE, f->message, (d + (gain ? 6 : 0)) * size);
+        comm_recv(c, k + 1, TAG_ACTIVE, f->message, body_of(f, ch->hi)->d * size);
+        active_force(f, ch->hi, f->message, f->force_right);
+    }
+    if (!has_left(f)) return;
+    const int before = body_of(f, ch->lo - 1)->d;
+    comm_recv(c, k - 1, TAG_ACTIVE, f->message, (before + (gain ? 6 : 0)) * size);
+    active_force(f, ch->lo - 1, f->message, f->force_left);
+    if (gain) six_copy(f->gain_left, f->message + before);
+}
+
+/* add_reactions: F += W FS of own joints and of both neighbours, after a solution. */
+static void add_reactions(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    struct comm *c = ch->comm;
+    const int k = comm_rank(c);
+    const int64_t size = sizeof(real);
+    if (has_left(f))
+        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), (6 - body_of(f, ch->lo)->d) * size);
+    for (int i = ch->lo; i < ch->hi; i++)
+        add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
+    if (has_left(f)) add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
+    if (!has_right(f)) return;
+    comm_recv(c, k + 1, TAG_REACTION, f->message, (6 - body_of(f, ch->hi)->d) * size);
+    add_reaction(f, ch->hi, f->message, f->force_right);
+}
+
+/* largest: the larger of `so_far` and the elements of x (n) by magnitude. */
+static real largest(real so_far, int n, const real *x)
+{
+    for (int k = 0; k < n; k++)
+        if (!(real_fabs(x[k]) <= so_far)) so_far = real_fabs(x[k]);
+    return so_far;
+}
+
+/* body_acceleration: y = Phi_i (F_i - X_{i+1} F_{i+1} + gain). */
+static void body_acceleration(struct forward *f, int i, const real *force, const real *next, const real *gain, real *y)
+{
+    struct chain *ch = &f->chain;
+    real net[6];
+    six_copy(net, force);
+    if (next) {
+        real moved[6];
+        transform_force(ch->dense, moved, chain_transform(ch, i + 1), next, &ch->work);
+        six_sub(net, moved);
+        ch->work.flop += SIX_ADD_FLOP;
+    }
+    if (gain) six_add(net, gain);
+    body_accelerate(body_of(f, i), net, y);
+    ch->work.flop += (uint64_t)(SYM6_MUL_FLOP + (gain ? SIX_ADD_FLOP : 0));
+    ch->work.call++;
+}
+
+/* operator_form: z_i = y_i - X_i^T y_{i-1} - b_i of own bodies (physics 4.8); without `terms` the velocity terms, the
+ * external forces and the base are left out. Notes the residual. */
+static void operator_form(struct forward *f, bool terms)
+{
+    struct chain *ch = &f->chain;
+    const int lo = ch->lo, hi = ch->hi;
+    real before[6], y[6], moved[6], residual = 0, scale = 0;
+    if (has_left(f))
+        body_acceleration(f, lo - 1, f->force_left, f->force, terms ? f->gain_left : NULL, before);
+    else
+        six_copy(before, ch->shared->base);
+    for (int i = lo; i < hi; i++) {
+        real *z = chain_at(ch, f->z, i), reaction[6];
+        const struct subspace *s = subspace_of(f, i);
+        const real *next = i + 1 < hi ? chain_at(ch, f->force, i + 1) : has_right(f) ? f->force_right : NULL;
+        body_acceleration(f, i, chain_at(ch, f->force, i), next, terms ? chain_at(ch, f->gain, i) : NULL, y);
+        six_copy(z, y);
+        scale = largest(scale, 6, y);
+        if (i > 0 || terms) {
+            transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
+            six_sub(z, moved);
+            ch->work.flop += SIX_ADD_FLOP;
+            scale = largest(scale, 6, moved);
+        }
+        if (terms) {
+            six_sub(z, chain_at(ch, ch->b, i));
+            ch->work.flop += SIX_ADD_FLOP;
+            scale = largest(scale, 6, chain_at(ch, ch->b, i));
+        }
+        subspace_w_transposed(s, z, reaction);
+        residual = largest(residual, s->c, reaction);
+        six_copy(before, y);
+    }
+    f->residual = scale > 0 ? residual / scale : residual;
+}
+
+/* right_hand_side: r = -W^T z. */
+static void right_hand_side(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    for (int i = ch->lo; i < ch->hi; i++) {
+        real *r = blocks_row_r(&f->blocks, i);
+        subspace_w_transposed(subspace_of(f, i), chain_at(ch, f->z, i), r);
+        for (int k = 0; k < subspace_of(f, i)->c; k++) r[k] = -r[k];
+        ch->work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->w_transposed;
+    }
+}
+
+/* multiply_rows: y (rows from .. to-1) of D F_i + E_i F_{i-1} + E_{i+1}^T F_{i+1} in joint axes; `active` says that
+ * only H's components of the forces differ from zero. */
+static void multiply_rows(struct forward *f, int i, int from, int to, bool active, real *y)
+{
+    struct chain *ch = &f->chain;
+    const real *D = f->D + 36 * (i - ch->lo), *E = f->E + 36 * (i - ch->lo), *next = E + 36;
+    for (int r = from; r < to; r++) y[r] = 0;
+    for (int j = i - 1; j <= i + 1; j++) {
+        if (j < 0 || j >= ch->n) continue;
+        real x[6];
+        const struct subspace *s = subspace_of(f, j);
+        assembly_turn_vector(ch, s, j < ch->lo ? f->force_left : j == ch->hi ? f->force_right : chain_at(ch, f->force, j), x);
+        const int n = active ? s->d : 6;
+        for (int r = from; r < to; r++)
+            for (int k = 0; k < n; k++) y[r] += (j < i ? E[6 * r + k] : j == i ? D[6 * r + k] : next[6 * k + r]) * x[k];
+        ch->work.flop += (uint64_t)(2 * n * (to - from) - (j == i ? to - from : 0));
+    }
+}
+
+/* paper_residual: largest |W^T D F| over the largest term; it is a monitor, so it costs the machine nothing. */
+static void paper_residual(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    const struct work before = ch->work;
+    real residual = 0, scale = 0, y[6];
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const int d = subspace_of(f, i)->d;
+        multiply_rows(f, i, 0, 6, false, y);
+        residual = largest(residual, 6 - d, y + d);
+        scale = largest(scale, 6, y);
+        multiply_rows(f, i, 0, 6, true, y);
+        scale = largest(scale, 6, y);
+    }
+    f->residual = scale > 0 ? residual / scale : residual;
+    ch->work = before;
+}
+
+/* solve_direct: FS with inner refinements; z holds the answer. `again`: the system is factored already. */
+static void solve_operator_form(struct forward *f, bool terms, bool again)
+{
+    struct chain *ch = &f->chain;
+    const int inner = ch->job->spec->kernel.inner_refinements;
+    operator_form(f, terms);
+    for (int pass = 0; pass <= inner; pass++) {
+        right_hand_side(f);
+        comm_stage(ch->comm, STAGE_SOLVE);
+        chain_report(ch);
+        if (pass == 0 && !again) blocks_solve(&f->blocks, &ch->work);
+        else blocks_resolve(&f->blocks, &ch->work);
+        comm_stage(ch->comm, STAGE_FINISH);
+        add_reactions(f);
+        operator_form(f, terms);
+        chain_report(ch);
+    }
+}
+
+/* joint_accelerations: ud = H^T z, or ud += H^T z. */
+static void joint_accelerations(struct forward *f, bool add)
+{
+    struct chain *ch = &f->chain;
+    for (int i = ch->lo; i < ch->hi; i++) {
+        real x[6], *ud = f->ud + chain_u_at(ch, i);
+        const int d = body_of(f, i)->d;
+        subspace_h_transposed(subspace_of(f, i), chain_at(ch, f->z, i), x);
+        for (int k = 0; k < d; k++) ud[k] = add ? ud[k] + x[k] : x[k];
+        ch->work.flop += (uint64_t)(joint_cost_of(body_of(f, i)->joint)->h_transposed + (add ? d : 0));
+    }
+    chain_report(ch);
+}
+
+/* evaluate_direct: physics 4.3. */
+static void evaluate_direct(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    comm_stage(ch->comm, STAGE_VELOCITY);
+    chain_velocity(ch);
+    comm_stage(ch->comm, STAGE_ASSEMBLY);
+    chain_bias(ch);
+    for (int i = ch->lo; i < ch->hi; i++) {
+        real *gain = chain_at(ch, f->gain, i);
+        chain_gyro(ch, i, gain);
+        for (int k = 0; k < 6; k++) gain[k] = -gain[k];
+    }
+    assemble_direct(f);
+    begin_forces(f, f->tau, true);
+    solve_operator_form(f, true, false);
+    joint_accelerations(f, false);
+}
+
+/* paper_solution: u' = C FT + B^T FS with A FS = -B FT, (4.3), (4.4). */
+static void paper_solution(struct forward *f, const real *active)
+{
+    struct chain *ch = &f->chain;
+    const int inner = ch->job->spec->kernel.inner_refinements;
+    real y[6];
+    begin_forces(f, active, false);
+    for (int i = ch->lo; i < ch->hi; i++) {
+        const int d = subspace_of(f, i)->d;
+        real *r = blocks_row_r(&f->blocks, i);
+        multiply_rows(f, i, d, 6, true, y);
+        for (int k = d; k < 6; k++) r[k - d] = -y[k];
+    }
+    chain_report(ch);
+    comm_stage(ch->comm, STAGE_SOLVE);
+    blocks_solve(&f->blocks, &ch->work);
+    comm_stage(ch->comm, STAGE_FINISH);
+    add_reactions(f);
+    for (int pass = 0; pass < inner; pass++) {
+        operator_form(f, false);
+        right_hand_side(f);
+        chain_report(ch);
+        comm_stage(ch->comm, STAGE_SOLVE);
+        blocks_resolve(&f->blocks, &ch->work);
+        comm_stage(ch->comm, STAGE_FINISH);
+        add_reactions(f);
+    }
+    for (int i = ch->lo; i < ch->hi; i++) {
+        multiply_rows(f, i, 0, subspace_of(f, i)->d, false, y);
+        memcpy(f->ud + chain_u_at(ch, i), y, (size_t)subspace_of(f, i)->d * sizeof(real));
+    }
+    chain_report(ch);
+    paper_residual(f);
+}
+
+/* evaluate_paper: bias forces by inverse dynamics with u' = 0, then (4.3), (4.4). */
+static void evaluate_paper(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    const int nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    comm_stage(ch->comm, STAGE_VELOCITY);
+    chain_velocity(ch);
+    comm_stage(ch->comm, STAGE_ACCELERATION);
+    chain_bias(ch);
+    chain_acceleration(ch, NULL);
+    comm_stage(ch->comm, STAGE_FORCE);
+    chain_force(ch, f->ud);
+    comm_stage(ch->comm, STAGE_ASSEMBLY);
+    for (int k = 0; k < nu; k++) f->ud[k] = f->tau[k] - f->ud[k];
+    ch->work.flop += (uint64_t)nu;
+    assemble_paper(f);
+    paper_solution(f, f->ud);
+}
+
+/* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer refinement). */
+static void refine(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    const int nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    real *rest = f->gain; /* not needed any more; at least as many numbers as joint rates */
+    comm_stage(ch->comm, STAGE_ACCELERATION);
+    chain_acceleration(ch, f->ud);
+    comm_stage(ch->comm, STAGE_FORCE);
+    chain_force(ch, rest);
+    for (int k = 0; k < nu; k++) rest[k] = f->tau[k] - rest[k];
+    ch->work.flop += (uint64_t)nu;
+    comm_stage(ch->comm, STAGE_ASSEMBLY);
+    begin_forces(f, rest, false);
+    solve_operator_form(f, false, true);
+    joint_accelerations(f, true);
+}
+
+void forward_evaluate(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    comm_stage(ch->comm, STAGE_PLACE);
+    given_forces(f);
+    chain_place(ch);
+    exchange_joints(f);
+    if (f->direct) evaluate_direct(f);
+    else evaluate_paper(f);
+    const real first_residual = f->residual;
+    for (int pass = 0; pass < ch->job->spec->kernel.outer_refinements; pass++) refine(f);
+    f->residual = first_residual;
+}
+
+void forward_store(const struct forward *f)
+{
+    const struct chain *ch = &f->chain;
+    const struct kernel_job *job = ch->job;
+    const int k = comm_rank(ch->comm), first = body_of(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
+    if (job->residual) job->residual[k] = (double)f->residual;
+    if (job->condition) job->condition[k] = (double)f->blocks.reduction.condition;
+}

@@ -1,0 +1,47 @@
+/* forward.h - parallel forward dynamics of a chain by the constraint force algorithm, one rank's program.
+ *
+ * Joint forces are F = H FT + W FS; the active FT are given, the constraint forces FS follow from a block tridiagonal
+ * system and the accelerations from them. Two formulations (physics 4.2, 4.3): the paper's, where FT is what remains
+ * of tau after a bias inverse dynamics, A FS = -B FT, u' = C FT + B^T FS; and the direct one, where velocity terms
+ * stay in the constraint equation and D is never multiplied out, which needs one scan instead of three and is more
+ * accurate by digits. */
+#ifndef KERNEL_FORWARD_H
+#define KERNEL_FORWARD_H
+
+#include "kernel/blocks.h"
+#include "kernel/chain.h"
+
+struct forward {
+    struct chain chain;
+    struct blocks blocks;
+    struct subspace left;      /* of joint lo-1 */
+    bool direct;
+    real *tau;                 /* own joints: given forces and springs */
+    real *ud;                  /* own joints: the answer */
+    real *force;               /* own bodies (6): F in the body's frame */
+    real *force_left, *force_right; /* F of bodies lo-1 and hi */
+    real *gain;                /* direct: Fext - P of own bodies (6) */
+    real *gain_left;           /* of body lo-1 */
+    real *z;                   /* own bodies (6): acceleration of the joint, H^T z = u', W^T z = 0 */
+    real *D, *E;               /* paper: Q^T D Q of own joints, Q^T E Q of own joints and of joint hi (36 each) */
+    real *message;             /* coordinates or forces of an edge joint */
+    real residual;             /* largest |W^T z| over the largest term in it */
+};
+
+/* forward_carve: room for rank `rank`. */
+#define forward_carve REAL_NAME(forward_carve)
+void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank);
+
+/* forward_set: the communicator of this rank. */
+#define forward_set REAL_NAME(forward_set)
+void forward_set(struct forward *f, struct comm *c);
+
+/* forward_evaluate: ud from the coordinates and rates in the chain. Every rank must call. */
+#define forward_evaluate REAL_NAME(forward_evaluate)
+void forward_evaluate(struct forward *f);
+
+/* forward_store: the answer, residual and condition into the job's arrays. */
+#define forward_store REAL_NAME(forward_store)
+void forward_store(const struct forward *f);
+
+#endif

@@ -1,0 +1,39 @@
+/* kernel.c - the table of all kernels, in three precisions. */
+#include "kernel/kernel.h"
+
+#include <string.h>
+
+#include "kernel/micro.h"
+
+/* What each precision's archive defines (dynamics_kernel.h, seen from outside any precision). */
+extern const struct kernel_type inverse_kernel_f32, inverse_kernel_f64, inverse_kernel_f128;
+extern const struct kernel_type forward_kernel_f32, forward_kernel_f64, forward_kernel_f128;
+extern const struct kernel_type dynamics_kernel_f32, dynamics_kernel_f64, dynamics_kernel_f128;
+
+#define MICRO &pingpong_kernel, &shift_kernel, &bisection_kernel, &all_to_all_kernel, &hot_spot_kernel, &barrier_kernel
+
+static const struct kernel_type *const in_double[] = {&inverse_kernel_f64, &forward_kernel_f64, &dynamics_kernel_f64,
+                                                      MICRO};
+static const struct kernel_type *const in_float[] = {&inverse_kernel_f32, &forward_kernel_f32, &dynamics_kernel_f32,
+                                                     MICRO};
+static const struct kernel_type *const in_quad[] = {&inverse_kernel_f128, &forward_kernel_f128, &dynamics_kernel_f128,
+                                                    MICRO};
+enum { NKERNEL = sizeof in_double / sizeof in_double[0] };
+
+const struct kernel_type *const *kernel_list(int *n)
+{
+    *n = NKERNEL;
+    return in_double;
+}
+
+const struct kernel_type *kernel_find_precision(const char *name, enum precision precision)
+{
+    const struct kernel_type *const *table = precision == PRECISION_FLOAT  ? in_float
+                                             : precision == PRECISION_QUAD ? in_quad
+                                                                           : in_double;
+    for (int i = 0; i < NKERNEL; i++)
+        if (strcmp(table[i]->name, name) == 0) return table[i];
+    return NULL;
+}
+
+const struct kernel_type *kernel_find(const char *name) { return kernel_find_precision(name, PRECISION_DOUBLE); }

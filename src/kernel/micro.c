@@ -1,0 +1,182 @@
+/* micro.c - micro-benchmarks of a machine's messages (micro.h). */
+#include "kernel/micro.h"
+
+#include "kernel/tags.h"
+
+static const char *const stage_name[] = {"exchange"};
+
+/* Every rank's workspace: the message that it sends, then the one that it receives. */
+static int64_t message_bytes(const struct kernel_job *job) { return job->spec->kernel.message_bytes; }
+static int repetitions(const struct kernel_job *job) { return job->spec->kernel.repeat > 1 ? job->spec->kernel.repeat : 1; }
+
+static size_t workspace_bytes(const struct kernel_job *job, int rank)
+{
+    (void)rank;
+    return 2 * (size_t)message_bytes(job) + 16;
+}
+
+static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
+{
+    (void)model;
+    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d processors: a message needs two", spec->nrank);
+    if (spec->kernel.message_bytes < 0)
+        return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)spec->kernel.message_bytes);
+    return true;
+}
+
+static bool accepts_barrier(const struct run_spec *spec, const struct model *model, struct err *e)
+{
+    (void)spec, (void)model, (void)e;
+    return true;
+}
+
+static bool accepts_even(const struct run_spec *spec, const struct model *model, struct err *e)
+{
+    if (spec->nrank % 2) return err_set(e, ERR_CONFIG, "bisection needs an even number of processors, not %d", spec->nrank);
+    return accepts(spec, model, e);
+}
+
+static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
+{
+    (void)job, (void)a, (void)e;
+    return true;
+}
+
+/* note: seconds per repetition since `begin`. */
+static void note(struct comm *c, const struct kernel_job *job, int64_t begin_ps, double divisor)
+{
+    if (job->measured) job->measured[comm_rank(c)] = (double)(comm_now_ps(c) - begin_ps) * 1e-12 / divisor;
+}
+
+static void pingpong_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
+    const int repeat = repetitions(job), rank = comm_rank(c), last = comm_size(c) - 1;
+    char *in = (char *)workspace + bytes;
+    if (rank != 0 && rank != last) return;
+    for (int k = 0; k < repeat; k++) {
+        if (rank == 0) comm_send(c, last, TAG_BENCH, workspace, bytes);
+        comm_recv(c, rank == 0 ? last : 0, TAG_BENCH, in, bytes);
+        if (rank == last) comm_send(c, 0, TAG_BENCH, workspace, bytes);
+    }
+    note(c, job, begin, 2.0 * repeat);
+}
+
+/* exchange: send to `dst`, receive from `src`, and wait for both. */
+static void exchange(struct comm *c, int dst, int src, void *workspace, int64_t bytes)
+{
+    struct comm_request request[2] = {{0}};
+    comm_irecv(c, src, TAG_BENCH, (char *)workspace + bytes, bytes, &request[0]);
+    comm_isend(c, dst, TAG_BENCH, workspace, bytes, &request[1]);
+    comm_waitall(c, 2, request);
+}
+
+static void shift_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job);
+    const int distance = (job->spec->kernel.distance % P + P) % P;
+    const int64_t begin = comm_now_ps(c);
+    for (int k = 0; k < repeat && distance != 0; k++)
+        exchange(c, (rank + distance) % P, (rank - distance + P) % P, workspace, message_bytes(job));
+    note(c, job, begin, repeat);
+}
+
+static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job);
+    const int64_t begin = comm_now_ps(c);
+    for (int k = 0; k < repeat; k++)
+        for (int d = 1; d < P; d++) exchange(c, (rank + d) % P, (rank - d + P) % P, workspace, message_bytes(job));
+    note(c, job, begin, repeat);
+}
+
+static void bisection_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int P = comm_size(c), peer = (comm_rank(c) + P / 2) % P, repeat = repetitions(job);
+    const int64_t begin = comm_now_ps(c);
+    for (int k = 0; k < repeat; k++) exchange(c, peer, peer, workspace, message_bytes(job));
+    note(c, job, begin, repeat);
+}
+
+static void hot_spot_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int P = comm_size(c), repeat = repetitions(job);
+    const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
+    for (int k = 0; k < repeat; k++) {
+        if (comm_rank(c) != 0) {
+            struct comm_request sent = {0};
+            comm_isend(c, 0, TAG_BENCH, workspace, bytes, &sent);
+            comm_wait(c, &sent);
+            continue;
+        }
+        for (int src = 1; src < P; src++) comm_recv(c, src, TAG_BENCH, (char *)workspace + bytes, bytes);
+    }
+    note(c, job, begin, repeat);
+}
+
+static void barrier_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    (void)workspace;
+    const int repeat = repetitions(job);
+    const int64_t begin = comm_now_ps(c);
+    for (int k = 0; k < repeat; k++) comm_barrier(c);
+    note(c, job, begin, repeat);
+}
+
+/* estimate_messages: `messages` of the spec's size a repetition. */
+static void estimate_messages(const struct run_spec *spec, double messages, struct kernel_estimate *out)
+{
+    const double repeat = spec->kernel.repeat > 1 ? spec->kernel.repeat : 1;
+    *out = (struct kernel_estimate){.messages = messages * repeat};
+    out->bytes = out->messages * (double)spec->kernel.message_bytes;
+    out->rank_bytes = 2.0 * (double)spec->kernel.message_bytes + 16;
+}
+
+static void estimate_pingpong(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)model;
+    estimate_messages(spec, 2, out);
+}
+
+static void estimate_shift(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)model;
+    estimate_messages(spec, spec->kernel.distance % spec->nrank ? spec->nrank : 0, out);
+}
+
+static void estimate_all_to_all(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)model;
+    estimate_messages(spec, (double)spec->nrank * (spec->nrank - 1), out);
+}
+
+static void estimate_bisection(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)model;
+    estimate_messages(spec, spec->nrank, out);
+}
+
+static void estimate_hot_spot(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)model;
+    estimate_messages(spec, spec->nrank - 1, out);
+}
+
+static void estimate_barrier(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+{
+    (void)spec, (void)model;
+    *out = (struct kernel_estimate){.rank_bytes = 16}; /* a barrier's messages belong to the machine */
+}
+
+#define MICRO(stem, word, text, accept)                                                                                \
+    const struct kernel_type stem##_kernel = {                                                                         \
+        .name = word, .title = text, .nstage = 1, .stage_name = stage_name, .accepts = accept, .prepare = prepare,     \
+        .workspace_bytes = workspace_bytes, .run = stem##_run, .estimate = estimate_##stem,                            \
+    }
+
+MICRO(pingpong, "pingpong", "a message there and back between the first and the last rank", accepts);
+MICRO(shift, "shift", "every rank sends to the rank a distance further", accepts);
+MICRO(all_to_all, "all-to-all", "every rank sends to every other", accepts);
+MICRO(bisection, "bisection", "the two halves of the machine exchange, rank by rank", accepts_even);
+MICRO(hot_spot, "hot-spot", "every rank sends to rank 0", accepts);
+MICRO(barrier, "barrier", "barriers", accepts_barrier);

@@ -1,0 +1,91 @@
+/* reduction.h - symmetric positive definite block tridiagonal systems spread over the ranks, one interface row per rank.
+ *
+ * Row k couples to rows k-1 and k+1 of the ranks beside it (linalg/block_row.h). Reduction is by symmetric parallel
+ * cyclic reduction (physics 5.3 ii), its textbook form (5.3 i), cyclic reduction (5.2), or some levels of the latter
+ * before the former (5.4 d). Sources: Sweet 1977; Hockney and Jesshope 1981.
+ *
+ * L and U of the current row lie where updates are received (behind S and v), so that they are never copied. */
+#ifndef KERNEL_REDUCTION_H
+#define KERNEL_REDUCTION_H
+
+#include <stdbool.h>
+
+#include "base/work.h"
+#include "comm/comm.h"
+#include "kernel/carve.h"
+#include "linalg/block_row.h"
+#include "linalg/real.h"
+#include "spec/kernel_spec.h"
+
+struct reduction {
+    struct comm *comm;
+    const unsigned char *size; /* (nrank) order of every rank's interface row */
+    enum solver method;        /* SOLVER_PCR_SYMMETRIC, SOLVER_PCR, SOLVER_CR or SOLVER_CR_PCR */
+    int hybrid_levels;
+    int m;                     /* right-hand sides */
+    int c;                     /* order of the own row */
+    bool keep;                 /* store the factors of every step for further right-hand sides */
+    real *D;                   /* (c x c, packed) */
+    real *r;                   /* (c x m) right-hand side, then solution */
+    real *in_a, *in_b;         /* updates from the left and the right, [S v E] */
+    real *out_a, *out_b;
+    real *y;                   /* (c x m) */
+    real *factor;              /* one, or one per step */
+    int factor_size;           /* elements of one */
+    real *last;                /* the factor made last */
+    real condition;            /* largest diagonal element of D over its last pivot so far */
+    bool broken;               /* a pivot was not positive: answers are not numbers */
+};
+
+/* reduction_carve: room for a rank's row.
+ *
+ *   largest  largest order of any row; m right-hand sides; keep: see above */
+#define reduction_carve REAL_NAME(reduction_carve)
+void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
+                  const unsigned char *size, int rank, int nrank, int largest, int m, bool keep);
+
+/* reduction_left, reduction_right: where L (c x c_{k-1}) and U (c x c_{k+1}) are to be put before reduction_run. */
+static inline real *reduction_left(const struct reduction *s) { return s->in_a + block_update_size(s->c, s->m); }
+static inline real *reduction_right(const struct reduction *s) { return s->in_b + block_update_size(s->c, s->m); }
+
+/* reduction_run: the solution into r. D, L, U are used up. Every rank must call.
+ *
+ *   w   in/out  work not yet reported
+ *
+ *   Messages of PCR 2 (P lg P - P + 1) for P = 2^lg; of CR 4 (P - 1) - 2 lg P. Bytes: physics (5.2), 5.3. */
+#define reduction_run REAL_NAME(reduction_run)
+void reduction_run(struct reduction *s, int tag, struct work *w);
+
+/* reduction_rerun: another right-hand side in r (c x m) with the factors kept by reduction_run. */
+#define reduction_rerun REAL_NAME(reduction_rerun)
+void reduction_rerun(struct reduction *s, int tag, struct work *w);
+
+/* The reductions themselves; row `k` of `n` lives on rank (k+1) stride - 1. */
+#define pcr_run REAL_NAME(pcr_run)
+void pcr_run(struct reduction *s, int stride, int tag, struct work *w);
+#define pcr_rerun REAL_NAME(pcr_rerun)
+void pcr_rerun(struct reduction *s, int stride, int tag, struct work *w);
+#define pcr_textbook_run REAL_NAME(pcr_textbook_run)
+void pcr_textbook_run(struct reduction *s, int tag, struct work *w);
+#define cr_run REAL_NAME(cr_run)
+void cr_run(struct reduction *s, int levels, int tag, struct work *w);
+#define cr_rerun REAL_NAME(cr_rerun)
+void cr_rerun(struct reduction *s, int levels, int tag, struct work *w);
+
+/* reduction_break: mark the row as broken and spread "not a number" through everything it sends. */
+#define reduction_break REAL_NAME(reduction_break)
+void reduction_break(struct reduction *s, int nl, int nu);
+
+/* reduction_eliminate: eliminate the row in its present state (block_row_eliminate) into factor number `slot`. */
+#define reduction_eliminate REAL_NAME(reduction_eliminate)
+void reduction_eliminate(struct reduction *s, int slot, int nl, int nu, struct work *w);
+
+/* reduction_finish: the row has no neighbours left: factor D into `slot` and r <- D^-1 r. */
+#define reduction_finish REAL_NAME(reduction_finish)
+void reduction_finish(struct reduction *s, int slot, struct work *w);
+
+/* reduction_refinish: r <- D^-1 r with the factor in `slot`. */
+#define reduction_refinish REAL_NAME(reduction_refinish)
+void reduction_refinish(struct reduction *s, int slot, struct work *w);
+
+#endif

@@ -1,0 +1,203 @@
+/* scan.c - recursive doubling over ranks (scan.h). */
+#include "kernel/scan.h"
+
+#include <string.h>
+
+#include "linalg/dense.h"
+
+enum { SIX_BYTES = 6 * (int)sizeof(real) };
+
+void transform_force(bool dense, real *y, const real *T, const real *f, struct work *w)
+{
+    if (dense) {
+        real g[6];
+        dense_product(6, 1, 6, T, f, g, w);
+        six_copy(y, g);
+        return;
+    }
+    xform_force(y, (const struct xform *)T, f);
+    w->flop += XFORM_FORCE_FLOP;
+    w->call++;
+}
+
+void transform_motion(bool dense, real *y, const real *T, const real *v, struct work *w)
+{
+    if (dense) {
+        real g[6];
+        dense_product_tn(6, 1, 6, T, v, g, w);
+        six_copy(y, g);
+        return;
+    }
+    xform_motion(y, (const struct xform *)T, v);
+    w->flop += XFORM_MOTION_FLOP;
+    w->call++;
+}
+
+void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w)
+{
+    if (dense) {
+        dense_product(6, 6, 6, a, b, c, w);
+        return;
+    }
+    xform_compose((struct xform *)c, (const struct xform *)a, (const struct xform *)b);
+    w->flop += XFORM_COMPOSE_FLOP;
+    w->call++;
+}
+
+void transform_expand(bool dense, real *T, const struct xform *x, struct work *w)
+{
+    if (!dense) {
+        memcpy(T, x, sizeof *x);
+        return;
+    }
+    /* [U p~; 0 U] [r 0; 0 r] */
+    real shift[36] = {0}, turn[36] = {0};
+    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    shift[4] = -x->p[2], shift[5] = x->p[1], shift[9] = x->p[2];
+    shift[11] = -x->p[0], shift[15] = -x->p[1], shift[16] = x->p[0];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) turn[6 * i + j] = turn[6 * (i + 3) + j + 3] = x->r[3 * i + j];
+    dense_product(6, 6, 6, shift, turn, T, w);
+}
+
+/* levels: transforms that a rank with `before` ranks on its composites' side ever holds. */
+static int levels(int before)
+{
+    int n = 0;
+    for (int d = 1; d <= before; d *= 2) n++;
+    return n;
+}
+
+void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int rank, int nrank)
+{
+    s->dense = dense;
+    s->incoming = incoming;
+    s->size = dense ? 36 : 12;
+    s->level = CARVE(c, s->size * levels(incoming ? rank : nrank - 1 - rank) + 6, real);
+    s->in = CARVE(c, s->size + 6, real);
+}
+
+/* add_motion: v += T^T u. */
+static void add_motion(struct scan *s, real *v, const real *T, const real *u, struct work *w)
+{
+    real moved[6];
+    transform_motion(s->dense, moved, T, u, w);
+    six_add(v, moved);
+    w->flop += SIX_ADD_FLOP;
+}
+
+/* first_incoming: composites first, then v right behind the newest one, so that both leave as one message without
+ * being packed. */
+static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
+{
+    struct comm *c = s->comm;
+    const int k = comm_rank(c), P = comm_size(c), size = s->size;
+    const int pair = (size + 6) * (int)sizeof(real);
+    real *now = s->level + (k > 0 ? size : 0); /* where v lives */
+    six_copy(now, v);
+    work_report(c, w);
+    for (int d = 1, j = 0; d < P; d *= 2, j++) {
+        real *T = s->level + j * size;
+        if (k + d < P) {
+            if (k >= d) comm_send(c, k + d, tag + j, T, pair);
+            else comm_send(c, k + d, tag + j, now, SIX_BYTES);
+        }
+        if (k < d) continue;
+        if (k >= 2 * d) {
+            comm_recv(c, k - d, tag + j, s->in, pair);
+            real *next = now + size;
+            six_copy(next, now);
+            add_motion(s, next, T, s->in + size, w);
+            transform_compose(s->dense, T + size, s->in, T, w);
+            now = next;
+        } else {
+            comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
+            add_motion(s, now, T, s->in, w);
+        }
+        work_report(c, w);
+    }
+    six_copy(v, now);
+}
+
+/* first_outgoing: physics (3.4). Transforms travel to the left with tags after those of the vectors. */
+static void first_outgoing(struct scan *s, int tag, real *v, struct work *w)
+{
+    struct comm *c = s->comm;
+    const int k = comm_rank(c), P = comm_size(c), size = s->size;
+    const int transform_tag = tag + 32;
+    for (int d = 1, j = 0; d < P; d *= 2, j++) {
+        real *T = s->level + j * size;
+        if (k + d < P) {
+            transform_motion(s->dense, s->in, T, v, w);
+            work_report(c, w);
+            comm_send(c, k + d, tag + j, s->in, SIX_BYTES);
+            if (k >= d) comm_send(c, k - d, transform_tag + j, T, size * (int)sizeof(real));
+        }
+        if (k >= d) {
+            comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
+            six_add(v, s->in);
+            w->flop += SIX_ADD_FLOP;
+            work_report(c, w);
+        }
+        if (k + 2 * d < P) {
+            comm_recv(c, k + d, transform_tag + j, s->in, size * (int)sizeof(real));
+            transform_compose(s->dense, T + size, T, s->in, w);
+            work_report(c, w);
+        }
+    }
+}
+
+void scan_first(struct scan *s, int tag, real *v, struct work *w)
+{
+    if (s->incoming) first_incoming(s, tag, v, w);
+    else first_outgoing(s, tag, v, w);
+}
+
+void scan_motion(struct scan *s, int tag, real *v, struct work *w)
+{
+    struct comm *c = s->comm;
+    const int k = comm_rank(c), P = comm_size(c);
+    work_report(c, w);
+    for (int d = 1, j = 0; d < P; d *= 2, j++) {
+        const real *T = s->level + j * s->size;
+        if (k + d < P) {
+            if (!s->incoming) {
+                transform_motion(s->dense, s->in, T, v, w);
+                work_report(c, w);
+            }
+            comm_send(c, k + d, tag + j, s->incoming ? v : s->in, SIX_BYTES);
+        }
+        if (k < d) continue;
+        comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
+        if (s->incoming) {
+            add_motion(s, v, T, s->in, w);
+        } else {
+            six_add(v, s->in);
+            w->flop += SIX_ADD_FLOP;
+        }
+        work_report(c, w);
+    }
+}
+
+void scan_force(struct scan *s, int tag, real *f, struct work *w)
+{
+    struct comm *c = s->comm;
+    const int k = comm_rank(c), P = comm_size(c);
+    work_report(c, w);
+    for (int d = 1, j = 0; d < P; d *= 2, j++) {
+        const real *T = s->level + j * s->size;
+        if (k >= d) {
+            if (s->incoming) {
+                transform_force(s->dense, s->in, T, f, w);
+                work_report(c, w);
+            }
+            comm_send(c, k - d, tag + j, s->incoming ? s->in : f, SIX_BYTES);
+        }
+        if (k + d >= P) continue;
+        comm_recv(c, k + d, tag + j, s->in, SIX_BYTES);
+        if (!s->incoming) transform_force(s->dense, s->in, T, s->in, w);
+        six_add(f, s->in);
+        w->flop += SIX_ADD_FLOP;
+        work_report(c, w);
+    }
+}

@@ -1,0 +1,120 @@
+/* evaluation.c - kernels on many ranks against the serial algorithms (evaluation.h). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "evaluation.h"
+#include "mech/dynamics.h"
+
+struct run_spec evaluation_spec(const char *name, int n, int P)
+{
+    struct run_spec s = {.nrank = P};
+    snprintf(s.kernel.name, sizeof s.kernel.name, "%s", name);
+    s.kernel.composites_incoming = true;
+    s.kernel.formulation = FORMULATION_DIRECT;
+    s.model = (struct model_spec){.generator = MODEL_SERIAL_CHAIN, .nbody = n, .joint = JOINT_REVOLUTE,
+                                  .inertia = INERTIA_RANDOM, .pose = POSE_RANDOM, .axes = AXES_TWISTED, .length = 1,
+                                  .radius = 0.05, .mass = 1, .mass_ratio = 4, .gravity = {0, 0, -9.81}, .rate = 1,
+                                  .torque = 1, .branch = 2, .seed = (uint64_t)(7 * n + 1)};
+    return s;
+}
+
+struct running {
+    const struct kernel_type *kernel;
+    const struct kernel_job *job;
+    char **workspace;
+};
+
+static void program(struct comm *c, void *context)
+{
+    struct running *r = context;
+    r->kernel->run(c, r->job, r->workspace[comm_rank(c)]);
+}
+
+static double relative_error(int n, const double *x, const double *reference)
+{
+    double error = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        const double e = fabs(x[i] - reference[i]);
+        if (!(e <= error)) error = e;
+        scale = fmax(scale, fabs(reference[i]));
+    }
+    return scale > 0 ? error / scale : error;
+}
+
+/* compare: with RNEA and ABA. */
+static void compare(const struct kernel_job *job, struct arena *a, struct evaluation *v)
+{
+    const struct model *m = job->model;
+    const struct state *s = job->state;
+    struct dynamics *d = dynamics_take(m, a);
+    struct work w = {0};
+    double *reference = TAKE(a, m->nu + 1, double), *tau = TAKE(a, m->nu + 1, double);
+    dynamics_load(d, s);
+    if (job->tau) {
+        rnea(d, s->q, s->qd, s->qdd, reference, &w);
+        v->tau_error = relative_error(m->nu, job->tau, reference);
+    }
+    if (!job->qdd) return;
+    memcpy(tau, s->tau, (size_t)m->nu * sizeof *tau);
+    springs_add(d, s->q, s->qd, tau);
+    assert_true(aba(d, s->q, s->qd, tau, reference, &w));
+    v->qdd_error = relative_error(m->nu, job->qdd, reference);
+}
+
+struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                 struct arena *a)
+{
+    struct err e = {0};
+    struct evaluation v = {0};
+    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
+    assert_non_null(k);
+    struct kernel_job job = {.spec = spec, .model = model, .state = state, .nrank = spec->nrank};
+    const int nu = model ? model->nu : 0, nq = model ? model->nq : 0;
+    if (k->does_inverse) job.tau = v.tau = TAKE(a, nu + 1, double);
+    if (k->does_forward) job.qdd = v.qdd = TAKE(a, nu + 1, double);
+    if (spec->kernel.steps > 0) {
+        job.q_end = v.q_end = TAKE(a, nq + 1, double);
+        job.qd_end = v.qd_end = TAKE(a, nu + 1, double);
+    }
+    if (model && model->nrow > 0) job.lambda = v.lambda = TAKE(a, model->nrow, double);
+    job.loop_rank = &v.loop_rank;
+    job.measured = v.measured = TAKE(a, spec->nrank, double);
+    job.residual = TAKE(a, spec->nrank, double);
+    job.condition = TAKE(a, spec->nrank, double);
+    if (!k->accepts(spec, model, &e) || !k->prepare(&job, a, &e)) fail_msg("%s", e.text);
+    char **workspace = TAKE(a, spec->nrank, char *);
+    for (int r = 0; r < spec->nrank; r++) {
+        const size_t bytes = k->workspace_bytes(&job, r);
+        v.rank_bytes = bytes > v.rank_bytes ? bytes : v.rank_bytes;
+        workspace[r] = arena_take(a, bytes);
+    }
+    struct running running = {.kernel = k, .job = &job, .workspace = workspace};
+    v.counts = many_ranks_run(spec->nrank, program, &running);
+    assert_int_equal(v.counts.blocked, 0);
+    assert_int_equal(v.counts.unread, 0);
+    for (int r = 0; r < spec->nrank; r++) {
+        v.residual = fmax(v.residual, job.residual[r]);
+        v.condition = fmax(v.condition, job.condition[r]);
+    }
+    if (k->needs_model && spec->kernel.steps == 0) compare(&job, a, &v);
+    return v;
+}
+
+struct evaluation evaluate(const struct run_spec *spec, struct arena *a)
+{
+    struct err e = {0};
+    const struct kernel_type *k = kernel_find(spec->kernel.name);
+    assert_non_null(k);
+    if (!k->needs_model) return evaluate_model(spec, NULL, NULL, a);
+    const struct model *model = model_build(&spec->model, a, &e);
+    if (!model) fail_msg("%s", e.text);
+    return evaluate_model(spec, model, state_make(model, &spec->model, a), a);
+}
