@@ -24,16 +24,18 @@ sources() {
 # room_names: all rooms, in house order.
 room_names() { awk '!/^#/ { print $1 }' "$ROOMS"; }
 
-# archives: the archives of all rooms, one "ROOM FILE" a line. A room without any archive is an error.
+# archives: the archives of all rooms (and the objects of app, which has none), one "ROOM FILE" a line. A room without any
+# is an error.
 archives() {
     local room file found
     for room in $(room_names); do
         found=
-        for file in "$HOUSE_BUILD/lib$room.a" "$HOUSE_BUILD/lib${room}"_f*.a "$HOUSE_BUILD/src/$room"/main.o; do
+        for file in "$HOUSE_BUILD/lib$room.a" "$HOUSE_BUILD/lib${room}"_f*.a "$HOUSE_BUILD/src/app"/*.o; do
+            case $file in *.o) [ "$room" = app ] || continue ;; esac
             [ -e "$file" ] || continue
             echo "$room $file"
             found=yes
         done
-        [ -n "$found" ] || [ "$room" = app ] || { echo "no archive of room $room in $HOUSE_BUILD" >&2; return 1; }
+        [ -n "$found" ] || { echo "no archive of room $room in $HOUSE_BUILD" >&2; return 1; }
     done
 }
