@@ -93,22 +93,25 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     return true;
 }
 
-static void start(const struct dynamics *d, int i, struct articulated *b)
+/* moving: with velocity terms. */
+static void start(const struct dynamics *d, int i, bool moving, struct articulated *b)
 {
     sym6_from_inertia(&b->inertia, &d->body[i].inertia);
-    body_gyro(&d->body[i], d->v + 6 * i, b->p);
+    six_zero(b->p);
+    if (moving) body_gyro(&d->body[i], d->v + 6 * i, b->p);
     if (d->load) six_sub(b->p, d->load + 6 * i);
 }
 
 /* u' = I_hh^-1 (e - I_hw a_w) - a_h, and the body's acceleration. */
-static void accelerate(struct dynamics *d, int i, const struct articulated *b, real *ud)
+static void accelerate(struct dynamics *d, int i, bool moving, const struct articulated *b, real *ud)
 {
+    static const real still[6] = {0};
     const struct subspace *s = &d->pose[i].s;
     int parent = d->body[i].parent;
     real *a = d->a + 6 * i, h[6], w[6], z[6];
     struct work uncounted = {0};
-    xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : d->base);
-    six_add(a, d->bias + 6 * i);
+    xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : moving ? d->base : still);
+    if (moving) six_add(a, d->bias + 6 * i);
     subspace_h_transposed(s, a, h);
     subspace_w_transposed(s, a, w);
     for (int k = 0; k < s->d; k++) {
@@ -120,32 +123,47 @@ static void accelerate(struct dynamics *d, int i, const struct articulated *b, r
     subspace_h(s, ud, a);
 }
 
-static bool aba_general(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud)
+/* The three sweeps at d's poses and, if moving, velocities. */
+static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
 {
+    static const real still[6] = {0};
     struct arena_mark mark = arena_mark(d->arena);
     struct articulated *b = TAKE(d->arena, d->nbody, struct articulated);
     bool good = true;
-    dynamics_place(d, q);
-    dynamics_velocities(d, u);
-    for (int i = 0; i < d->nbody; i++) start(d, i, &b[i]);
+    for (int i = 0; i < d->nbody; i++) start(d, i, moving, &b[i]);
     for (int i = d->nbody - 1; i >= 0 && good; i--) {
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;
         real pa[6];
-        good = eliminate(&d->pose[i].s, d->bias + 6 * i, tau + body->u_at, &b[i], &ia, pa);
+        good = eliminate(&d->pose[i].s, moving ? d->bias + 6 * i : still, tau + body->u_at, &b[i], &ia, pa);
         if (!good || body->parent < 0) continue;
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);
         xform_force(pa, &d->pose[i].x, pa);
         six_add(b[body->parent].p, pa);
     }
-    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, &b[i], ud + d->body[i].u_at);
+    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, moving, &b[i], ud + d->body[i].u_at);
     arena_release(d->arena, mark);
     return good;
 }
 
-bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+{
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    work_count_aba(d, w);
+    return sweep(d, true, tau, ud);
+}
+
+bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w)
 {
     work_count_aba(d, w);
-    return d->revolute ? aba_revolute(d, q, u, tau, ud) : aba_general(d, q, u, tau, ud);
+    return sweep(d, false, tau, ud);
+}
+
+bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+{
+    if (!d->revolute) return aba_full(d, q, u, tau, ud, w);
+    work_count_aba(d, w);
+    return aba_revolute(d, q, u, tau, ud);
 }

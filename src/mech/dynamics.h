@@ -66,6 +66,13 @@ void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud,
 #define aba REAL_NAME(aba)
 bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 
+/* aba_full: as aba, by the general code whatever the joints; leaves accelerations in d->a.
+ * aba_response: the same at d's present poses without velocity terms and base acceleration: M^-1 (tau + loads). */
+#define aba_full REAL_NAME(aba_full)
+bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
+#define aba_response REAL_NAME(aba_response)
+bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w);
+
 /* crba: mass matrix (nu x nu, row-major, both triangles) at q. */
 #define crba REAL_NAME(crba)
 void crba(struct dynamics *d, const real *q, real *mass, struct work *w);
@@ -80,7 +87,6 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
 struct cfa_options {
     bool direct;              /* physics 4.3; false: the paper's 4.2 */
     int inner, outer;         /* refinements, physics 8.6 */
-    double rank_tolerance;    /* of redundant loops, relative; 0: 1e-10 */
 };
 
 struct cfa_report {

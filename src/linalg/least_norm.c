@@ -1,0 +1,39 @@
+/* least_norm.c - by scaling and eigenvalues. */
+#include "linalg/least_norm.h"
+
+#include "linalg/eigen.h"
+
+#if REAL_BITS == 32
+static const real tolerance = 1e-4f;
+#else
+static const real tolerance = (real)1e-10;
+#endif
+
+int least_norm_solve(int n, const real *reference, real *s, real *r, real *scratch, struct work *w)
+{
+    real *v = scratch, *value = v + n * n, *y = value + n, largest = 1;
+    int rank = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) s[i * n + j] /= real_sqrt(reference[i]) * real_sqrt(reference[j]);
+    int sweeps = eigen_symmetric(n, s, v, value);
+    for (int k = 0; k < n; k++) largest = value[k] > largest ? value[k] : largest;
+    for (int i = 0; i < n; i++) r[i] /= real_sqrt(reference[i]);
+    for (int k = 0; k < n; k++) {
+        y[k] = 0;
+        if (!(value[k] > tolerance * largest)) continue;
+        for (int i = 0; i < n; i++) y[k] += v[i * n + k] * r[i];
+        y[k] /= value[k];
+        rank++;
+    }
+    for (int i = 0; i < n; i++) {
+        r[i] = 0;
+        for (int k = 0; k < n; k++) r[i] += v[i * n + k] * y[k];
+        r[i] /= real_sqrt(reference[i]);
+    }
+    uint64_t m = (uint64_t)n;
+    w->flop += (uint64_t)sweeps * m * (m - (m > 0)) / 2 * 18 * m + 5 * m * m;
+    w->div += m * m + 3 * m;
+    w->sqrt += 2 * m * m + 2 * m;
+    w->call++;
+    return rank;
+}
