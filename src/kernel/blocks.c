@@ -24,14 +24,15 @@ void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *s
     if (method == SOLVER_PARTITION) method = spec->part_solver == PART_CR ? SOLVER_CR : SOLVER_PCR_SYMMETRIC;
     reduction_carve(&b->reduction, c, spec, method, interface, rank, nrank, largest, m, keep);
     b->left = CARVE(c, largest * m, real);
-    b->message = CARVE(c, block_update_size(largest, m) + largest * largest, real);
     if (method == SOLVER_THOMAS) blocks_serial_carve(b, c, rank);
     if (rows == 1) { /* the reduction's own row, nothing is copied */
         b->D = b->reduction.D;
         b->r = b->reduction.r;
         b->L = reduction_left(&b->reduction);
+        b->message = b->reduction.out_a; /* free until the reduction begins */
         return;
     }
+    b->message = CARVE(c, block_update_size(largest, m) + largest * largest, real);
     b->D = CARVE(c, rows * b->d_stride, real);
     b->L = CARVE(c, rows * b->l_stride, real);
     b->r = CARVE(c, rows * b->r_stride, real);

@@ -20,6 +20,12 @@ int chain_nq(const struct chain_shared *shared, int lo, int hi)
     return last->q_at + last->nq - shared->body[lo].q_at;
 }
 
+/* picks_columns: H and W of such a joint are unit vectors, so nothing is ever written to subspace.col. */
+static bool picks_columns(enum model_joint joint)
+{
+    return joint != JOINT_HELICAL && joint != JOINT_UNIVERSAL && joint != JOINT_SLOT && joint != JOINT_POINT_PLANE;
+}
+
 struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a)
 {
     const struct model *model = job->model;
@@ -32,6 +38,10 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     }
     for (int k = 0; k < job->nrank && job->nrank <= model->nbody; k++)
         interface[k] = size[block_first(model->nbody, job->nrank, k + 1) - 1];
+    bool picked = true;
+    for (int i = 0; i < model->nbody; i++) picked = picked && picks_columns(s->body[i].joint);
+    s->pose_bytes = picked ? offsetof(struct body_pose, s.col) : sizeof(struct body_pose);
+    s->subspace_bytes = picked ? offsetof(struct subspace, col) : sizeof(struct subspace);
     s->size = size;
     s->interface = interface;
     s->ncolumn = 1 + model->nrow;
@@ -40,7 +50,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     return s;
 }
 
-void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge)
+void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge, bool forces)
 {
     const struct chain_shared *s = job->shared;
     const int n = job->model->nbody, lo = block_first(n, job->nrank, rank), hi = block_first(n, job->nrank, rank + 1);
@@ -51,14 +61,13 @@ void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job
     ch->dense = job->spec->kernel.operators == OPERATORS_DENSE;
     ch->q = CARVE(c, chain_nq(s, lo, hi), real);
     ch->u = CARVE(c, chain_nu(s, lo, hi), real);
-    ch->pose = CARVE(c, room, struct body_pose);
+    ch->pose = CARVE(c, (size_t)room * s->pose_bytes, char);
     ch->matrix = CARVE(c, ch->dense ? 36 * room : 0, real);
     ch->h = CARVE(c, 6 * (hi - lo), real);
     ch->v = CARVE(c, 6 * (hi - lo), real);
-    ch->a = CARVE(c, 6 * (hi - lo), real);
-    ch->f = CARVE(c, 6 * (hi - lo), real);
     ch->b = CARVE(c, 6 * (hi - lo), real);
-    scan_carve(&ch->scan, c, ch->dense, job->spec->kernel.composites_incoming, rank, job->nrank);
+    ch->a = CARVE(c, forces ? 6 * (hi - lo) : 0, real);
+    ch->f = CARVE(c, forces ? 6 * (hi - lo) : 0, real);
 }
 
 void chain_load(struct chain *ch)
@@ -75,7 +84,7 @@ void chain_place(struct chain *ch)
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
         const struct joint_cost *cost = joint_cost_of(b->joint);
-        struct body_pose *pose = &ch->pose[i - ch->lo];
+        struct body_pose *pose = chain_pose(ch, i);
         body_place(b, ch->q + chain_q_at(ch, i), pose);
         body_rate(pose, ch->u + chain_u_at(ch, i), chain_at(ch, ch->h, i));
         ch->work.flop += (uint64_t)(cost->place + (ch->dense ? 6 * b->d : cost->rate));
@@ -206,7 +215,7 @@ void chain_bias(struct chain *ch)
 {
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
-        body_bias(b, &ch->pose[i - ch->lo], chain_at(ch, ch->v, i), chain_at(ch, ch->h, i), ch->u + chain_u_at(ch, i),
+        body_bias(b, chain_pose(ch, i), chain_at(ch, ch->v, i), chain_at(ch, ch->h, i), ch->u + chain_u_at(ch, i),
                   chain_at(ch, ch->b, i));
         ch->work.flop += (uint64_t)joint_cost_of(b->joint)->bias;
         ch->work.call++;
@@ -218,7 +227,7 @@ void chain_acceleration(struct chain *ch, const real *ud)
     memcpy(ch->a, ch->b, (size_t)(6 * (ch->hi - ch->lo)) * sizeof(real));
     for (int i = ch->lo; i < ch->hi && ud; i++) {
         const struct body *b = &ch->shared->body[i];
-        subspace_h(&ch->pose[i - ch->lo].s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));
+        subspace_h(&chain_pose(ch, i)->s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));
         ch->work.flop += (uint64_t)(ch->dense ? 12 * b->d : joint_cost_of(b->joint)->h);
     }
     if (ch->lo == 0) {
@@ -296,7 +305,7 @@ void chain_force(struct chain *ch, real *tau)
     }
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
-        subspace_h_transposed(&ch->pose[i - ch->lo].s, chain_at(ch, ch->f, i), tau + chain_u_at(ch, i));
+        subspace_h_transposed(&chain_pose(ch, i)->s, chain_at(ch, ch->f, i), tau + chain_u_at(ch, i));
         ch->work.flop += (uint64_t)(ch->dense ? 11 * b->d : joint_cost_of(b->joint)->h_transposed);
     }
     chain_report(ch);

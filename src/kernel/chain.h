@@ -21,6 +21,7 @@ struct chain_shared {
     const unsigned char *interface;/* (nrank) constraints of the last joint of each block */
     int largest;                   /* largest number of constraints of a joint */
     int ncolumn;                   /* right-hand sides of the constraint system: 1 + rows of all loops */
+    size_t pose_bytes, subspace_bytes; /* room for a pose, a subspace: columns only if some joint needs them */
     real base[6];                  /* acceleration of the base minus gravity */
 };
 
@@ -33,7 +34,7 @@ struct chain {
     bool dense;              /* operators as full 6x6 matrices */
     struct work work;        /* done since the last report */
     real *q, *u;             /* coordinates and rates of own bodies, from q_at and u_at of body lo */
-    struct body_pose *pose;  /* own; one more behind for the neighbour's first body if asked for */
+    char *pose;              /* struct body_pose of own bodies, pose_bytes apart; one more for body hi if asked for */
     real *matrix;            /* dense: the transforms as matrices, (36) each */
     struct scan scan;
     real *h;                 /* (6) joint velocity H u */
@@ -45,9 +46,11 @@ struct chain {
 #define chain_shared_make REAL_NAME(chain_shared_make)
 struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a);
 
-/* chain_carve: room for rank `rank`'s share; `edge`: with a pose for the right neighbour's first body. */
+/* chain_carve: room for rank `rank`'s share; `edge`: with a pose for the right neighbour's first body;
+ * `forces`: accelerations and forces will be wanted, not only velocities. The scan's
+ * room is the caller's to carve, so that it can be shared. */
 #define chain_carve REAL_NAME(chain_carve)
-void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge);
+void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge, bool forces);
 
 /* chain_load: coordinates and rates of own bodies from the job's state. */
 #define chain_load REAL_NAME(chain_load)
@@ -77,10 +80,16 @@ void chain_force(struct chain *ch, real *tau);
 #define chain_gyro REAL_NAME(chain_gyro)
 void chain_gyro(struct chain *ch, int i, real *f);
 
+/* chain_pose: of own body i, or of body hi. */
+static inline struct body_pose *chain_pose(const struct chain *ch, int i)
+{
+    return (struct body_pose *)(void *)(ch->pose + (size_t)(i - ch->lo) * ch->shared->pose_bytes);
+}
+
 /* chain_transform: the transform of own body i (or of body hi) in the form that the operators use. */
 static inline const real *chain_transform(const struct chain *ch, int i)
 {
-    return ch->dense ? ch->matrix + 36 * (i - ch->lo) : (const real *)&ch->pose[i - ch->lo].x;
+    return ch->dense ? ch->matrix + 36 * (i - ch->lo) : (const real *)&chain_pose(ch, i)->x;
 }
 
 /* chain_at: element i of an array of 6-vectors over own bodies. */

@@ -42,7 +42,8 @@ static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 
 static void inverse_carve(struct inverse *v, struct carve *c, const struct kernel_job *job, int rank)
 {
-    chain_carve(&v->chain, c, job, rank, false);
+    chain_carve(&v->chain, c, job, rank, false, true);
+    scan_carve(&v->chain.scan, c, v->chain.dense, job->spec->kernel.composites_incoming, rank, job->nrank);
     const int nu = chain_nu(v->chain.shared, v->chain.lo, v->chain.hi);
     v->ud = CARVE(c, nu, real);
     v->tau = CARVE(c, nu, real);

@@ -11,22 +11,30 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     const struct kernel_spec *spec = &job->spec->kernel;
     const struct chain_shared *s = job->shared;
     struct chain *ch = &f->chain;
-    chain_carve(ch, c, job, rank, true);
-    const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
+    const bool refine = spec->outer_refinements > 0;
     f->direct = spec->formulation == FORMULATION_DIRECT;
+    chain_carve(ch, c, job, rank, true, refine || !f->direct);
+    const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
     f->tau = CARVE(c, nu, real);
     f->ud = CARVE(c, nu, real);
     f->force = CARVE(c, 6 * m, real);
     f->force_left = CARVE(c, 6, real);
     f->force_right = CARVE(c, 6, real);
-    f->gain = CARVE(c, f->direct || spec->outer_refinements > 0 ? 6 * m : 0, real);
+    f->gain = CARVE(c, f->direct || refine ? 6 * m : 0, real);
     f->gain_left = CARVE(c, 6, real);
     f->z = CARVE(c, 6 * m, real);
     f->D = CARVE(c, f->direct ? 0 : 36 * m, real);
     f->E = CARVE(c, f->direct ? 0 : 36 * (m + 1), real);
     f->message = CARVE(c, 14, real);
+    f->left = carve_bytes(c, s->subspace_bytes);
+    /* The composites are not needed any more when the system is assembled, unless for outer refinement. */
+    const size_t before = c->used;
+    scan_carve(&ch->scan, c, ch->dense, spec->composites_incoming, rank, job->nrank);
+    const size_t after = c->used;
+    if (!refine) c->used = before;
     blocks_carve(&f->blocks, c, spec, s->size, s->interface, ch->n, rank, job->nrank, s->largest, 1,
-                 spec->inner_refinements + spec->outer_refinements > 0);
+                 spec->inner_refinements > 0 || refine);
+    if (c->used < after) c->used = after;
 }
 
 void forward_set(struct forward *f, struct comm *c)
@@ -41,7 +49,7 @@ static const struct body *body_of(const struct forward *f, int i) { return &f->c
 /* subspace_of: H and W of joint i, own or beside the block. */
 static const struct subspace *subspace_of(const struct forward *f, int i)
 {
-    return i < f->chain.lo ? &f->left : &f->chain.pose[i - f->chain.lo].s;
+    return i < f->chain.lo ? f->left : &chain_pose(&f->chain, i)->s;
 }
 
 /* exchange_joints: coordinates of the edge joints both ways; the neighbours' subspaces and transform from them. */
@@ -57,17 +65,18 @@ static void exchange_joints(struct forward *f)
         const struct body *b = body_of(f, ch->hi);
         const struct joint_cost *cost = joint_cost_of(b->joint);
         comm_recv(c, k + 1, TAG_JOINT, f->message, b->nq * size);
-        body_place(b, f->message, &ch->pose[ch->hi - ch->lo]);
+        body_place(b, f->message, chain_pose(ch, ch->hi));
         ch->work.flop += (uint64_t)cost->place;
         ch->work.trig += (uint64_t)cost->place_trig;
         ch->work.div += (uint64_t)cost->place_div;
-        if (ch->dense) transform_expand(true, ch->matrix + 36 * (ch->hi - ch->lo), &ch->pose[ch->hi - ch->lo].x, &ch->work);
+        if (ch->dense)
+            transform_expand(true, ch->matrix + 36 * (ch->hi - ch->lo), &chain_pose(ch, ch->hi)->x, &ch->work);
     }
     if (has_left(f)) {
         const struct body *b = body_of(f, ch->lo - 1);
         comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
-        body_subspace(b, f->message, &f->left);
-        if (!f->left.pick) {
+        body_subspace(b, f->message, f->left);
+        if (!f->left->pick) {
             ch->work.flop += (uint64_t)joint_cost_of(b->joint)->place;
             ch->work.trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
         }

@@ -14,7 +14,7 @@
 struct forward {
     struct chain chain;
     struct blocks blocks;
-    struct subspace left;      /* of joint lo-1 */
+    struct subspace *left;     /* of joint lo-1 */
     bool direct;
     real *tau;                 /* own joints: given forces and springs */
     real *ud;                  /* own joints: the answer */
