@@ -3,8 +3,8 @@
  * A row is one algorithm and one quantity of one case. It passes when its error, max |x - ref| / max |ref|, is within
  * the tolerance; what no double-precision code attains is not asked for: the tolerance is never below ten times the
  * change of the exact answer when the inputs are rounded, nor below the best of the libraries that the file quotes.
- * A larger error is either explained by rounding - the same algorithm is right in quad precision, or its answer is the
- * exact answer to torques changed by rounding - or it is a failure. A case passes when no row fails and every quantity
+ * A larger error is either explained by rounding - it goes away in quad precision, or, in large cases, is in proportion
+ * to the error in single precision - or it is a failure. A case passes when no row fails and every quantity
  * has a row that passes. */
 #ifndef RUN_VERIFY_H
 #define RUN_VERIFY_H

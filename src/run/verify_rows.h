@@ -31,9 +31,11 @@ void verify_row_skip(struct verify_case *v, const char *algorithm, const char *q
 double verify_tolerance_inverse(const struct verify_case *v);
 double verify_tolerance_forward(const struct verify_case *v);
 
-/* verify_backward_error: how much the torques would have to change for `qdd` to be exact, relative to the largest
- * torque in the problem, computed in quad precision. Closed chains: with the loop forces `lambda`. */
-double verify_backward_error(struct verify_case *v, const double *qdd);
+/* verify_error_vanishes: does an error `error` in double and `quad` in quad precision show that rounding causes it? What
+ * is wrong stays wrong in any precision. verify_error_scales: the same from the error in single precision, where the
+ * unit of rounding is 2^29 times larger. */
+bool verify_error_vanishes(double error, double quad);
+bool verify_error_scales(double error, double single);
 
 /* verify_unfit_body: why constraint forces do not apply to m, as text in `why`; false when they do. */
 bool verify_unfit_body(const struct model *m, char *why, int size);
