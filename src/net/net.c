@@ -92,7 +92,8 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
                              m->software.gap_per_byte);
     n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
     link_rates_make(n, w);
-    n->port_private = t->spec->processors_per_node == 1 && m->software.eager_bytes < 0;
+    /* a processor that runs ahead is in order with itself, but not with others, nor with the data of a rendezvous */
+    n->port_private = t->spec->processors_per_node == 1 && m->software.eager_bytes < 0 && m->noise.background_load <= 0;
     if (want_links) loads_make(n);
     return n->type->create(n, e) ? n : NULL;
 }

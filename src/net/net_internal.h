@@ -45,7 +45,7 @@ struct net {
     struct net_rate *link_rate;         /* (nlink), NULL when all links have the rate `link` */
     int nnode, nlink, nresource;
 
-    bool port_private;                  /* sends of one node come in the order of their ready times */
+    bool port_private;                  /* messages of one node are handed over in the order of their ready times */
     int64_t in_flight;                  /* messages accepted and not yet delivered */
     struct link_load *load;             /* (nresource), NULL unless wanted */
     void *state;                        /* of the level */
@@ -116,6 +116,12 @@ static inline void net_account(struct net *n, int resource, int messages, int64_
 static inline uint64_t net_event_key(int port, int64_t id)
 {
     return (uint64_t)(port & 0xffffff) << 24 | (uint64_t)(id & 0xffffff);
+}
+
+/* net_start_key: order of starts at one time: by id, of which the upper half names the sender. */
+static inline uint64_t net_start_key(int64_t id)
+{
+    return (uint64_t)(id >> 32 & 0xffffff) << 24 | (uint64_t)(id & 0xffffff);
 }
 
 #endif

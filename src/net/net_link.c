@@ -134,7 +134,7 @@ static void link_send(struct net *n, struct net_message *m)
     if (n->port_private)
         link_inject(n, m);
     else
-        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), link_start, n, (uintptr_t)m);
+        sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
 const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, NULL};

@@ -59,7 +59,7 @@ static void loggp_send(struct net *n, struct net_message *m)
     if (n->port_private)
         loggp_inject(n, m);
     else
-        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), loggp_start, n, (uintptr_t)m);
+        sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), loggp_start, n, (uintptr_t)m);
 }
 
 const struct net_type net_loggp = {"loggp", LEVEL_LOGGP, loggp_create, loggp_send, NULL};

@@ -1,0 +1,144 @@
+/* bench_net.c - messages per second of the network levels: recursive doubling on large machines, random loads beside
+ * the cycle-by-cycle router simulator BookSim 2.0.
+ *
+ *     bench_net [LEVEL...]      loggp link packet flit auto; all of them when none is named */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/arena.h"
+#include "base/check.h"
+#include "base/progress.h"
+#include "net/traffic.h"
+#include "run/netcheck.h"
+#include "run/netcheck_case.h"
+
+enum { FLITS = 20, BUFFER = 22, DELAY_PS = 20000, LOAD_CYCLES = 40000, BIG = 4096 };
+
+/* One list on one network. */
+struct job {
+    struct arena *arena;
+    struct machine_spec machine;
+    struct topology *topology;
+    struct traffic q;
+};
+
+static void job_open(struct job *j, const char *topology, int vcs)
+{
+    struct topology_spec s;
+    struct err e;
+    err_clear(&e);
+    *j = (struct job){.arena = arena_create()};
+    CHECK(netcheck_topology(topology, 0, &s, &e));
+    j->machine = netcheck_machine(&s, vcs, BUFFER, 0, 3);
+    j->topology = topology_create(&j->machine.topology, j->arena, &e);
+    CHECK(j->topology);
+}
+
+/* step j: i sends to i + 2^j mod N after its own send of the step before has arrived, and what it then received */
+static void doubling(struct job *j)
+{
+    int nnode = j->topology->nnode, steps = 0, ndep = 0;
+    while (1 << steps < nnode) steps++;
+    int n = nnode * steps;
+    struct traffic *q = &j->q;
+    struct arena *a = j->arena;
+    *q = (struct traffic){n, TAKE(a, n, int), TAKE(a, n, int), TAKE(a, n, int64_t), TAKE(a, n, sim_ps),
+                          TAKE(a, n, sim_ps), TAKE(a, n + 1, int), TAKE(a, 2 * n, int)};
+    for (int k = 0; k < n; k++) {
+        int step = k / nnode, i = k % nnode, before = (step - 1) * nnode;
+        q->src[k] = i;
+        q->dst[k] = (i + (1 << step)) % nnode;
+        q->bytes[k] = FLITS * NETCHECK_FLIT_BYTES;
+        q->delay[k] = DELAY_PS;
+        q->dep_first[k] = ndep;
+        if (step == 0) continue;
+        q->dep[ndep++] = before + i;
+        q->dep[ndep++] = before + (i - (1 << (step - 1)) + nnode) % nnode;
+    }
+    q->dep_first[n] = ndep;
+}
+
+/* replay on a level and print a line; booksim: its packets per second, 0: not known */
+static void measure(struct job *j, const char *what, enum network_level level, double booksim)
+{
+    struct err e;
+    struct traffic_result r = {0};
+    struct arena *a = arena_create();
+    err_clear(&e);
+    j->machine.network.level = level;
+    double begin = host_seconds();
+    bool ok = traffic_run(&j->q, &j->machine, j->topology, a, false, &r, &e);
+    double took = host_seconds() - begin, n = j->q.nmessage;
+    printf("%-26s %-7s ", what, netcheck_level_name(level));
+    if (!ok)
+        printf("%s\n", e.text);
+    else
+        printf("%9.0f %10.0f %9.0f %9.2f %9.0f", n, n / took, took / n * 1e9, (double)r.events / n,
+               (double)arena_peak(a) / j->topology->nnode);
+    if (ok && booksim > 0) printf(" %8.0f x", n / took / booksim);
+    if (ok) printf("\n");
+    fflush(stdout);
+    arena_destroy(a);
+}
+
+static void bench_doubling(const bool *wanted)
+{
+    static const struct {
+        const char *topology;
+        int vcs;
+    } networks[] = {{"torus8x4x4", 2}, {"torus32x32x16", 2}, {"mesh16x16", 1}, {"hcube7", 1}, {"hcube14", 1}};
+    for (size_t i = 0; i < sizeof networks / sizeof *networks; i++) {
+        struct job j;
+        char what[64];
+        job_open(&j, networks[i].topology, networks[i].vcs);
+        doubling(&j);
+        snprintf(what, sizeof what, "doubling %s", networks[i].topology);
+        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+            bool flit_by_flit = l == LEVEL_FLIT && networks[i].vcs > 1;
+            if (wanted[l] && !(flit_by_flit && j.topology->nnode > BIG)) measure(&j, what, (enum network_level)l, 0);
+        }
+        arena_destroy(j.arena);
+    }
+}
+
+static void bench_loads(const bool *wanted)
+{
+    static const double loads[] = {0.001, 0.02, 0.1};
+    static const struct {
+        const char *topology;
+        int vcs;
+        double booksim[3]; /* 20-flit packets per second of one core at those loads */
+    } networks[] = {{"mesh8x8", 1, {260, 3900, 7900}},
+                    {"torus4x4x8", 2, {210, 3400, 7100}},
+                    {"hcube7", 1, {90, 1500, 4000}},
+                    {"mesh16x16", 1, {310, 2600, 3100}}};
+    for (size_t i = 0; i < sizeof networks / sizeof *networks; i++)
+        for (int k = 0; k < 3; k++) {
+            struct job j;
+            struct err e;
+            char what[64];
+            err_clear(&e);
+            job_open(&j, networks[i].topology, networks[i].vcs);
+            int cycles = k == 0 ? 20 * LOAD_CYCLES : LOAD_CYCLES;
+            CHECK(netcheck_load("uniform", j.topology, FLITS, loads[k], cycles, 1, j.arena, &j.q, &e));
+            snprintf(what, sizeof what, "load %g %s", loads[k], networks[i].topology);
+            for (int l = 0; l < NETCHECK_LEVELS; l++)
+                if (wanted[l]) measure(&j, what, (enum network_level)l, networks[i].booksim[k]);
+            arena_destroy(j.arena);
+        }
+}
+
+int main(int argc, char **argv)
+{
+    bool wanted[NETCHECK_LEVELS];
+    for (int l = 0; l < NETCHECK_LEVELS; l++) wanted[l] = argc == 1;
+    for (int i = 1; i < argc; i++)
+        for (int l = 0; l < NETCHECK_LEVELS; l++)
+            if (strcmp(argv[i], netcheck_level_name((enum network_level)l)) == 0) wanted[l] = true;
+    printf("%-26s %-7s %9s %10s %9s %9s %9s %10s\n", "pattern", "level", "messages", "messages/s", "ns/mess.",
+           "ev./mess.", "B/node", "BookSim");
+    bench_doubling(wanted);
+    bench_loads(wanted);
+    return 0;
+}
