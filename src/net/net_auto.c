@@ -156,7 +156,8 @@ static bool overtakes(const struct fabric *f, const struct flight *w)
 {
     const struct pass *s = f->source[w->m->src].last_claim;
     const struct net_message *o = s ? s->flight->m : NULL;
-    return o && (o->ready > w->m->ready || (o->ready == w->m->ready && o->id > w->m->id));
+    if (!o || s->begin < auto_until(f)) return false;
+    return o->ready > w->m->ready || (o->ready == w->m->ready && o->id > w->m->id);
 }
 
 /* when w, alone, will be delivered; SIM_NEVER when it might meet somebody */
@@ -195,9 +196,10 @@ void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s,
     o->turn_time = at;
 }
 
-int auto_granted(const struct flight *w, int h, sim_ps now)
+int auto_granted(const struct flight *w, int h, sim_ps until)
 {
-    sim_ps since = now - w->pass[h].begin;
+    if (!w->m) return w->npacket; /* delivered */
+    sim_ps since = until - w->pass[h].begin;
     if (since <= 0) return 0;
     if (w->npacket == 1) return 1;
     sim_ps count = (since + auto_pace(w) - 1) / auto_pace(w);

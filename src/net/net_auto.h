@@ -37,8 +37,15 @@ int auto_lane(const struct fabric *f, const struct flight *w, int index, int h);
 /* auto_overlap: how many packets of w are at once in the FIFOs behind pass h. */
 int auto_overlap(const struct fabric *f, const struct flight *w, int h);
 
-/* auto_granted: how many packets of an undisturbed message crossed pass h before `now`. */
-int auto_granted(const struct flight *w, int h, sim_ps now);
+/* auto_until: grants before this time have been made. */
+static inline sim_ps auto_until(const struct fabric *f)
+{
+    sim_ps now = sim_now(f->net->sim);
+    return now + (f->late == now);
+}
+
+/* auto_granted: how many packets of an undisturbed message began to cross pass h before `until`. */
+int auto_granted(const struct flight *w, int h, sim_ps until);
 
 /* auto_turn: set o's round-robin pointer as the first `granted` packets of pass s have, unless others came later. */
 void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s, int granted);

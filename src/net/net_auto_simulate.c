@@ -41,11 +41,11 @@ static void mark_push(struct fabric *f, struct flight *w)
 }
 
 /* one pass of w: what was done before now is history, the rest is to come */
-static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow, sim_ps now)
+static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow)
 {
     struct pass *s = &w->pass[h];
     struct resource *o = &f->resource[s->resource];
-    int granted = auto_granted(w, h, now);
+    int granted = auto_granted(w, h, auto_until(f));
     s->granted = granted;
     if (granted > 0) {
         s->last = auto_begin(w, granted - 1, h);
@@ -73,14 +73,14 @@ static void port_turn(struct fabric *f, const struct flight *w)
     if (free < port->free) port->free = free;
 }
 
-static void mark(struct fabric *f, struct flight *w, sim_ps now)
+static void mark(struct fabric *f, struct flight *w)
 {
     sim_ps slow = 0;
     w->optimistic = false;
     f->nadmitted--;
     for (int h = 0; h <= w->nhop; h++) {
         slow = later(slow, w->pass[h].flit);
-        pass_turn(f, w, h, slow, now);
+        pass_turn(f, w, h, slow);
     }
     w->injected = w->pass[0].granted;
     w->ejected = w->pass[w->nhop].granted;
@@ -89,17 +89,21 @@ static void mark(struct fabric *f, struct flight *w, sim_ps now)
     mark_push(f, w);
 }
 
-/* a claim on s's resource that has not cleared when s may be there, or that follows s into its FIFO */
-static struct flight *met(const struct fabric *f, const struct pass *s, sim_ps now)
+/* Does claim c on the resource of s, a pass of a simulated message, touch it: it has not cleared when s may come
+ * there; it comes into the FIFO in which s stands; or its credits are ahead of those of s in the FIFO? */
+static bool touches(const struct fabric *f, const struct pass *c, const struct pass *s, sim_ps now)
 {
     const struct flight *w = s->flight;
-    bool to_come = s->granted < w->npacket, stands = s->hop < w->nhop && s->granted > s[1].granted;
-    if (!to_come && !stands) return NULL;
-    sim_ps earliest = to_come ? auto_earliest(f, s, now) : SIM_NEVER;
-    for (struct pass *c = f->resource[s->resource].claim; c; c = c->next) {
-        if (to_come && auto_clear(f, c) > earliest) return c->flight;
-        if (stands && c->begin > s->begin && c->channel == s->channel) return c->flight;
-    }
+    if (s->granted < w->npacket && auto_clear(f, c) > auto_earliest(f, s, now)) return true;
+    if (s->granted == 0 || s->hop == w->nhop || c->channel != s->channel) return false;
+    if (c->begin > s->begin) return s->granted > s[1].granted;
+    return auto_clear(f, c) > now && auto_clear(f, s) > now;
+}
+
+static struct flight *met(const struct fabric *f, const struct pass *s, sim_ps now)
+{
+    for (struct pass *c = f->resource[s->resource].claim; c; c = c->next)
+        if (touches(f, c, s, now)) return c->flight;
     return NULL;
 }
 
@@ -108,7 +112,7 @@ static void mark_all(struct fabric *f, sim_ps now)
     for (int i = 0; i < f->nmarked; i++) {
         struct flight *w = f->marked[i], *other;
         for (int h = 0; h <= w->nhop; h++)
-            while ((other = met(f, &w->pass[h], now))) mark(f, other, now);
+            while ((other = met(f, &w->pass[h], now))) mark(f, other);
     }
 }
 

@@ -5,8 +5,9 @@
  * may ask for its next one, when the packet behind it may ask, when it has arrived. */
 #include "net/net_packet.h"
 
-/* Second look of a resource at the same time: for packets that go where another has just made room. */
-enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1 };
+/* Second look of a resource at the same time: for packets that go where another has just made room. Deliveries where
+ * a tail is delivered in the very moment in which the ejection port is granted. */
+enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1, LANE_LATE };
 
 static void resource_look(void *subject, uint64_t argument, sim_ps now);
 
@@ -155,8 +156,12 @@ static void packet_delivered(void *subject, uint64_t argument, sim_ps now)
     struct fabric *f = subject;
     struct flight *w = (struct flight *)(uintptr_t)argument;
     struct net_message *m = w->m;
-    if (w->arrival != now) return; /* it was foreseen, but met somebody since */
+    if (w->arrival != now) { /* it was foreseen, but met somebody since */
+        w->foreseen = -1;
+        return;
+    }
     m->arrival = now;
+    if (f->net->end == 0) f->late = now;
     if (w->optimistic)
         auto_delivered(f, w);
     else
@@ -168,7 +173,8 @@ void packet_deliver_at(struct fabric *f, struct flight *w, sim_ps arrival)
 {
     w->arrival = arrival;
     if (w->foreseen == arrival) return;
-    sim_at(f->net->sim, arrival, NET_LANE_FREE, (uint64_t)w->m->dst, packet_delivered, f, (uintptr_t)w);
+    unsigned lane = f->net->end > 0 ? NET_LANE_FREE : LANE_LATE;
+    sim_at(f->net->sim, arrival, lane, (uint64_t)w->m->dst, packet_delivered, f, (uintptr_t)w);
 }
 
 /* Packet p is granted its next resource o now; returns when its tail crosses it. */

@@ -105,6 +105,7 @@ struct fabric {
     int nprocessor, nchannel, nlane; /* channels per link; channels per class */
     int nclass;
     int buffer;                   /* flits per channel */
+    sim_ps late;                  /* when a message was delivered last in LANE_LATE, -1: never */
     sim_ps fastest;               /* flit time of the fastest resource */
     bool first_come, optimistic;
     struct packet *free_packet;

@@ -69,6 +69,7 @@ struct fabric *packet_fabric(struct net *n, bool optimistic, struct err *e)
     f->nclass = f->nchannel < n->topology->nclass ? 1 : n->topology->nclass;
     f->nlane = f->nchannel / f->nclass;
     f->buffer = w->buffer_flits;
+    f->late = -1;
     f->fastest = fastest_flit(n);
     f->first_come = w->arbitration == ARBITRATION_FIRST_COME;
     f->optimistic = optimistic;
