@@ -98,6 +98,10 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
         ok = world_run(&spec->machine, spec->nrank, &spec->record, spec->seed + (uint64_t)spec->rep, kernel->nstage,
                        kernel->stage_name, program, &l, a, out, e);
     }
+    if (ok && job.model) {
+        out->nbody = job.model->nbody;
+        out->nu = job.model->nu;
+    }
     if (ok) verify(&job, kernel, scratch, out);
     arena_destroy(scratch);
     out->host_total_s = host_seconds() - begin;

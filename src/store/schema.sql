@@ -44,6 +44,7 @@ CREATE TABLE run (
     status           TEXT NOT NULL CHECK (status IN ('ok', 'invalid', 'deadlock', 'failed')),
     text             TEXT NOT NULL,     -- why it is not ok
     makespan_ps      INTEGER NOT NULL,
+    measured_s       REAL,              -- what a micro-benchmark's kernel measured, simulated time
     messages         INTEGER NOT NULL,
     sent_bytes       INTEGER NOT NULL,
     events           INTEGER NOT NULL,

@@ -197,6 +197,7 @@ static void bind_result(struct binding *b, const struct run_result *r, char dige
     bind_text(b, status[r->status]);
     bind_text(b, r->text);
     bind_int(b, r->makespan_ps);
+    bind_real(b, r->measured_s);
     bind_int(b, r->messages);
     bind_int(b, r->bytes);
     bind_int(b, r->events);
