@@ -17,7 +17,8 @@ bats_require_minimum_version 1.5.0
 export MIMDSIM MIMDSIM_DATA MIMDSIM_SRCDIR
 
 setup() {
-    cd "$BATS_TEST_TMPDIR" || return
+    mkdir "$BATS_TEST_TMPDIR/here" # bats keeps files of its own one level up
+    cd "$BATS_TEST_TMPDIR/here" || return
     export HOME=$BATS_TEST_TMPDIR XDG_DATA_HOME=$BATS_TEST_TMPDIR/.local/share
     [ -x "$MIMDSIM" ] || { echo "no program at $MIMDSIM"; return 1; }
 }
