@@ -1,8 +1,8 @@
 /* trace.h - the recorded timeline of one run as a file that opens elsewhere.
  *
  * Each rank is one track whose slices are the recorded spans inside the slice of their stage; a message is an arrow
- * from the end of its send to the end of its receive. Viewers fail near a million events, so there is a limit on the
- * spans written, and what was left out is told. */
+ * from its send to its receive. Viewers fail near a million events, so there is a limit on the spans written, and
+ * what was left out is told. */
 #ifndef REPORT_TRACE_H
 #define REPORT_TRACE_H
 
@@ -10,8 +10,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "base/arena.h"
 #include "base/err.h"
 #include "measure/run_result.h"
+#include "store/store.h"
 
 enum trace_format {
     TRACE_CHROME, /* Chrome trace events (JSON): Perfetto, chrome://tracing */
@@ -20,23 +22,31 @@ enum trace_format {
     TRACE_TEXT    /* bars of letters for a terminal */
 };
 
+enum { TRACE_MAX_SPANS = 200000, TRACE_COLUMNS = 100, TRACE_TEXT_RANKS = 64 };
+
 struct trace_options {
     const char *title;          /* one line for people: scenario, machine, n, P */
-    int64_t max_spans;          /* 0: 200,000 */
+    int64_t max_spans;          /* 0: TRACE_MAX_SPANS, about 60 MB of JSON */
     int first_rank, last_rank;  /* both 0: all */
     int64_t begin_ps, end_ps;   /* window; end 0: to the end */
-    int columns;                /* of TRACE_TEXT; 0: 100 */
+    int columns;                /* of TRACE_TEXT; 0: TRACE_COLUMNS */
 };
 
 /* trace_format_find: by name ("chrome", "paje", "csv", "text"); false when there is none. */
 bool trace_format_find(const char *name, enum trace_format *format);
 
-/* trace_write: the spans of `r` to `out`, in the order of time.
+/* trace_write: the spans of `r` to `out`.
  *
- *   left_out  out  spans inside the window that the limit left out: the latest ones
+ *   left_out  out  spans inside window and ranks that the limit left out, the latest ones; for people, the caller says
+ *                  so and names the option that raises the limit. TRACE_TEXT shows at most TRACE_TEXT_RANKS ranks.
  *
- *   Returns false with ERR_NO_INPUT when the run has no recorded spans, ERR_IO when writing fails. */
+ *   Returns false with ERR_NO_INPUT when the run has no recorded spans, ERR_CONFIG when none lies in the window,
+ *   ERR_IO when writing fails. */
 bool trace_write(const struct run_result *r, enum trace_format format, const struct trace_options *o, FILE *out,
                  int64_t *left_out, struct err *e);
+
+/* trace_read: the timeline of a stored run back into *r (only ranks, stages, spans and makespan), in memory of `a`.
+ * Returns false with ERR_NO_INPUT when there is no such run or it has no stored spans. */
+bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r, struct err *e);
 
 #endif

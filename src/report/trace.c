@@ -1,0 +1,140 @@
+/* trace.c - picking the spans of a trace, and the formats by name. */
+#include "report/trace.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "report/csv.h"
+#include "report/timeline.h"
+
+bool trace_format_find(const char *name, enum trace_format *format)
+{
+    static const char *const names[] = {"chrome", "paje", "csv", "text"};
+    for (int i = 0; i < 4; i++)
+        if (strcmp(name, names[i]) == 0) {
+            *format = (enum trace_format)i;
+            return true;
+        }
+    return false;
+}
+
+const char *timeline_kind(enum span_kind kind)
+{
+    static const char *const word[] = {"compute", "send", "recv", "wait", "barrier"};
+    return word[kind];
+}
+
+const char *timeline_stage(const struct timeline *t, int stage)
+{
+    return stage >= 0 && stage < t->run->nstage ? t->run->stage_name[stage] : "";
+}
+
+int64_t timeline_group(const struct timeline *t, int64_t first)
+{
+    int64_t i = first + 1;
+    while (i < t->nspan && t->span[i]->rank == t->span[first]->rank && t->span[i]->stage == t->span[first]->stage) i++;
+    return i;
+}
+
+static int compare_begin(const void *a, const void *b)
+{
+    const struct span *x = *(const struct span *const *)a, *y = *(const struct span *const *)b;
+    if (x->begin_ps != y->begin_ps) return x->begin_ps < y->begin_ps ? -1 : 1;
+    return x < y ? -1 : x > y;
+}
+
+static int compare_rank(const void *a, const void *b)
+{
+    const struct span *x = *(const struct span *const *)a, *y = *(const struct span *const *)b;
+    return x->rank != y->rank ? (x->rank < y->rank ? -1 : 1) : compare_begin(a, b);
+}
+
+/* A message's two ends, while they are matched. */
+struct message_end {
+    int64_t message, index;
+};
+
+static int compare_message(const void *a, const void *b)
+{
+    const struct message_end *x = a, *y = b;
+    if (x->message != y->message) return x->message < y->message ? -1 : 1;
+    return x->index < y->index ? -1 : x->index > y->index;
+}
+
+int64_t *timeline_partners(const struct timeline *t)
+{
+    int64_t *partner = malloc((size_t)t->nspan * sizeof *partner), n = 0;
+    struct message_end *end = malloc((size_t)t->nspan * sizeof *end);
+    CHECK(partner != NULL && end != NULL);
+    for (int64_t i = 0; i < t->nspan; i++) {
+        partner[i] = -1;
+        bool is_end = t->span[i]->kind == SPAN_SEND || t->span[i]->kind == SPAN_RECV;
+        if (is_end && t->span[i]->message >= 0) end[n++] = (struct message_end){t->span[i]->message, i};
+    }
+    qsort(end, (size_t)n, sizeof *end, compare_message);
+    for (int64_t i = 0; i + 1 < n; i++) {
+        int64_t a = end[i].index, b = end[i + 1].index;
+        if (end[i].message != end[i + 1].message || t->span[a]->kind == t->span[b]->kind) continue;
+        partner[a] = b;
+        partner[b] = a;
+    }
+    free(end);
+    return partner;
+}
+
+/* The spans of *t within its window and ranks, at most `max` of them. Returns how many were left out. */
+static int64_t pick(struct timeline *t, int64_t max)
+{
+    const struct run_result *r = t->run;
+    t->span = malloc((size_t)r->nspan * sizeof *t->span);
+    CHECK(t->span != NULL);
+    for (int64_t i = 0; i < r->nspan; i++) {
+        const struct span *p = &r->span[i];
+        bool inside = p->begin_ps < t->end_ps && p->end_ps > t->begin_ps;
+        if (inside && p->rank >= t->first_rank && p->rank <= t->last_rank) t->span[t->nspan++] = p;
+    }
+    int64_t left_out = t->nspan > max ? t->nspan - max : 0;
+    if (left_out > 0) {
+        qsort(t->span, (size_t)t->nspan, sizeof *t->span, compare_begin);
+        t->nspan = max;
+    }
+    qsort(t->span, (size_t)t->nspan, sizeof *t->span, compare_rank);
+    return left_out;
+}
+
+void trace_csv(const struct timeline *t, FILE *out)
+{
+    fputs("rank,stage,kind,begin_ps,end_ps,peer,bytes,message\r\n", out);
+    for (int64_t i = 0; i < t->nspan; i++) {
+        const struct span *p = t->span[i];
+        fprintf(out, "%d,", p->rank);
+        csv_cell(out, timeline_stage(t, p->stage), false);
+        fprintf(out, "%s,%lld,%lld,", timeline_kind(p->kind), (long long)p->begin_ps, (long long)p->end_ps);
+        if (p->peer >= 0) fprintf(out, "%d", p->peer);
+        fprintf(out, ",%lld,", (long long)p->bytes);
+        if (p->message >= 0) fprintf(out, "%lld", (long long)p->message);
+        fputs("\r\n", out);
+    }
+}
+
+bool trace_write(const struct run_result *r, enum trace_format format, const struct trace_options *o, FILE *out,
+                 int64_t *left_out, struct err *e)
+{
+    static void (*const write[])(const struct timeline *, FILE *) = {trace_chrome, trace_paje, trace_csv, trace_text};
+    bool all = o->first_rank == 0 && o->last_rank == 0;
+    struct timeline t = {.run = r, .title = o->title ? o->title : "", .begin_ps = o->begin_ps,
+                         .first_rank = o->first_rank, .last_rank = all ? r->nrank - 1 : o->last_rank,
+                         .end_ps = o->end_ps > 0 ? o->end_ps : r->makespan_ps + 1,
+                         .columns = o->columns > 0 ? o->columns : TRACE_COLUMNS};
+    if (r->span == NULL || r->nspan == 0)
+        return err_set(e, ERR_NO_INPUT, "this run has no timeline; record it with `record: {spans: true}`");
+    *left_out = pick(&t, o->max_spans > 0 ? o->max_spans : TRACE_MAX_SPANS);
+    bool ok = t.nspan > 0 || err_set(e, ERR_CONFIG, "nothing was recorded on ranks %d to %d between %.6f and %.6f us",
+                                     t.first_rank, t.last_rank, (double)t.begin_ps * 1e-6, (double)t.end_ps * 1e-6);
+    if (ok) write[format](&t, out);
+    free(t.span);
+    if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO, "the timeline cannot be written");
+    return ok;
+}
