@@ -7,6 +7,7 @@
 #include "mech/cfa_system.h"
 #include "mech/dynamics.h"
 #include "mech/loops.h"
+#include "mech/refine.h"
 #include "mech/work_count.h"
 
 struct cfa_run {
@@ -162,14 +163,14 @@ static void solve(struct cfa_run *r, const real *tau, const real *wanted, int in
     }
 }
 
-/* Outer refinement: ud += response to tau + J^T lambda - RNEA(ud). */
-static void refine_outer(struct cfa_run *r, const real *q, const real *u, const real *tau, int inner, real *ud,
-                         real *lambda)
+/* more, r->lambda = response to tau + J^T lambda - RNEA(ud): how far ud is from the truth. */
+static void correction(struct cfa_run *r, const real *q, const real *u, const real *tau, int inner, const real *ud,
+                       const real *lambda, real *more)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
     int m = r->loops.nrow, size = 6 * d->nbody;
-    real *rest = TAKE(d->arena, d->nu, real), *more = TAKE(d->arena, d->nu, real), *given = d->load;
+    real *rest = TAKE(d->arena, d->nu, real), *given = d->load;
     real *lack = TAKE(d->arena, m, real), *load = TAKE(d->arena, size, real);
     for (int k = 0; k < size; k++) load[k] = given ? given[k] : 0;
     loops_force(&r->loops, lambda, load);
@@ -181,8 +182,30 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
     for (int k = 0; k < m; k++) lack[k] = -lack[k];
     r->full = false;
     solve(r, rest, lack, inner, more);
-    for (int k = 0; k < d->nu; k++) ud[k] += more[k];
-    for (int k = 0; k < m; k++) lambda[k] += r->lambda[k];
+    arena_release(d->arena, mark);
+}
+
+/* Outer refinement while corrections shrink to half; one that does not is left out. */
+static void refine_outer(struct cfa_run *r, const real *q, const real *u, const real *tau,
+                         const struct cfa_options *options, real *ud, real *lambda, struct cfa_report *report)
+{
+    struct dynamics *d = r->d;
+    struct arena_mark mark = arena_mark(d->arena);
+    real *more = TAKE(d->arena, d->nu, real);
+    double before = 1;
+    for (int step = 0; step < options->outer; step++) {
+        correction(r, q, u, tau, options->inner, ud, lambda, more);
+        double size = relative_size(d->nu, more, ud);
+        if (!(size < before / 2)) {
+            if (step == 0) report->correction = size;
+            break;
+        }
+        for (int k = 0; k < d->nu; k++) ud[k] += more[k];
+        for (int k = 0; k < r->loops.nrow; k++) lambda[k] += r->lambda[k];
+        report->correction = before = size;
+        report->outer_done = step + 1;
+        if (size <= (double)REAL_EPSILON) break;
+    }
     arena_release(d->arena, mark);
 }
 
@@ -250,22 +273,22 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
 {
     struct arena_mark mark = arena_mark(d->arena);
     struct cfa_run r = {.full = true};
+    struct cfa_report own = {.nrow = d->model->nrow};
     bool good = d->model->has_phi && prepare(&r, d, q, u);
     if (good) {
         if (options->direct)
             solve(&r, tau, NULL, options->inner, ud);
         else
             solve_paper(&r, q, u, tau, options->inner, ud);
-        double residual = residual_of(&r);
+        own.residual = residual_of(&r);
         real *sum = TAKE(d->arena, r.loops.nrow, real);
         for (int k = 0; k < r.loops.nrow; k++) sum[k] = r.lambda[k];
-        for (int k = 0; k < options->outer; k++) refine_outer(&r, q, u, tau, options->inner, ud, sum);
+        refine_outer(&r, q, u, tau, options, ud, sum, &own);
         for (int k = 0; k < r.loops.nrow && lambda; k++) lambda[k] = sum[k];
-        if (report)
-            *report = (struct cfa_report){.residual = residual, .rank = r.rank, .nrow = r.loops.nrow,
-                                          .outer_done = options->outer};
+        own.rank = r.rank;
     }
     arena_release(d->arena, mark);
+    if (report) *report = own;
     if (w) work_add(w, &r.work);
     return good;
 }

@@ -3,7 +3,7 @@
 #include "mech/dynamics.h"
 #include "mech/loops.h"
 
-/* The forces of the loops as external loads on top of the given ones; NULL lambda: none. Returns the array to put back. */
+/* d->load = the given loads (NULL: none), copied to `sum` for more to be added. Returns the array to put back. */
 static real *with_loads(struct dynamics *d, const real *given, real *sum)
 {
     real *before = d->load;
@@ -82,10 +82,7 @@ bool closed_forward(struct dynamics *d, const real *q, const real *u, const real
     }
     if (good && report) {
         loops_residual(&l, d->a, d->base, false, reference);
-        report->residual = worst_of(d, &l, reference);
-        report->rank = rank;
-        report->nrow = m;
-        report->outer_done = 0;
+        *report = (struct cfa_report){.residual = worst_of(d, &l, reference), .rank = rank, .nrow = m};
     }
     for (int k = 0; k < m && lambda; k++) lambda[k] = x[k];
     arena_release(d->arena, mark);

@@ -55,7 +55,7 @@ void dynamics_velocities(struct dynamics *d, const real *u);
 /* rnea: joint forces tau (nu) that give accelerations ud (nu) at (q, u): Newton-Euler, physics (2.1)-(2.5).
  * Springs are not considered: tau is what actuators and springs supply together.
  *
- *   rnea_full also leaves velocities (angular part only), accelerations and joint forces in d->v, a, f, internal axes. */
+ *   rnea_full also leaves velocities (angular only), accelerations and joint forces in d->v, a, f, internal axes. */
 #define rnea REAL_NAME(rnea)
 void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
 #define rnea_full REAL_NAME(rnea_full)
@@ -86,13 +86,15 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
 /* The constraint force algorithm's variants. */
 struct cfa_options {
     bool direct;              /* physics 4.3; false: the paper's 4.2 */
-    int inner, outer;         /* refinements, physics 8.6 */
+    int inner, outer;         /* refinements, physics 8.6; at most this many outer ones, fewer when they end to help */
 };
 
 struct cfa_report {
-    double residual;          /* largest |W^T Z| of the answer over the largest term in it */
+    double residual;          /* largest |W^T Z| of the answer over the largest acceleration */
+    double correction;        /* last outer correction over the answer, 0 without one */
     int rank, nrow;           /* of the loops' constraint matrix; nrow - rank are redundant */
-    int outer_done;           /* outer steps that improved the answer */
+    int outer_done;           /* outer corrections applied */
+    bool fell_back;           /* forward_robust: articulated bodies had to solve it */
 };
 
 /* cfa: ud from tau by block elimination from leaves to root of the constraint forces' system (block Thomas for a
@@ -103,6 +105,12 @@ struct cfa_report {
 #define cfa REAL_NAME(cfa)
 bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, const struct cfa_options *options, real *ud,
          real *lambda, struct cfa_report *report, struct work *w);
+
+/* forward_robust: the most accurate way: cfa direct with refinements; where light bodies between heavy ones, or bodies
+ * without Phi, make that break down or not converge, articulated bodies with the same outer refinement. */
+#define forward_robust REAL_NAME(forward_robust)
+bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
+                    struct cfa_report *report, struct work *w);
 
 /* closed_forward: ud of a closed system through the articulated-body algorithm: M^-1 J^T column by column; the second,
  * independent way to loops. lambda (nrow) may be NULL. Returns false as aba. */

@@ -15,7 +15,7 @@
 /* The serial ways from joint forces to accelerations. */
 enum forward_method {
     FORWARD_ABA, FORWARD_CRBA, FORWARD_CRBA_SPARSE, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT,
-    FORWARD_CFA_ROBUST,          /* direct, one inner and one outer refinement */
+    FORWARD_CFA_ROBUST,          /* direct, inner and outer refinement; articulated bodies where that fails */
     FORWARD_METHODS
 };
 
@@ -23,6 +23,7 @@ enum forward_method {
 struct forward_report {
     double residual;             /* see cfa_report */
     int rank, nrow;
+    bool fell_back;              /* cfa-robust: articulated bodies had to solve it */
 };
 
 struct dynamics_totals {
@@ -33,7 +34,7 @@ struct dynamics_type {
     const char *name;            /* "float", "double", "quad" */
     double epsilon;
 
-    /* inverse: tau (nu) for s->qdd, loops cut open, springs not included (what the actuators and springs together do). */
+    /* inverse: tau (nu) for s->qdd, loops cut open: what actuators and springs do together. */
     void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w);
 
     /* forward: qdd (nu) for s->tau plus springs; lambda (nrow) and report may be NULL. False: the method broke down

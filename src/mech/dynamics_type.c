@@ -41,19 +41,13 @@ static void inverse(const struct model *m, const struct state *s, struct arena *
     arena_release(scratch, mark);
 }
 
-/* The method's options of the constraint force algorithm. */
-static struct cfa_options options_of(enum forward_method method)
-{
-    bool robust = method == FORWARD_CFA_ROBUST;
-    return (struct cfa_options){.direct = method != FORWARD_CFA_PAPER, .inner = robust, .outer = robust};
-}
-
 static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda, struct cfa_report *report,
                   struct work *w)
 {
     struct dynamics *d = p->d;
-    if (method >= FORWARD_CFA_PAPER) {
-        struct cfa_options options = options_of(method);
+    if (method == FORWARD_CFA_ROBUST) return forward_robust(d, p->q, p->u, p->tau, ud, lambda, report, w);
+    if (method == FORWARD_CFA_PAPER || method == FORWARD_CFA_DIRECT) {
+        const struct cfa_options options = {.direct = method == FORWARD_CFA_DIRECT};
         return cfa(d, p->q, p->u, p->tau, &options, ud, lambda, report, w);
     }
     if (d->model->nloop > 0) return closed_forward(d, p->q, p->u, p->tau, ud, lambda, report, w);
@@ -72,7 +66,7 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     bool good = solve(&p, method, ud, force, &full, w);
     if (good) to_double(qdd, ud, m->nu);
     if (good && lambda) to_double(lambda, force, m->nrow);
-    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow};
+    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, full.fell_back};
     arena_release(scratch, mark);
     return good;
 }

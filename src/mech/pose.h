@@ -9,7 +9,7 @@
 enum pose_stream { STREAM_SHAPE = 1, STREAM_INERTIA, STREAM_POSE, STREAM_RATE, STREAM_TORQUE, STREAM_FORCE,
                    STREAM_ACCELERATION };
 
-/* pose_coordinates: q (nq of the joint) of body i in the pose that `spec` asks for. Lengths are in units of `length`. */
+/* pose_coordinates: q (nq of the joint) of body i in the pose that `spec` asks for; lengths in units of `length`. */
 void pose_coordinates(const struct model_spec *spec, enum model_joint joint, int i, double length, double *q);
 
 /* pose_quaternion: a uniformly distributed rotation, x y z w. */
