@@ -74,9 +74,8 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     v->min = v->max = value;
     for (int i = 0; i < 2; i++) {
         const struct yaml_node *n = yaml_node_child(leaf, names[i]);
-        if (n != NULL && (n->text == NULL || !units_parse(n->text, f->unit, bound[i], why, (int)sizeof why)))
-            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i],
-                              n->text != NULL ? n->text : "", n->text != NULL ? why : "expected one value");
+        if (n != NULL && !units_parse(n->text, f->unit, bound[i], why, (int)sizeof why))
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i], n->text, why);
     }
     if (v->min > value || v->max < value)
         return err_set_at(e, ERR_DATA, v->file, v->line, "%s: the value is outside its own range min .. max", key);
