@@ -49,6 +49,10 @@ struct dynamics_type {
     /* totals: energy (springs included), momentum, centre of mass. */
     void (*totals)(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t);
 
+    /* advance: move s->q, s->qd by `steps` fixed steps of h; false when the dynamics broke down. */
+    bool (*advance)(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
+                    struct arena *scratch, struct work *w);
+
     /* drift: largest violation of the loops' position and velocity constraints. */
     void (*drift)(const struct model *m, const struct state *s, struct arena *scratch, double *position,
                   double *velocity);

@@ -1,6 +1,7 @@
 /* dynamics_type.c - this precision's table of serial algorithms, double in and out. */
 #include "mech/dynamics.h"
 #include "mech/dynamics_table.h"
+#include "mech/integrate.h"
 
 /* A model's numbers in this precision. */
 struct problem {
@@ -97,6 +98,21 @@ static void totals(const struct model *m, const struct state *s, struct arena *s
     arena_release(scratch, mark);
 }
 
+static bool advance(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
+                    struct arena *scratch, struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    struct integrator it = integrator_make(p.d, rule, (real)h, p.q, p.u, p.tau);
+    bool good = true;
+    for (int k = 0; k < steps && good; k++) good = integrator_step(&it);
+    to_double(s->q, p.q, m->nq);
+    to_double(s->qd, p.u, m->nu);
+    if (w) work_add(w, &it.work);
+    arena_release(scratch, mark);
+    return good;
+}
+
 static void drift(const struct model *m, const struct state *s, struct arena *scratch, double *position,
                   double *velocity)
 {
@@ -122,5 +138,6 @@ const struct dynamics_type dynamics_type_here = {
     .forward = forward,
     .mass_matrix = mass_matrix,
     .totals = totals,
+    .advance = advance,
     .drift = drift,
 };

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mech/integrate.h"
 #include "mech/model.h"
 #include "mech/pose.h"
 #include "mech/vector_model.h"
@@ -72,6 +73,15 @@ static void pose_four_bar(const struct model_spec *spec, struct state *s)
     s->qd[0] = spec->rate, s->qd[1] = -spec->rate, s->qd[2] = spec->rate;
 }
 
+/* Random velocities made consistent with the loops. */
+static void close_velocities(const struct model *m, struct state *s, struct arena *a)
+{
+    struct arena_mark mark = arena_mark(a);
+    struct dynamics *d = dynamics_take(m, a);
+    loop_project(d, s->q, s->qd, 0, NULL);
+    arena_release(a, mark);
+}
+
 struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
     if (spec->generator == MODEL_VECTOR) {
@@ -85,8 +95,9 @@ struct state *state_make(const struct model *m, const struct model_spec *spec, s
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)
         for (int i = 0; i < m->nbody; i++) pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
-    if (!closed) scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
+    scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
     if (spec->generator == MODEL_FOUR_BAR) pose_four_bar(spec, s);
+    if (spec->generator == MODEL_RING) close_velocities(m, s, a);
     scatter(m, spec->seed, STREAM_ACCELERATION, rate * rate, rate * rate * length, s->qdd);
     scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length), s->tau);
     if (spec->external_force > 0)

@@ -13,6 +13,7 @@ static const char *const part_solvers[] = {"pcr", "cr", NULL};
 static const char *const operators[] = {"structured", "dense", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
+static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", NULL};
 static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "alltoall", "barrier", "hot-spot",
                                          "hotspot", "shift", "xor", "allreduce", "broadcast", "halo", "bench"};
 
@@ -97,6 +98,9 @@ static const struct field fields[] = {
      .idle = idle_without_model, .doc = "time steps, 0: one evaluation"},
     {.key = "step_size", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(step_size), .min = 1e-18, .max = 1e3,
      .fallback = "1 ms", .idle = idle_without_steps, .doc = "of a time step"},
+    {.key = "step", .kind = FIELD_CHOICE, AT(step), .choice = step_rules, .fallback = "semi-implicit",
+     .idle = idle_without_steps,
+     .doc = "semi-implicit Euler (order 1), kick-drift-kick (order 2, one evaluation a step) or Runge-Kutta 4"},
     {.key = "repeat", .kind = FIELD_INT, AT(repeat), .min = 1, .max = 1 << 30, .fallback = "1",
      .idle = idle_with_model, .doc = "benchmarks: repetitions within a run"},
     {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0, .max = 1e12,

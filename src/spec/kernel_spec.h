@@ -11,6 +11,7 @@ enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
 enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
 enum part_solver { PART_PCR, PART_CR };
 enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
+enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4 };
 
 struct kernel_spec {
     char name[32];               /* "inverse", "forward", "dynamics" (both), "pingpong", ...: see room kernel */
@@ -26,6 +27,7 @@ struct kernel_spec {
     int outer_refinements;       /* corrections through inverse dynamics */
     int steps;                   /* time steps; 0: one evaluation */
     double step_size;            /* [s] */
+    enum step_rule step;         /* how a time step is made, physics 9 */
     int repeat;                  /* micro-benchmarks: repetitions */
     int64_t message_bytes;       /* micro-benchmarks: size [B] */
     int distance;                /* shift: rank distance */
