@@ -116,9 +116,11 @@ static void solution(const struct run_spec *spec, const struct outline *o, struc
     add(e, o->P - 1, c * c); /* coupling to the left, with the Schur complement of several rows */
     e->bytes += o->shifts * (packed + c) * (double)sizeof(real);
     add(e, o->P - 1, c); /* interface solution to the right */
-    const double inside = o->n - o->P, factor = c * (c + 1) * (2 * c + 1) / 6, product = c * (2 * c - 1);
-    e->flops += inside * (factor + c * c * (2 * c + 1) + 2 * (packed * (2 * c - 1) + product + packed + c) + c * product);
-    e->flops += inside * (c * c + 2 * (product + c));
+    const double factor = c * (c + 1) * (2 * c + 1) / 6, product = c * (2 * c - 1);
+    const double first = o->P < o->n ? (double)(int)((o->n + o->P - 1) / o->P) - 1 : 0, others = o->n - o->P - first;
+    const double side = c * c * c + packed * (2 * c - 1) + product + packed + c; /* towards one neighbour */
+    e->flops += first * (factor + c * c + side + c * c + product + c);
+    e->flops += others * (factor + c * c + 2 * side + c * product + c * c + 2 * (product + c));
 }
 
 /* steps: a scan's transforms that one rank holds. */
@@ -158,7 +160,9 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, st
     add(out, edges, o.d + (direct ? 6 : 0));
     solution(spec, &o, out);
     add(out, edges, o.c);
-    out->flops += o.n * 525 + (direct ? 2 * o.n * (2 * o.x + 66 + 24) + 2 * edges * (66 + 12 + o.x) : o.n * 60 + edges * 310);
+    out->flops += (o.n - 1) * 525;
+    if (direct) out->flops += 2 * ((o.n - 1) * (2 * o.x + 66 + 24) + 66 + 24 + edges * (66 + 12 + o.x));
+    else out->flops += o.n * 60 + edges * 310;
     out->rank_bytes = rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
 }
 

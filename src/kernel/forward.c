@@ -300,7 +300,7 @@ static void paper_residual(struct forward *f)
     ch->work = before;
 }
 
-/* solve_direct: FS with inner refinements; z holds the answer. `again`: the system is factored already. */
+/* solve_operator_form: FS with inner refinements; z holds the answer. `again`: the system is factored already. */
 static void solve_operator_form(struct forward *f, bool terms, bool again)
 {
     struct chain *ch = &f->chain;
@@ -308,8 +308,8 @@ static void solve_operator_form(struct forward *f, bool terms, bool again)
     operator_form(f, terms);
     for (int pass = 0; pass <= inner; pass++) {
         right_hand_side(f);
-        comm_stage(ch->comm, STAGE_SOLVE);
         chain_report(ch);
+        comm_stage(ch->comm, STAGE_SOLVE);
         if (pass == 0 && !again) blocks_solve(&f->blocks, &ch->work);
         else blocks_resolve(&f->blocks, &ch->work);
         comm_stage(ch->comm, STAGE_FINISH);
