@@ -9,6 +9,7 @@ static const struct net_type *const levels[] = {
     [LEVEL_LOGGP] = &net_loggp,
     [LEVEL_LINK] = &net_link,
     [LEVEL_PACKET] = &net_packet,
+    [LEVEL_FLIT] = &net_flit,
     [LEVEL_AUTO] = &net_auto,
 };
 

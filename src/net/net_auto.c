@@ -267,7 +267,7 @@ static void start_event(void *subject, uint64_t argument, sim_ps now)
 
 static bool auto_create(struct net *n, struct err *e)
 {
-    n->state = packet_fabric(n, true, e);
+    n->state = packet_fabric(n, packet_look, e);
     return n->state != NULL;
 }
 

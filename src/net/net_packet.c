@@ -9,14 +9,12 @@
  * a tail is delivered in the very moment in which the ejection port is granted. */
 enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1, LANE_LATE };
 
-static void resource_look(void *subject, uint64_t argument, sim_ps now);
-
 static void wake_in(struct fabric *f, int r, sim_ps at, unsigned lane)
 {
     struct resource *o = &f->resource[r];
     if (o->wake && o->wake <= at + 1) return;
     o->wake = at + 1;
-    sim_at(f->net->sim, at, lane, (uint64_t)r, resource_look, f, (uint64_t)(lane == LANE_AGAIN) << 32 | (uint64_t)r);
+    sim_at(f->net->sim, at, lane, (uint64_t)r, f->look, f, (uint64_t)(lane == LANE_AGAIN) << 32 | (uint64_t)r);
 }
 
 void packet_wake(struct fabric *f, int r, sim_ps at) { wake_in(f, r, at, NET_LANE_ARBITRATE); }
@@ -348,7 +346,7 @@ static void source_serve(struct fabric *f, int node, sim_ps now)
     if (z->front) packet_wake(f, node, later(z->front->m->ready, f->resource[node].free));
 }
 
-static void resource_look(void *subject, uint64_t argument, sim_ps now)
+void packet_look(void *subject, uint64_t argument, sim_ps now)
 {
     struct fabric *f = subject;
     int r = (int)(argument & INT32_MAX);
@@ -369,7 +367,7 @@ static void resource_look(void *subject, uint64_t argument, sim_ps now)
 
 static bool packet_create(struct net *n, struct err *e)
 {
-    n->state = packet_fabric(n, false, e);
+    n->state = packet_fabric(n, packet_look, e);
     return n->state != NULL;
 }
 

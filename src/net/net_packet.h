@@ -99,6 +99,8 @@ struct packet {
 struct fabric {
     struct net *net;
     struct resource *resource;    /* (nresource) */
+    sim_action *look;             /* what an event of a resource does: subject the fabric, argument its number */
+    bool cuts;                    /* messages larger than a buffer travel in pieces of its size */
     struct source *source;        /* (nnode) */
     struct hop *way;              /* (max_hops + 2) scratch: the route of the message being made */
     sim_ps *own_port;             /* (nnode x processors) injection port for the processor's own messages alone */
@@ -107,7 +109,7 @@ struct fabric {
     int buffer;                   /* flits per channel */
     sim_ps late;                  /* when a message was delivered last in LANE_LATE, -1: never */
     sim_ps fastest;               /* flit time of the fastest resource */
-    bool first_come, optimistic;
+    bool first_come;
     struct packet *free_packet;
     struct credit *free_credit;
     struct fifo *free_fifo;       /* unused part of a chunk of FIFOs */
@@ -120,12 +122,16 @@ struct fabric {
     int64_t nadmitted, nflight;   /* auto: messages that were never simulated; all */
 };
 
-/* net_packet_fabric: the state for level packet (optimistic false) or auto. Returns NULL with ERR_CONFIG when the
- * machine's buffers are too small for cut-through. */
-struct fabric *packet_fabric(struct net *n, bool optimistic, struct err *e);
+/* fabric_create: the state without a meaning: routes, messages, sources, for any level with buffers. Returns NULL with
+ * ERR_CONFIG when the network numbers cannot be. */
+struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e);
 
-/* packet_config: the checks of the network numbers that all levels with buffers share. */
-bool packet_config(const struct net *n, struct err *e);
+/* packet_fabric: the state of levels packet and auto. Returns NULL with ERR_CONFIG when the machine's buffers are too
+ * small for cut-through. */
+struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e);
+
+/* packet_look: an event of a resource on levels packet and auto. */
+void packet_look(void *subject, uint64_t argument, sim_ps now);
 
 /* Pools: nothing is allocated once a run has reached its widest point. */
 struct flight *flight_take(struct fabric *f, struct net_message *m);

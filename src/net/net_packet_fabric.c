@@ -5,7 +5,7 @@
 
 enum { CHUNK = 128, FLIGHT_STEP = 4 };
 
-bool packet_config(const struct net *n, struct err *e)
+static bool packet_config(const struct net *n, struct err *e)
 {
     const struct network_spec *w = &n->machine->network;
     if (w->flit_bytes < 1)
@@ -24,7 +24,7 @@ bool packet_config(const struct net *n, struct err *e)
     return true;
 }
 
-/* slowest and fastest flit time of any resource */
+/* flit time of the fastest resource */
 static sim_ps fastest_flit(const struct net *n)
 {
     sim_ps best = n->injection.flit < n->ejection.flit ? n->injection.flit : n->ejection.flit;
@@ -58,12 +58,13 @@ static bool cut_through_config(const struct net *n, struct err *e)
     return true;
 }
 
-struct fabric *packet_fabric(struct net *n, bool optimistic, struct err *e)
+struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e)
 {
-    if (!packet_config(n, e) || !cut_through_config(n, e)) return NULL;
+    if (!packet_config(n, e)) return NULL;
     const struct network_spec *w = &n->machine->network;
-    struct fabric *f = TAKE(n->arena, 1, struct fabric);
+    struct fabric *f = arena_take(n->arena, size);
     f->net = n;
+    f->look = look;
     f->nprocessor = n->topology->spec->processors_per_node;
     f->nchannel = w->virtual_channels;
     f->nclass = f->nchannel < n->topology->nclass ? 1 : n->topology->nclass;
@@ -72,12 +73,19 @@ struct fabric *packet_fabric(struct net *n, bool optimistic, struct err *e)
     f->late = -1;
     f->fastest = fastest_flit(n);
     f->first_come = w->arbitration == ARBITRATION_FIRST_COME;
-    f->optimistic = optimistic;
     f->resource = TAKE(n->arena, n->nresource, struct resource);
     f->source = TAKE(n->arena, n->nnode, struct source);
-    f->own_port = TAKE(n->arena, (int64_t)n->nnode * f->nprocessor, sim_ps);
     f->way = TAKE(n->arena, n->topology->max_hops + 2, struct hop);
+    f->own_port = TAKE(n->arena, (int64_t)n->nnode * f->nprocessor, sim_ps);
     f->free_flight = TAKE(n->arena, (n->topology->max_hops + 2) / FLIGHT_STEP + 1, struct flight *);
+    return f;
+}
+
+struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e)
+{
+    struct fabric *f = fabric_create(n, sizeof *f, look, e);
+    if (!f || !cut_through_config(n, e)) return NULL;
+    f->cuts = true;
     return f;
 }
 
@@ -162,7 +170,7 @@ static void flight_cut(const struct fabric *f, struct flight *w)
     const struct net *n = f->net;
     int64_t bytes = w->m->bytes, packets = net_packets(n, bytes);
     int64_t last = net_packet_flits(n, bytes, packets - 1), full = packets > 1 ? net_packet_flits(n, bytes, 0) : last;
-    if (packets == 1 && last > f->buffer) {
+    if (f->cuts && packets == 1 && last > f->buffer) {
         packets = (last + f->buffer - 1) / f->buffer;
         full = f->buffer;
         last -= (packets - 1) * full;

@@ -1,0 +1,23 @@
+/* net_flit.c - level flit: wormhole switching, by trains of flits or flit by flit. */
+#include "net/net_flit.h"
+
+static const struct flit_way *way_of(const struct net *n)
+{
+    return n->machine->network.virtual_channels == 1 ? &flit_train : &flit_event;
+}
+
+static bool flit_create(struct net *n, struct err *e)
+{
+    n->state = way_of(n)->create(n, e);
+    return n->state != NULL;
+}
+
+static void flit_send(struct net *n, struct net_message *m)
+{
+    struct fabric *f = n->state;
+    source_enter(f, flight_take(f, m));
+}
+
+static bool flit_stuck(const struct net *n, char *text, int size) { return way_of(n)->stuck(n, text, size); }
+
+const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, flit_send, flit_stuck};
