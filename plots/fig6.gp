@@ -15,6 +15,10 @@ stats data using (name[int(column("series"))] = strcol("baseline"), \
 
 amdahl(f, p) = 1.0/((1.0 - f) + f/p)
 fractions = "0.70 0.80 0.90 0.95 0.97 0.98"
+has_band = name[1] eq "fastest serial"
+first = has_band ? 2 : 1
+rows = ceil((last + 2)/2.0)
+top = 0.928 - 0.0185*rows
 of(k, v) = column("series") == k ? v : NaN
 ymin = 2**floor(log(smin)/log(2)); if (ymin > 0.5) { ymin = 0.5 }
 
@@ -27,26 +31,27 @@ do for [format in formats] {
     set multiplot
     set lmargin at screen 0.105; set rmargin at screen 0.93
     # speedup
-    set tmargin at screen 0.875; set bmargin at screen 0.475
+    set tmargin at screen top; set bmargin at screen 0.475
     eval title_at(format, 0.98)
-    set key at screen 0.52,0.935 center top horizontal maxrows 3 samplen 3.5 width -1
+    set key at screen 0.52,0.94 center top horizontal maxrows rows samplen 3.5 width -1
     set logscale y 2
     set yrange [ymin:pmax*1.1]
-    set ytics ("1/8" 0.125, "1/4" 0.25, "1/2" 0.5, 1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
+    set ytics ("1/64" 1.0/64, "1/32" 1.0/32, "1/16" 1.0/16, "1/8" 0.125, "1/4" 0.25, "1/2" 0.5, 1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
     set ylabel "speedup S over the serial code"
     set xlabel ""
     set format x ""
     eval foot(format)
     do for [i=1:words(fractions)] {
         f = real(word(fractions, i))
-        set label 10+i sprintf("%.2f", f) at pmax*1.09,amdahl(f, pmax) left textcolor rgb grey
+        set label 10+i sprintf("%.2f", f) at pmax*1.09,amdahl(f, pmax) left font small(format) textcolor rgb grey
     }
-    set label 20 "f =" at pmax*1.09,amdahl(0.98, pmax)*1.3 left textcolor rgb grey
+    set label 20 "f =" at pmax*1.09,amdahl(0.98, pmax)*1.4 left font small(format) textcolor rgb grey
     plot for [i=1:words(fractions)] amdahl(real(word(fractions, i)), x) with lines linewidth 0.8 linetype 1 \
             linecolor rgb pale title i == 1 ? "Amdahl's law for f" : '', \
          x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
-         for [k=1:last] data using "P":(of(k, column("speedup"))) with linespoints linewidth 1.8 \
-            dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k] title "over ".name[k]
+         data using "P":(has_band ? of(1, column("speedup")) : NaN) with lines linewidth 6 linecolor rgb band title "over ".name[1], \
+         for [k=first:last] data using "P":(of(k, column("speedup"))) with linespoints linewidth 1.8 dashtype dash[k-first+1] \
+            pointtype point[k-first+1] pointsize 0.9 linecolor rgb colour[k-first+1] title "over ".name[k]
     do for [i=1:words(fractions)] { unset label 10+i }
     unset label 20; unset label 99; unset label 97; unset label 98
     # degree of parallelism
@@ -56,10 +61,11 @@ do for [format in formats] {
     set yrange [0:1.01]
     set ytics 0,0.2,1 format "%.1f"
     set ylabel "degree of parallelism f"
-    set label 21 "0.97" at pmax*1.09,0.97 left textcolor rgb grey
+    set label 21 "0.97" at pmax*1.09,0.97 left font small(format) textcolor rgb grey
     plot 0.97 with lines linewidth 0.8 linecolor rgb grey, \
-         for [k=1:last] data using "P":(of(k, column("parallel_fraction"))) with linespoints linewidth 1.8 \
-            dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k]
+         data using "P":(has_band ? of(1, column("parallel_fraction")) : NaN) with lines linewidth 6 linecolor rgb band, \
+         for [k=first:last] data using "P":(of(k, column("parallel_fraction"))) with linespoints linewidth 1.8 dashtype dash[k-first+1] \
+            pointtype point[k-first+1] pointsize 0.9 linecolor rgb colour[k-first+1]
     unset label 21
     # contention
     set tmargin at screen 0.215; set bmargin at screen 0.095

@@ -12,7 +12,7 @@ WITH point AS (
 finest AS (
     SELECT * FROM point a WHERE choice = 1
         AND (level <> 'loggp' OR NOT EXISTS (SELECT 1 FROM point WHERE n = a.n AND level <> 'loggp')))
-SELECT dense_rank() OVER (ORDER BY a.baseline_ordinal, a.baseline) AS series, replace(a.baseline, ',', ' –') AS baseline,
+SELECT dense_rank() OVER (ORDER BY a.baseline <> 'fastest serial', a.baseline_ordinal, a.baseline) AS series, replace(a.baseline, ',', ' –') AS baseline,
        a.P, a.makespan_ps, a.baseline_ps, a.speedup, a.parallel_fraction,
        100.0 * (a.makespan_ps - b.makespan_ps) / b.makespan_ps AS contention_percent,
        a.machine, a.level, a.formulation, a.solver, a.operators, a.run_id

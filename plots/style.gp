@@ -13,6 +13,8 @@ page(format, w, h) = format eq "png" ? \
 array colour[8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f"]
 array point[8] = [7, 5, 9, 13, 11, 6, 4, 8]
 array dash[8] = [1, 2, 4, 5, 3, 1, 2, 4]
+# The fastest serial code is always one of the others: a wide pale band under that one's curve.
+band = "#d0d0d0"
 grey = "#767676"
 pale = "#b8b8b8"
 
@@ -20,7 +22,7 @@ pale = "#b8b8b8"
 compute_colour = "#0072b2"
 send_colour = "#e69f00"
 recv_colour = "#f0e442"
-wait_colour = "#c8d4dc"
+wait_colour = "#f6f6f6"
 contention_colour = "#d55e00"
 
 set border 3 linewidth 0.8
@@ -34,5 +36,6 @@ footer = sprintf("set label 99 \"%s\" at screen 0.99,0.012 right noenhanced font
 # The figure's own title and the line below it, at the height y of the page.
 title_at(format, y) = sprintf("set label 97 headline at screen 0.5,%f center noenhanced font ',%d'; ". \
     "set label 98 subline at screen 0.5,%f center noenhanced textcolor rgb '%s'", y, format eq "png" ? 23 : 16, y - 0.032, grey)
+small(format) = format eq "png" ? ",15" : ",10"
 foot(format) = sprintf(footer, format eq "png" ? "11" : "8")
 
