@@ -1,4 +1,4 @@
-/* event_queue.c - 4-ary heap of small entries; see event_queue.h. */
+/* event_queue.c - a wheel of wheels for the future, a sorted run and a heap for the present; see event_queue.h. */
 #include "sim/event_queue.h"
 
 #include <stdlib.h>
@@ -6,74 +6,198 @@
 
 #include "base/check.h"
 
-enum { FIRST_CAPACITY = 256 };
+enum { FIRST_CAPACITY = 8, INSERTION_MOST = 12 };
 
 void event_queue_init(struct event_queue *q) { memset(q, 0, sizeof *q); }
 
 void event_queue_done(struct event_queue *q)
 {
-    free(q->heap);
-    free(q->slot);
-    free(q->free_slot);
+    free(q->run.event);
+    free(q->heap.event);
+    free(q->key);
+    free(q->scratch);
+    for (int l = 0; l < WHEEL_LEVELS; l++)
+        for (int s = 0; s < WHEEL_SLOTS; s++) free(q->wheel[l][s].event);
     memset(q, 0, sizeof *q);
 }
 
-static void grow(struct event_queue *q)
+static void bucket_grow(struct event_bucket *b)
 {
-    uint32_t capacity = q->capacity ? 2 * q->capacity : FIRST_CAPACITY;
-    q->heap = realloc(q->heap, capacity * sizeof *q->heap);
-    q->slot = realloc(q->slot, capacity * sizeof *q->slot);
-    q->free_slot = realloc(q->free_slot, capacity * sizeof *q->free_slot);
-    CHECK(q->heap && q->slot && q->free_slot);
-    for (uint32_t i = q->capacity; i < capacity; i++) q->free_slot[i] = i;
-    q->capacity = capacity;
+    b->capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
+    b->event = realloc(b->event, b->capacity * sizeof *b->event);
+    CHECK(b->event);
 }
 
-static inline bool before(const struct event_entry *a, const struct event_entry *b)
+static inline void bucket_add(struct event_bucket *b, const struct event *e)
 {
-    if (a->time != b->time) return a->time < b->time;
-    if (a->order != b->order) return a->order < b->order;
-    return (int32_t)(a->age - b->age) < 0;
+    if (b->count == b->capacity) bucket_grow(b);
+    b->event[b->count++] = *e;
+}
+
+static inline bool event_before(const struct event *a, const struct event *b)
+{
+    return a->order != b->order ? a->order < b->order : a->age < b->age;
+}
+
+static inline bool key_before(const struct event_key *a, const struct event_key *b)
+{
+    return a->order != b->order ? a->order < b->order : a->age < b->age;
+}
+
+/* --- the heap of events posted at the present instant --- */
+
+static void heap_add(struct event_bucket *h, const struct event *e)
+{
+    bucket_add(h, e);
+    uint32_t i = h->count - 1;
+    for (; i > 0 && event_before(e, &h->event[(i - 1) / 2]); i = (i - 1) / 2) h->event[i] = h->event[(i - 1) / 2];
+    h->event[i] = *e;
+}
+
+static void heap_take(struct event_bucket *h, struct event *first)
+{
+    *first = h->event[0];
+    struct event last = h->event[--h->count];
+    uint32_t i = 0;
+    for (uint32_t child = 1; child < h->count; child = 2 * i + 1) {
+        if (child + 1 < h->count && event_before(&h->event[child + 1], &h->event[child])) child++;
+        if (!event_before(&h->event[child], &last)) break;
+        h->event[i] = h->event[child];
+        i = child;
+    }
+    if (h->count) h->event[i] = last;
+}
+
+/* --- the wheels --- */
+
+static inline void wheel_add(struct event_queue *q, const struct event *e)
+{
+    uint64_t differs = (uint64_t)e->time ^ (uint64_t)q->now;
+    int level = differs ? (63 - __builtin_clzll(differs)) / WHEEL_BITS : 0;
+    unsigned slot = (unsigned)(e->time >> (level * WHEEL_BITS)) & (WHEEL_SLOTS - 1);
+    q->full[level] |= UINT64_C(1) << slot;
+    bucket_add(&q->wheel[level][slot], e);
+}
+
+/* The first bucket: lowest level that has any, lowest value there. */
+static inline bool wheel_first(const struct event_queue *q, int *level, int *slot)
+{
+    for (int l = 0; l < WHEEL_LEVELS; l++) {
+        if (!q->full[l]) continue;
+        *level = l;
+        *slot = __builtin_ctzll(q->full[l]);
+        return true;
+    }
+    return false;
+}
+
+/* Spread a bucket over the levels below, from the first moment that it covers. */
+static void wheel_spread(struct event_queue *q, int level, int slot)
+{
+    struct event_bucket b = q->wheel[level][slot];
+    q->wheel[level][slot] = (struct event_bucket){0};
+    q->full[level] &= ~(UINT64_C(1) << slot);
+    int shift = level * WHEEL_BITS;
+    uint64_t above = shift + WHEEL_BITS > 62 ? 0 : ~UINT64_C(0) << (shift + WHEEL_BITS);
+    q->now = (sim_ps)(((uint64_t)q->now & above) | (uint64_t)slot << shift);
+    for (uint32_t i = 0; i < b.count; i++) wheel_add(q, &b.event[i]);
+    b.count = 0;
+    q->wheel[level][slot] = b; /* keeps its memory for the next time round */
+}
+
+/* --- the sorted events of one instant --- */
+
+static void keys_insertion(struct event_key *k, uint32_t n)
+{
+    for (uint32_t i = 1; i < n; i++) {
+        struct event_key x = k[i];
+        uint32_t j = i;
+        for (; j > 0 && key_before(&x, &k[j - 1]); j--) k[j] = k[j - 1];
+        k[j] = x;
+    }
+}
+
+static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n)
+{
+    if (n <= INSERTION_MOST) {
+        keys_insertion(k, n);
+        return;
+    }
+    uint32_t half = n / 2, i = 0, j = half;
+    keys_sort(k, scratch, half);
+    keys_sort(k + half, scratch, n - half);
+    if (!key_before(&k[half], &k[half - 1])) return; /* often posted in order */
+    memcpy(scratch, k, half * sizeof *k);
+    for (uint32_t out = 0; i < half; out++)
+        k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
+}
+
+static void keys_room(struct event_queue *q, uint32_t n)
+{
+    if (n <= q->key_capacity) return;
+    q->key_capacity = n * 2;
+    free(q->key);
+    free(q->scratch);
+    q->key = malloc(q->key_capacity * sizeof *q->key);
+    q->scratch = malloc(q->key_capacity * sizeof *q->scratch);
+    CHECK(q->key && q->scratch);
+}
+
+/* Make the bucket of the next instant the run. */
+static void run_begin(struct event_queue *q, int slot)
+{
+    struct event_bucket empty = q->run;
+    q->run = q->wheel[0][slot];
+    empty.count = 0;
+    q->wheel[0][slot] = empty;
+    q->full[0] &= ~(UINT64_C(1) << slot);
+    q->now = q->run.event[0].time;
+    q->run_at = 0;
+    keys_room(q, q->run.count);
+    for (uint32_t i = 0; i < q->run.count; i++)
+        q->key[i] = (struct event_key){q->run.event[i].order, q->run.event[i].age, i};
+    keys_sort(q->key, q->scratch, q->run.count);
 }
 
 void event_queue_push(struct event_queue *q, const struct event *e)
 {
-    if (q->count == q->capacity) grow(q);
-    uint32_t i = q->count, slot = q->free_slot[i];
-    q->slot[slot] = (struct event_slot){e->action, e->subject, e->argument};
-    struct event_entry entry = {e->time, e->order, q->next_age++, slot};
+    CHECK(e->time >= q->now);
+    struct event aged = *e;
+    aged.age = q->next_age++;
     q->count++;
-    while (i > 0) {
-        uint32_t parent = (i - 1) / 4;
-        if (!before(&entry, &q->heap[parent])) break;
-        q->heap[i] = q->heap[parent];
-        i = parent;
-    }
-    q->heap[i] = entry;
-}
-
-static inline uint32_t first_child(const struct event_entry *h, uint32_t from, uint32_t count)
-{
-    uint32_t end = from + 4 < count ? from + 4 : count, best = from;
-    for (uint32_t k = from + 1; k < end; k++)
-        if (before(&h[k], &h[best])) best = k;
-    return best;
+    if (e->time == q->now) heap_add(&q->heap, &aged);
+    else wheel_add(q, &aged);
 }
 
 bool event_queue_pop(struct event_queue *q, struct event *e)
 {
     if (q->count == 0) return false;
-    struct event_entry first = q->heap[0], last = q->heap[--q->count];
-    const struct event_slot *s = &q->slot[first.slot];
-    *e = (struct event){first.time, first.order, s->action, s->subject, s->argument};
-    q->free_slot[q->count] = first.slot;
-    uint32_t i = 0;
-    for (uint32_t child = 1; child < q->count; child = 4 * i + 1) {
-        child = first_child(q->heap, child, q->count);
-        if (!before(&q->heap[child], &last)) break;
-        q->heap[i] = q->heap[child];
-        i = child;
+    q->count--;
+    while (q->run_at == q->run.count && q->heap.count == 0) {
+        int level, slot;
+        CHECK(wheel_first(q, &level, &slot));
+        if (level == 0) run_begin(q, slot);
+        else wheel_spread(q, level, slot);
     }
-    if (q->count) q->heap[i] = last;
+    bool from_run = q->run_at < q->run.count;
+    if (from_run) {
+        *e = q->run.event[q->key[q->run_at].index];
+        from_run = !q->heap.count || event_before(e, &q->heap.event[0]);
+    }
+    if (from_run) q->run_at++;
+    else heap_take(&q->heap, e);
     return true;
+}
+
+sim_ps event_queue_next_time(const struct event_queue *q)
+{
+    if (q->count == 0) return SIM_NEVER;
+    if (q->run_at < q->run.count || q->heap.count) return q->now;
+    int level, slot;
+    CHECK(wheel_first(q, &level, &slot));
+    const struct event_bucket *b = &q->wheel[level][slot];
+    sim_ps first = b->event[0].time;
+    for (uint32_t i = 1; i < b->count; i++)
+        if (b->event[i].time < first) first = b->event[i].time;
+    return first;
 }

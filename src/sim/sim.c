@@ -39,7 +39,7 @@ void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action 
 {
     CHECK(time >= s->now);
     CHECK(lane < 65536 && key >> KEY_BITS == 0);
-    struct event e = {time, (uint64_t)lane << KEY_BITS | key, action, subject, argument};
+    struct event e = {time, (uint64_t)lane << KEY_BITS | key, 0, action, subject, argument};
     event_queue_push(&s->queue, &e);
 }
 
@@ -56,7 +56,7 @@ bool sim_step(struct sim *s)
     return true;
 }
 
-sim_ps sim_next_time(const struct sim *s) { return s->queue.count ? s->queue.heap[0].time : SIM_NEVER; }
+sim_ps sim_next_time(const struct sim *s) { return event_queue_next_time(&s->queue); }
 sim_ps sim_now(const struct sim *s) { return s->now; }
 int64_t sim_events(const struct sim *s) { return s->events; }
 int64_t sim_ties(const struct sim *s) { return s->ties; }

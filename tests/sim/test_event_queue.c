@@ -23,19 +23,19 @@ static size_t twin_first(const struct event *e, size_t n)
     return best;
 }
 
-static void events_come_out_as_from_a_list(void **state)
+/* Random posting and taking, times up to `spread` ahead, against a list searched for its first. */
+static void against_the_list(uint64_t spread)
 {
-    (void)state;
-    enum { MOST = 3000 };
-    struct random r = random_make(7, 0, 0);
+    enum { MOST = 1000 };
+    struct random r = random_make(7, spread, 0);
     struct event_queue q;
     event_queue_init(&q);
     struct event *twin = calloc(MOST, sizeof *twin);
     size_t n = 0;
     sim_ps now = 0;
-    for (uint64_t step = 0; step < 12000; step++) {
+    for (uint64_t step = 0; step < 8000; step++) {
         if (n < MOST && (n == 0 || random_below(&r, 5) < 3)) {
-            struct event e = {now + (sim_ps)random_below(&r, 50), random_below(&r, 4), NULL, NULL, step};
+            struct event e = {now + (sim_ps)random_below(&r, spread), random_below(&r, 4), 0, NULL, NULL, step};
             event_queue_push(&q, &e);
             twin[n++] = e;
             continue;
@@ -44,11 +44,21 @@ static void events_come_out_as_from_a_list(void **state)
         size_t best = twin_first(twin, n);
         assert_true(event_queue_pop(&q, &e));
         assert_int_equal(e.argument, twin[best].argument);
+        assert_int_equal(e.time, twin[best].time);
         now = e.time;
         twin[best] = twin[--n];
     }
+    assert_int_equal(q.count, n);
+    if (n) assert_int_equal(event_queue_next_time(&q), twin[twin_first(twin, n)].time);
     free(twin);
     event_queue_done(&q);
+}
+
+static void events_come_out_as_from_a_list(void **state)
+{
+    (void)state;
+    static const uint64_t spread[] = {1, 3, 50, 64, 65, 4096, 1000000, UINT64_C(1) << 40, UINT64_C(1) << 55};
+    for (size_t i = 0; i < sizeof spread / sizeof *spread; i++) against_the_list(spread[i]);
 }
 
 struct seen {
