@@ -24,8 +24,8 @@ sources() {
 # room_names: all rooms, in house order.
 room_names() { awk '!/^#/ { print $1 }' "$ROOMS"; }
 
-# archives: the archives of all rooms (and the objects of app, which has none), one "ROOM FILE" a line. A room without any
-# is an error.
+# archives: the archives of all rooms (and the objects of app, which has none), one "ROOM FILE" a line. A room of
+# headers alone has none; another room without any is an error.
 archives() {
     local room file found
     for room in $(room_names); do
@@ -36,6 +36,7 @@ archives() {
             echo "$room $file"
             found=yes
         done
-        [ -n "$found" ] || { echo "no archive of room $room in $HOUSE_BUILD" >&2; return 1; }
+        [ -n "$found" ] || ! compgen -G "$HOUSE/src/$room/*.c" >/dev/null ||
+            { echo "no archive of room $room in $HOUSE_BUILD" >&2; return 1; }
     done
 }
