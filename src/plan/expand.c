@@ -270,13 +270,6 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
 
 /* ---- what does not act */
 
-static bool is_random(const struct run_spec *r)
-{
-    const struct machine_spec *m = &r->machine;
-    bool valiant = m->topology.family == TOPOLOGY_DRAGONFLY && m->topology.routing == ROUTE_VALIANT;
-    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant;
-}
-
 /* Why a setting acts in no run, NULL when it acts in one. */
 static const char *why_idle(const struct plan *p, const struct setting *s)
 {
@@ -316,6 +309,6 @@ void expand_unused(struct plan *p, const struct scenario *s)
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) add_unused_of(p, &s->axis[i].point[j]);
     add_unused_of(p, &s->set);
-    for (int i = 0; i < p->nrun && !random; i++) random = is_random(&p->run[i]);
+    for (int i = 0; i < p->nrun && !random; i++) random = run_spec_is_random(&p->run[i]);
     if (s->repetitions > 1 && !random) add_unused(p, "repetitions", "nothing is random in these runs");
 }

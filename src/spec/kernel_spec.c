@@ -14,8 +14,7 @@ static const char *const operators[] = {"structured", "dense", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", NULL};
-static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "alltoall", "barrier", "hot-spot",
-                                         "hotspot", "shift", "xor", "allreduce", "broadcast", "halo", "bench"};
+static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier", "hot-spot", "shift"};
 
 bool kernel_spec_needs_model(const struct kernel_spec *k)
 {
@@ -66,9 +65,14 @@ static const char *idle_unless_shift(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    bool moves = strcmp(r->kernel.name, "shift") == 0 || strcmp(r->kernel.name, "xor") == 0 ||
-                 strcmp(r->kernel.name, "pingpong") == 0;
-    return moves ? NULL : "this benchmark has no distance";
+    return strcmp(r->kernel.name, "shift") == 0 ? NULL : "only 'shift' has a distance";
+}
+
+static const char *idle_without_message(const struct run_spec *r)
+{
+    const char *why = idle_with_model(r);
+    if (why != NULL) return why;
+    return strcmp(r->kernel.name, "barrier") == 0 ? "a barrier has no size" : NULL;
 }
 
 static const struct field fields[] = {
@@ -87,7 +91,7 @@ static const struct field fields[] = {
     {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
      .idle = idle_without_model, .doc = "bodies over ranks: equal counts, or equal work"},
     {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
-     .idle = idle_without_model, .doc = "inverse dynamics: composite transforms incoming, or the paper's outgoing ones"},
+     .idle = idle_without_model, .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
     {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
      .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},
     {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100, .fallback = "0",
@@ -104,7 +108,7 @@ static const struct field fields[] = {
     {.key = "repeat", .kind = FIELD_INT, AT(repeat), .min = 1, .max = 1 << 30, .fallback = "1",
      .idle = idle_with_model, .doc = "benchmarks: repetitions within a run"},
     {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0, .max = 1e12,
-     .fallback = "0 B", .idle = idle_with_model, .doc = "benchmarks: size of a message"},
+     .fallback = "0 B", .idle = idle_without_message, .doc = "benchmarks: size of a message"},
     {.key = "distance", .kind = FIELD_INT, AT(distance), .min = 0, .max = 1 << 30, .fallback = "1",
      .idle = idle_unless_shift, .doc = "benchmarks: how many ranks away the partner is"},
 };

@@ -1,6 +1,8 @@
 /* model_spec.c - the settings of a multibody scene. */
 #include "spec/model_spec.h"
 
+#include <string.h>
+
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct model_spec, member)
@@ -24,7 +26,7 @@ static const char *idle_without_model(const struct run_spec *r)
     return kernel_spec_needs_model(&r->kernel) ? NULL : "this kernel only sends messages and has no model";
 }
 
-/* Sizes, shapes and joints of generated models. */
+/* Numbers and shapes of bodies that a file gives. */
 static const char *idle_from_file(const struct run_spec *r)
 {
     const char *why = idle_without_model(r);
@@ -37,6 +39,44 @@ static const char *idle_from_vector(const struct run_spec *r)
     const char *why = idle_without_model(r);
     if (why != NULL) return why;
     return r->model.generator == MODEL_VECTOR ? "the vector file says it" : NULL;
+}
+
+static const char *idle_unless_any_length(const struct run_spec *r)
+{
+    const char *why = idle_from_file(r);
+    if (why != NULL) return why;
+    return r->model.generator == MODEL_FOUR_BAR ? "a four-bar has three moving bodies" : NULL;
+}
+
+/* Joints, axes and inertias that the generator can choose. */
+static const char *idle_unless_general(const struct run_spec *r)
+{
+    const char *why = idle_unless_any_length(r);
+    if (why != NULL) return r->model.generator == MODEL_FOUR_BAR ? "a four-bar fixes it" : why;
+    return r->model.generator == MODEL_POLYMER ? "a polymer fixes it" : NULL;
+}
+
+static const char *idle_in_a_ring(const struct run_spec *r)
+{
+    const char *why = idle_unless_general(r);
+    if (why != NULL) return why;
+    return r->model.generator == MODEL_RING ? "a ring fixes it" : NULL;
+}
+
+static const char *idle_when_closed(const struct run_spec *r)
+{
+    const char *why = idle_from_vector(r);
+    if (why != NULL) return why;
+    bool closed = r->model.generator == MODEL_RING || r->model.generator == MODEL_FOUR_BAR;
+    return closed ? "a closed chain has the pose that closes it" : NULL;
+}
+
+/* Measures of rods. */
+static const char *idle_unless_rods(const struct run_spec *r)
+{
+    const char *why = idle_from_file(r);
+    if (why != NULL) return why;
+    return r->model.generator == MODEL_POLYMER ? "a polymer has atoms, not rods" : NULL;
 }
 
 static const char *idle_unless_file(const struct run_spec *r)
@@ -56,7 +96,7 @@ static const char *idle_unless_branching(const struct run_spec *r)
 
 static const char *idle_unless_random(const struct run_spec *r)
 {
-    const char *why = idle_from_file(r);
+    const char *why = idle_unless_general(r);
     if (why != NULL) return why;
     return r->model.inertia == INERTIA_RANDOM ? NULL : "model.inertia is not 'random'";
 }
@@ -68,27 +108,34 @@ static const char *idle_unless_moving(const struct run_spec *r)
     return r->model.base == BASE_MOVING ? NULL : "model.base is not 'moving'";
 }
 
+static const char *idle_unless_forward(const struct run_spec *r)
+{
+    const char *why = idle_from_vector(r);
+    if (why != NULL) return why;
+    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics finds the forces itself" : NULL;
+}
+
 static const struct field fields[] = {
     {.key = "generator", .kind = FIELD_CHOICE, AT(generator), .choice = generators, .fallback = "serial-chain",
      .idle = idle_without_model, .doc = "kind of system, or the kind of file that describes it"},
-    {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16", .idle = idle_from_file,
+    {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16", .idle = idle_unless_any_length,
      .doc = "number of bodies"},
     {.key = "joint", .kind = FIELD_CHOICE, AT(joint), .choice = joints, .fallback = "revolute",
-     .idle = idle_from_file, .doc = "joint of every body"},
+     .idle = idle_unless_general, .doc = "joint of every body"},
     {.key = "base", .kind = FIELD_CHOICE, AT(base), .choice = bases, .fallback = "fixed", .idle = idle_from_vector,
      .doc = "what the first body hangs on"},
     {.key = "inertia", .kind = FIELD_CHOICE, AT(inertia), .choice = inertias, .fallback = "uniform",
-     .idle = idle_from_file, .doc = "all bodies alike, or seeded random ones"},
-    {.key = "pose", .kind = FIELD_CHOICE, AT(pose), .choice = poses, .fallback = "random", .idle = idle_from_vector,
+     .idle = idle_unless_general, .doc = "all bodies alike, or seeded random ones"},
+    {.key = "pose", .kind = FIELD_CHOICE, AT(pose), .choice = poses, .fallback = "random", .idle = idle_when_closed,
      .doc = "joint positions"},
-    {.key = "axes", .kind = FIELD_CHOICE, AT(axes), .choice = axes, .fallback = "twisted", .idle = idle_from_file,
+    {.key = "axes", .kind = FIELD_CHOICE, AT(axes), .choice = axes, .fallback = "twisted", .idle = idle_in_a_ring,
      .doc = "joint axes: all parallel, or each turned against the one before"},
     {.key = "length", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(length), .min = 1e-12, .max = 1e6,
-     .fallback = "1 m", .idle = idle_from_file, .doc = "of a link"},
+     .fallback = "1 m", .idle = idle_unless_rods, .doc = "of a link"},
     {.key = "radius", .kind = FIELD_REAL, .unit = UNIT_LENGTH, AT(radius), .min = 1e-13, .max = 1e6,
-     .fallback = "0.05 m", .idle = idle_from_file, .doc = "of a link"},
+     .fallback = "0.05 m", .idle = idle_unless_rods, .doc = "of a link"},
     {.key = "mass", .kind = FIELD_REAL, .unit = UNIT_MASS, AT(mass), .min = 1e-30, .max = 1e12, .fallback = "1 kg",
-     .idle = idle_from_file, .doc = "of a link"},
+     .idle = idle_unless_rods, .doc = "of a link"},
     {.key = "mass_ratio", .kind = FIELD_REAL, AT(mass_ratio), .min = 1, .max = 1e15, .fallback = "1",
      .idle = idle_unless_random, .doc = "largest over smallest mass of random bodies"},
     {.key = "gravity", .kind = FIELD_REALS, .unit = UNIT_ACCELERATION, AT(gravity), .capacity = 3, .at_least = 3,
@@ -102,13 +149,13 @@ static const struct field fields[] = {
     {.key = "rate", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(rate), .min = 0, .max = 1e9,
      .fallback = "1 rad/s", .idle = idle_from_vector, .doc = "scale of the seeded random joint rates"},
     {.key = "torque", .kind = FIELD_REAL, .unit = UNIT_TORQUE, AT(torque), .min = 0, .max = 1e15,
-     .fallback = "1 N m", .idle = idle_from_vector, .doc = "scale of the seeded random joint forces"},
+     .fallback = "1 N m", .idle = idle_unless_forward, .doc = "scale of the seeded random joint forces"},
     {.key = "external_force", .kind = FIELD_REAL, .unit = UNIT_FORCE, AT(external_force), .min = 0, .max = 1e15,
      .fallback = "0 N", .idle = idle_from_vector, .doc = "scale of seeded random wrenches on every body, 0: none"},
     {.key = "stiffness", .kind = FIELD_REAL, .unit = UNIT_STIFFNESS, AT(stiffness), .min = 0, .max = 1e15,
-     .fallback = "0 N m/rad", .idle = idle_from_vector, .doc = "joint springs to the first pose, 0: none"},
+     .fallback = "0 N m/rad", .idle = idle_from_file, .doc = "joint springs to the first pose, 0: none"},
     {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
-     .fallback = "0 N m s/rad", .idle = idle_from_vector, .doc = "joint dampers, 0: none"},
+     .fallback = "0 N m s/rad", .idle = idle_from_file, .doc = "joint dampers, 0: none"},
     {.key = "branch", .kind = FIELD_INT, AT(branch), .min = 1, .max = 1 << 20, .fallback = "2",
      .idle = idle_unless_branching, .doc = "comb, dendrimer: children of a body"},
     {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .idle = idle_from_vector,

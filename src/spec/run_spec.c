@@ -1,19 +1,29 @@
 /* run_spec.c - the settings of a run itself, and all tables together. */
 #include "spec/run_spec.h"
 
-#include <string.h>
-
-#include "base/check.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct run_spec, member)
+
+bool run_spec_is_random(const struct run_spec *r)
+{
+    const struct machine_spec *m = &r->machine;
+    bool valiant = m->topology.family == TOPOLOGY_DRAGONFLY && m->topology.routing == ROUTE_VALIANT;
+    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant;
+}
+
+static const char *idle_unless_random(const struct run_spec *r)
+{
+    return run_spec_is_random(r) ? NULL : "there is no noise, no background traffic and no random route";
+}
 
 static const struct field fields[] = {
     {.key = "scenario", .kind = FIELD_TEXT, AT(scenario), .capacity = 64, .fallback = "",
      .doc = "the scenario file's stem"},
     {.key = "ranks", .kind = FIELD_INT, AT(nrank), .min = 1, .max = 1 << 24, .fallback = "1",
      .doc = "P, number of virtual processors; in a scenario also 'n': as many as bodies"},
-    {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .doc = "of noise and random routes"},
+    {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .idle = idle_unless_random,
+     .doc = "of noise and random routes"},
     {.key = "record.links", .kind = FIELD_BOOL, AT(record.links), .fallback = "false",
      .doc = "keep busy time and queueing of every link"},
     {.key = "record.spans", .kind = FIELD_BOOL, AT(record.spans), .fallback = "false",

@@ -28,4 +28,8 @@ struct run_spec {
     const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
 };
 
+/* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes. Where not, all
+ * repetitions are alike. */
+bool run_spec_is_random(const struct run_spec *r);
+
 #endif

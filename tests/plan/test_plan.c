@@ -300,9 +300,9 @@ static void settings_that_do_not_act_are_reported(void **state)
     const char *path = scratch_write(&scratch, "idle.yaml",
         HEAD "model: {n: 8, branch: 3, mass_ratio: 10}\nmachine.noise.background.message: 64 B\n"
              "sweep: {kernel.solver: [cr, pcr], kernel.hybrid_levels: [2, 3]}\n");
-    const char *const set[] = {"kernel.repeat=4", "machine.network.packet=128 B", "level=loggp"};
+    const char *const set[] = {"kernel.repeat=4", "machine.network.buffer=20", "level=loggp"};
     static const char *const expected[] = {"model.branch: ", "model.mass_ratio: ", "machine.noise.background.message: ",
-                                           "kernel.hybrid_levels: ", "kernel.repeat: ", "machine.network.packet: "};
+                                           "kernel.hybrid_levels: ", "kernel.repeat: ", "machine.network.buffer: "};
     struct plan p = scratch_plan(path, set, 3);
     assert_int_equal(p.nrun, 4);
     assert_int_equal(p.nunused, 6);
