@@ -252,7 +252,7 @@ void auto_delivered(struct fabric *f, struct flight *w)
 
 static void auto_start(struct fabric *f, struct flight *w, sim_ps now)
 {
-    flight_measure(f, w);
+    if (!f->net->port_private) flight_measure(f, w);
     sim_ps arrival = foresee(f, w, now);
     if (arrival != SIM_NEVER)
         admit(f, w, arrival);
@@ -276,6 +276,7 @@ static void auto_send(struct net *n, struct net_message *m)
     struct fabric *f = n->state;
     struct flight *w = flight_take(f, m);
     sim_ps now = sim_now(n->sim);
+    if (n->port_private) flight_measure(f, w);
     if (m->ready == now)
         auto_start(f, w, now);
     else

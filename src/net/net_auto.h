@@ -53,8 +53,8 @@ void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s,
 /* auto_clear: from when on nothing at pass h tells that w was there. */
 static inline sim_ps auto_clear(const struct fabric *f, const struct pass *s)
 {
-    const struct flight *w = s->flight;
-    return s->hop == w->nhop ? s->end : s[1].end + f->net->credit;
+    sim_ps credit = s->hop == s->flight->nhop ? 0 : s[1].end + f->net->credit;
+    return s->end > credit ? s->end : credit;
 }
 
 /* auto_earliest: lower bound of the time at which a simulated message asks for its pass s, which it has not passed. */

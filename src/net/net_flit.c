@@ -12,12 +12,6 @@ static bool flit_create(struct net *n, struct err *e)
     return n->state != NULL;
 }
 
-static void flit_send(struct net *n, struct net_message *m)
-{
-    struct fabric *f = n->state;
-    source_enter(f, flight_take(f, m));
-}
-
 static bool flit_stuck(const struct net *n, char *text, int size) { return way_of(n)->stuck(n, text, size); }
 
-const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, flit_send, flit_stuck};
+const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, packet_send, flit_stuck};

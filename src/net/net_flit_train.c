@@ -340,7 +340,6 @@ static void source_serve(struct train *g, int node, sim_ps now)
         packet_wake(f, node, v->m->ready);
         return;
     }
-    flight_measure(f, v);
     struct worm *w = worm_take(g, v);
     w->stage[0].ask = v->injected == 0 ? v->m->ready : f->resource[node].free;
     if (++v->injected == v->npacket && !(z->front = v->next)) z->back = NULL;

@@ -278,30 +278,32 @@ static void resource_serve(struct fabric *f, int r, bool again, sim_ps now)
 
 /* ---- injection ports ---- */
 
+/* a is sent before b: what has begun is not overtaken */
+static bool sent_before(const struct flight *a, const struct flight *b)
+{
+    if (a->injected != b->injected) return a->injected > b->injected;
+    return a->m->ready != b->m->ready ? a->m->ready < b->m->ready : a->m->id < b->m->id;
+}
+
 void source_enter(struct fabric *f, struct flight *w)
 {
-    sim_ps now = sim_now(f->net->sim);
-    const struct net_message *m = w->m;
-    struct source *z = &f->source[m->src];
+    int node = w->m->src;
+    struct source *z = &f->source[node];
     struct flight **link = &z->front;
-    const struct net_message *b = z->back ? z->back->m : NULL;
-    if (b && (b->ready < m->ready || (b->ready == m->ready && b->id < m->id))) link = &z->back->next;
-    for (; *link; link = &(*link)->next) {
-        const struct net_message *o = (*link)->m;
-        if (o->ready > m->ready || (o->ready == m->ready && o->id > m->id)) break;
-    }
+    if (z->back && sent_before(z->back, w)) link = &z->back->next;
+    while (*link && sent_before(*link, w)) link = &(*link)->next;
     w->next = *link;
     *link = w;
     if (!w->next) z->back = w;
-    if (z->front == w) packet_wake(f, m->src, later(now, later(m->ready, f->resource[m->src].free)));
+    if (z->front != w) return;
+    sim_ps at = later(w->m->ready, f->resource[node].free);
+    packet_wake(f, node, later(at, sim_now(f->net->sim)));
 }
 
 void flight_measure(struct fabric *f, struct flight *w)
 {
-    if (w->measured) return;
     const struct net *n = f->net;
     struct net_message *m = w->m;
-    w->measured = true;
     int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
     sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
     sim_ps at = later(m->ready, *port);
@@ -317,10 +319,7 @@ static void inject(struct fabric *f, struct flight *w, int channel, sim_ps now)
     sim_ps ask = w->injected == 0 ? w->m->ready : o->free;
     *p = (struct packet){.flight = w, .index = w->injected, .hop = -1, .channel = channel, .ask = ask};
     p->flits = flight_packet_flits(w, p->index);
-    if (w->injected++ == 0) {
-        w->m->injected = now;
-        flight_measure(f, w);
-    }
+    if (w->injected++ == 0) w->m->injected = now;
     sim_ps tail = grant(f, o, p, now);
     if (w->injected == w->npacket) o->free = later(o->free, tail + f->net->gap);
     packet_enter(f, p);
@@ -371,10 +370,23 @@ static bool packet_create(struct net *n, struct err *e)
     return n->state != NULL;
 }
 
-static void packet_send(struct net *n, struct net_message *m)
+static void packet_start(void *subject, uint64_t argument, sim_ps now)
+{
+    struct fabric *f = subject;
+    struct flight *w = (struct flight *)(uintptr_t)argument;
+    (void)now;
+    flight_measure(f, w);
+    source_enter(f, w);
+}
+
+void packet_send(struct net *n, struct net_message *m)
 {
     struct fabric *f = n->state;
-    source_enter(f, flight_take(f, m));
+    struct flight *w = flight_take(f, m);
+    if (n->port_private || m->ready == sim_now(n->sim))
+        packet_start(f, (uintptr_t)w, m->ready);
+    else
+        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), packet_start, f, (uintptr_t)w);
 }
 
 const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_stuck};

@@ -76,7 +76,7 @@ struct flight {
     int32_t full, last;           /* flits of all packets but the last, and of the last */
     sim_ps slowest;               /* flit time of its slowest resource */
     int nhop;                     /* R: pass[0 .. nhop] */
-    bool optimistic, measured;    /* not simulated; `uncontended` is known */
+    bool optimistic;              /* not simulated */
     sim_ps arrival;               /* when it is delivered, SIM_NEVER: not known */
     sim_ps foreseen;              /* auto: time of the delivery posted when it was admitted, -1: none */
     sim_ps clear;                 /* auto: when its last trace is gone */
@@ -126,6 +126,9 @@ struct fabric {
  * ERR_CONFIG when the network numbers cannot be. */
 struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e);
 
+/* packet_send: net_type.send of levels packet and flit. */
+void packet_send(struct net *n, struct net_message *m);
+
 /* packet_fabric: the state of levels packet and auto. Returns NULL with ERR_CONFIG when the machine's buffers are too
  * small for cut-through. */
 struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e);
@@ -150,7 +153,7 @@ static inline int32_t flight_packet_flits(const struct flight *w, int index)
 /* source_enter: put w among the messages of its node that wait for the injection port. */
 void source_enter(struct fabric *f, struct flight *w);
 
-/* flight_measure: fill in m->uncontended; in the order of (ready, id) per processor. */
+/* flight_measure: fill in m->uncontended; to be called in the order in which the processor sends. */
 void flight_measure(struct fabric *f, struct flight *w);
 
 /* packet_wake: see that resource r is looked at, at time `at` or earlier. */
