@@ -1,0 +1,47 @@
+# fig7.gp - solvers of the block tridiagonal system: left over the best serial one, right over conventional PCR.
+data = figure.".csv"
+stats data using "panel" nooutput
+panels = int(STATS_max)
+stats data using "series" nooutput
+last = int(STATS_max)
+stats data using "P" nooutput
+pmin = STATS_min; pmax = STATS_max
+array size_name[panels]; array method[last]
+stats data using (size_name[int(column("panel"))] = strcol("size"), method[int(column("series"))] = strcol("method"), \
+    headline = "Block tridiagonal solvers (stage CFA[2]) on ".strcol("machine"), \
+    subline = strcol("formulation")." formulation, network level ".strcol("level"), 0) nooutput
+of(p, k, v) = column("panel") == p && column("series") == k ? v : NaN
+array over[2] = ["over the best serial solver", "over conventional PCR"]
+values = "over_serial over_conventional"
+
+set xrange [pmin*0.9:pmax*1.12]
+do for [format in formats] {
+    high = 150 + 230*panels
+    eval page(format, 800, high)
+    set multiplot
+    # the legend, in a frame as wide as the page
+    set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
+    unset border; unset tics; unset logscale; set yrange [0:1]
+    eval title_at(format, 1.0 - 18.0/high); eval foot(format)
+    set key at screen 0.53,(1.0 - 60.0/high) center top horizontal maxrows 2 samplen 3 width -1
+    plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \
+            linecolor rgb colour[k] title method[k]
+    unset key; unset label 97; unset label 98; unset label 99
+    set border 3
+    set logscale x 2
+    set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6 autofreq
+    set xtics (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
+    do for [p=1:panels] { do for [side=1:2] {
+        set lmargin at screen (side == 1 ? 0.09 : 0.58); set rmargin at screen (side == 1 ? 0.495 : 0.985)
+        set tmargin at screen 1.0 - (112.0 + 230*(p - 1) + 18)/high
+        set bmargin at screen 1.0 - (112.0 + 230*p - 42)/high
+        if (side == 1) { set logscale y 2; set yrange [*:*]; set ylabel "speedup" } else { unset logscale y; set yrange [*<0.9:*]; set ylabel "factor" }
+        set xlabel (p == panels ? "number of processors P" : "")
+        set title size_name[p].", ".over[side] offset 0,-0.7
+        plot 1 with lines linewidth 0.8 linecolor rgb grey, \
+             for [k=1:last] data using "P":(of(p, k, column(word(values, side)))) with linespoints linewidth 1.8 \
+                dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k]
+    } }
+    unset multiplot
+    unset output
+}
