@@ -3,7 +3,7 @@
  * k^n nodes, n levels of k^(n-1) switches. A switch (l, w), w with n-1 digits of base k, is joined to the k switches
  * (l+1, w') that differ from it at most in digit l. The leaf of node p is w = floor(p / k). A route climbs to the
  * lowest level where the digits that differ can be mended, at level l through the up port that digit l of the
- * destination names, and comes down setting digit by digit: deterministic, and without cycles of waiting.
+ * destination names (Valiant: through random ones) and comes down setting digit by digit, without cycles of waiting.
  *
  * Cable c = (l k^(n-1) + w) k + u is the u-th up port of (l, w): link 2c upwards, 2c + 1 downwards. */
 #include "base/check.h"
@@ -14,6 +14,7 @@ enum { TREE_MAX_LEVELS = 24 };
 struct tree {
     int k, n;
     int nswitch;               /* per level */
+    bool random;               /* up ports */
     int power[TREE_MAX_LEVELS + 1]; /* k^i */
 };
 
@@ -33,6 +34,8 @@ static bool tree_create(struct topology *t, struct arena *a, struct err *e)
         g->power[i] = (int)nodes;
     }
     g->nswitch = g->power[g->n - 1];
+    g->random = t->spec->routing == ROUTE_VALIANT && g->n > 1;
+    t->fixed_routes = !g->random;
     t->state = g;
     t->nrouter = g->n * g->nswitch;
     t->nnode = (int)nodes;
@@ -51,10 +54,12 @@ static int tree_climb(const struct tree *g, int v, int w)
     return level;
 }
 
-/* left: levels still to climb; stage: level of the router; via: the top has been reached; at: destination node */
+/* left: levels still to climb; stage: level of the router; at: local number of the destination node; via: number
+ * whose digits are the random up ports */
 static void tree_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
 {
-    (void)choice;
+    const struct tree *g = t->state;
+    c->via = (int)(choice % (uint64_t)g->nswitch);
     c->stage = 0;
     c->left = tree_climb(t->state, c->router, c->target);
 }
@@ -68,7 +73,7 @@ static bool tree_next(const struct topology *t, struct route_cursor *c, struct h
     int l = c->stage, w = c->router - l * g->nswitch;
     h->vc_class = 0;
     if (c->left > 0) { /* up, through the port named by the destination's digit l */
-        int up = l == 0 ? c->at : digit(g, c->target, l - 1), from = digit(g, w, l);
+        int up = g->random ? digit(g, c->via, l) : l == 0 ? c->at : digit(g, c->target, l - 1), from = digit(g, w, l);
         h->link = 2 * ((l * g->nswitch + w) * g->k + up);
         h->port = from;
         c->router = (l + 1) * g->nswitch + w + (up - from) * g->power[l];

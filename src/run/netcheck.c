@@ -111,6 +111,12 @@ static void ask_level(struct question *k, const struct topology *t, enum network
     arena_release(k->arena, mark);
 }
 
+/* no level can answer the row, for the same reason */
+static void unanswered(struct question *k, const char *why)
+{
+    for (int l = 0; l < NETCHECK_LEVELS; l++) text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, why);
+}
+
 static void ask(struct question *k)
 {
     struct err e;
@@ -167,7 +173,7 @@ static bool network_read(const struct node *c, int buffer, struct question *k)
     snprintf(k->row->group, sizeof k->row->group, "%.*s vc=%d B=%d", (int)strcspn(topology, "0123456789_"), topology, vcs,
              buffer);
     if (!netcheck_topology(topology, number_or(c, "tie", 0), &s, &e)) {
-        for (int l = 0; l < NETCHECK_LEVELS; l++) text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, e.text);
+        unanswered(k, e.text);
         return false;
     }
     int head = strcmp(document_text(c, "pipeline"), "P5") == 0 ? 5 : 3;
@@ -291,13 +297,22 @@ static bool ask_point(struct reader *r, const struct node *c, const struct node 
     err_clear(&e);
     t = topology_create(&k.machine.topology, r->arena, &e);
     if (!t || !netcheck_load(document_text(c, "pattern"), t, flits, offered, cycles, LOAD_SEED, r->arena, &k.q, &e)) {
-        for (int l = 0; l < NETCHECK_LEVELS; l++) text_copy(k.row->answer[l].why, sizeof k.row->answer[l].why, e.text);
+        unanswered(&k, e.text);
         return true;
     }
     if (plat && plat->kind == NODE_NUMBER) latency = plat->number;
     k.row->low = k.row->high = latency;
     k.row->counted = latency > 0 && !(unstable && unstable->text && strcmp(unstable->text, "true") == 0);
     k.latency = true;
+    if (k.machine.topology.family == TOPOLOGY_DRAGONFLY) {
+        k.row->counted = false;
+        unanswered(&k, "the reference's channels take 10 and 100 cycles inside and between groups");
+        return true;
+    }
+    if (!k.row->counted) { /* it would measure how long it was run */
+        unanswered(&k, "the reference was not stable at this load");
+        return true;
+    }
     k.warm = (sim_ps)(cycles / 4) * NETCHECK_CYCLE_PS;
     ask(&k);
     return true;

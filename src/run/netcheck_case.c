@@ -54,6 +54,7 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
     if (s->ndim == 0) s->ndim = numbers_in(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
     if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s' lacks its numbers", name);
+    if (s->family == TOPOLOGY_FAT_TREE) s->routing = ROUTE_VALIANT; /* the reference's way up is random */
     if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0; /* what follows p, a and h is the number of nodes */
     return true;
 }

@@ -37,7 +37,8 @@ static const char *idle_unless_ring(const struct run_spec *r)
 
 static const char *idle_unless_dragonfly(const struct run_spec *r)
 {
-    return r->machine.topology.family == TOPOLOGY_DRAGONFLY ? NULL : "only a dragonfly chooses its routing";
+    enum topology_family f = r->machine.topology.family;
+    return f == TOPOLOGY_DRAGONFLY || f == TOPOLOGY_FAT_TREE ? NULL : "only dragonflies and fat trees choose their routing";
 }
 
 static const char *idle_unless_hypercube(const struct run_spec *r)
@@ -138,7 +139,7 @@ static const struct field fields[] = {
     {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
      .idle = idle_unless_ring, .doc = "half-way round a ring: always up, or up from even coordinates only"},
     {.key = "topology.routing", .kind = FIELD_CHOICE, AT(topology.routing), .choice = routings,
-     .fallback = "minimal", .idle = idle_unless_dragonfly, .doc = "dragonfly: shortest route or through a random group"},
+     .fallback = "minimal", .idle = idle_unless_dragonfly, .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
      .idle = idle_unless_hypercube, .doc = "further links between opposite routers (Origin2000 with 16 processors)"},
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,

@@ -27,7 +27,7 @@ enum tie_rule {
     TIE_PARITY    /* + from an even coordinate, - from an odd one */
 };
 
-enum dragonfly_routing { ROUTE_MINIMAL, ROUTE_VALIANT };
+enum dragonfly_routing { ROUTE_MINIMAL, ROUTE_VALIANT }; /* fat tree: d-mod-k, up ports at random */
 
 struct topology_spec {
     enum topology_family family;

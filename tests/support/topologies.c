@@ -32,6 +32,8 @@ static const struct named_topology all[] = {
     {"full mesh 6", {.family = TOPOLOGY_FULL_MESH, .ndim = 1, .dims = {6}, ONE}, true},
     {"fat tree 4^3", {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, ONE}, true},
     {"fat tree 2^5", {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {2, 5}, ONE}, true},
+    {"fat tree 3^3, random",
+     {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {3, 3}, .routing = ROUTE_VALIANT, ONE}, true},
     {"fat tree 3^1", {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {3, 1}, ONE}, true},
     {"dragonfly 2 4 2", {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, ONE}, false},
     {"dragonfly 1 4 2 in 4 groups", {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {1, 4, 2, 4}, ONE}, false},
