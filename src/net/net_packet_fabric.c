@@ -186,8 +186,9 @@ static void pass_init(struct fabric *f, struct flight *w, int h, const struct ho
     struct pass *s = &w->pass[h];
     int class = way->vc_class < f->nclass ? way->vc_class : f->nclass - 1;
     *s = (struct pass){.flight = w, .hop = (int16_t)h, .resource = way->link, .port = way->port};
-    s->channel = (int16_t)(h == 0 ? 0 : class * f->nlane);
-    s->nchannel = (int16_t)(h == 0 ? f->nchannel : f->nlane);
+    bool link = h > 0 && h < w->nhop;
+    s->channel = (int16_t)(link ? class * f->nlane : 0);
+    s->nchannel = (int16_t)(link ? f->nlane : f->nchannel);
     s->flit = net_resource_rate(f->net, way->link).flit;
 }
 
