@@ -72,7 +72,10 @@ double verify_tolerance_robust(const struct verify_case *v)
     return attainable(few_roundings, v->vector->floor_fd, v->vector->peer_fd.error);
 }
 
-bool verify_error_vanishes(double error, double quad) { return quad <= fmax(1e-13, 1e-6 * error); }
+bool verify_error_vanishes(double error, double quad)
+{
+    return isfinite(quad) && quad <= fmax(1e-13, 1e-6 * error);
+}
 
 bool verify_error_scales(double error, double single)
 {

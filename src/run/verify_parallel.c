@@ -68,6 +68,7 @@ struct outcome {
     enum { ANSWERED, REFUSED, BROKEN } kind;
     double *x, *lambda;  /* tau or qdd, loop forces */
     int loop_rank;
+    double condition;    /* a lower bound, of the block-scaled system */
     char text[96];       /* refused, broken: why */
 };
 
@@ -77,6 +78,7 @@ static bool job_make(struct verify_case *v, const struct kernel_type *kernel, co
     const struct model *m = lumped ? v->lumped : v->model;
     *job = (struct kernel_job){.spec = spec, .model = m, .state = lumped ? v->lumped_state : v->state,
                                .nrank = spec->nrank, .residual = TAKE(v->arena, spec->nrank, double),
+                               .condition = TAKE(v->arena, spec->nrank, double),
                                .loop_rank = TAKE(v->arena, 1, int)};
     if (kernel->does_inverse) job->tau = TAKE(v->arena, m->nu + 1, double);
     if (kernel->does_forward) job->qdd = TAKE(v->arena, m->nu + 1, double);
@@ -106,15 +108,16 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
     if (!world_run(&spec->machine, nrank, &spec->record, 0, kernel->nstage, kernel->stage_name, program, &l, v->arena,
                    result, e))
         return false;
-    *out = (struct outcome){result->status == RUN_OK ? ANSWERED : BROKEN, kernel->does_forward ? job.qdd : job.tau,
-                            job.lambda, *job.loop_rank, ""};
+    *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
+                            .x = kernel->does_forward ? job.qdd : job.tau, .lambda = job.lambda, .loop_rank = *job.loop_rank};
+    for (int i = 0; i < nrank; i++) out->condition = fmax(out->condition, job.condition[i]);
     text_copy(out->text, sizeof out->text, result->text);
     return true;
 }
 
 /* The errors of a variant over all numbers of ranks. */
 struct spread {
-    double error, lambda_error;
+    double error, lambda_error, condition;
     int worst, rank_deficiency;
     bool answered;
     char ranks[32], text[128];
@@ -133,6 +136,7 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
         s->worst = nrank;
     }
     s->answered = true;
+    if (good) s->condition = fmax(s->condition, x->condition);
     if (!inverse && c->lambda && good) {
         s->lambda_error = fmax(s->lambda_error, verify_error(x->lambda, c->lambda, c->nrow));
         if (x->loop_rank > 0 && x->loop_rank < c->nrow) s->rank_deficiency = c->nrow - x->loop_rank;
@@ -171,20 +175,27 @@ static bool error_in(struct verify_case *v, const struct kernel_spec *kernel, en
     return true;
 }
 
-/* Above the tolerance: by rounding, if the error goes away in quad precision; of large cases, for which that takes long,
- * if it is in proportion to the error in single precision. */
-static bool explain(struct verify_case *v, const struct kernel_spec *kernel, struct verify_row *row, struct err *e)
+/* Above the tolerance: by rounding, if the kernel itself finds the system singular to its precision, or if the error goes
+ * away in quad precision, or, of large cases, for which that takes long, if it is in proportion to the error in single
+ * precision. */
+static bool explain(struct verify_case *v, const struct kernel_spec *kernel, double condition, struct verify_row *row,
+                    struct err *e)
 {
-    enum { QUAD_LIMIT = 150 };
+    enum { QUAD_LIMIT = 310 };
     bool quad = v->vector->nv <= QUAD_LIMIT;
     double error;
     char before[64];
+    if (condition * dynamics_type_of(kernel->precision)->epsilon >= 1) {
+        row->verdict = VERIFY_ROUNDING;
+        snprintf(row->note, sizeof row->note, "P=%d; its condition is above %.0e", row->worst_rank, condition);
+        return true;
+    }
     if (!error_in(v, kernel, quad ? PRECISION_QUAD : PRECISION_FLOAT, row->worst_rank, &error, e)) return false;
     if (quad ? verify_error_vanishes(row->error, error) : verify_error_scales(row->error, error))
         row->verdict = VERIFY_ROUNDING;
     text_copy(before, sizeof before, row->note);
-    snprintf(row->note, sizeof row->note, "P=%d%s%s; in %s precision %.1e", row->worst_rank, before[0] ? ": " : "", before,
-             quad ? "quad" : "single", error);
+    snprintf(row->note, sizeof row->note, "P=%d%s%s%s; in %s precision %.1e", row->worst_rank,
+             isfinite(row->error) ? "" : " breaks down", before[0] ? ": " : "", before, quad ? "quad" : "single", error);
     return true;
 }
 
@@ -209,13 +220,14 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     row->verdict = s.error <= row->tolerance ? VERIFY_PASS : VERIFY_FAIL;
     text_copy(row->ranks, sizeof row->ranks, s.ranks);
     text_copy(row->note, sizeof row->note, s.text);
-    if (row->verdict == VERIFY_FAIL && !inverse && !explain(v, &kernel, row, e)) return false;
+    if (row->verdict == VERIFY_FAIL && !inverse && !explain(v, &kernel, s.condition, row, e)) return false;
     if (inverse || !v->vector->lambda || s.rank_deficiency > 0) return true;
+    bool rounded = row->verdict == VERIFY_ROUNDING; /* loop forces are no better than the accelerations */
     row = verify_row_add(v, variant->name, "lambda");
     row->parallel = true;
     row->error = s.lambda_error;
     row->tolerance = verify_tolerance_forward(v);
-    row->verdict = s.lambda_error <= row->tolerance ? VERIFY_PASS : VERIFY_FAIL;
+    row->verdict = s.lambda_error <= row->tolerance ? VERIFY_PASS : rounded ? VERIFY_ROUNDING : VERIFY_FAIL;
     text_copy(row->ranks, sizeof row->ranks, s.ranks);
     return true;
 }

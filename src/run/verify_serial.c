@@ -161,22 +161,29 @@ static struct answer forward(struct verify_case *v, const struct dynamics_type *
     return x;
 }
 
-/* A large error is by rounding when the same algorithm is right in quad precision, or, where that would take long, when
- * the error is in proportion to that in single precision. */
-static void explain(struct verify_case *v, enum forward_method method, const struct answer *x, struct verify_row *row)
+static double error_in(struct verify_case *v, enum forward_method method, enum precision precision)
 {
-    enum { QUAD_LIMIT = 150 };
-    const struct vector_case *c = v->vector;
-    bool quad = c->nv <= QUAD_LIMIT || method == FORWARD_ABA || !x->good;
-    struct answer other = forward(v, dynamics_type_of(quad ? PRECISION_QUAD : PRECISION_FLOAT), method);
-    double error = other.good ? verify_error(other.qdd, c->qdd_fd, c->nv) : INFINITY;
-    if (quad ? verify_error_vanishes(row->error, error) : verify_error_scales(row->error, error))
-        row->verdict = VERIFY_ROUNDING;
-    snprintf(row->note, sizeof row->note, "%sin %s precision %.1e", x->good ? "" : "breaks down; ",
-             quad ? "quad" : "single", error);
+    struct answer x = forward(v, dynamics_type_of(precision), method);
+    return x.good ? verify_error(x.qdd, v->vector->qdd_fd, v->vector->nv) : INFINITY;
 }
 
-static void lambda_row(struct verify_case *v, const char *name, const struct answer *x)
+/* A large error is by rounding when the same algorithm is right in quad precision, or, where that would take long, when
+ * the error is in proportion to that in single precision; a breakdown of the latter is as large an error as there is. */
+static void explain(struct verify_case *v, enum forward_method method, bool good, struct verify_row *row)
+{
+    enum { QUAD_LIMIT = 310 };
+    bool by_single = good && v->vector->nv > QUAD_LIMIT && v->options->precision == PRECISION_DOUBLE;
+    bool is_quad = v->options->precision == PRECISION_QUAD;
+    double other = error_in(v, method, by_single ? PRECISION_FLOAT : is_quad ? PRECISION_DOUBLE : PRECISION_QUAD);
+    double coarse = is_quad ? other : row->error, fine = is_quad ? row->error : other;
+    if (by_single ? verify_error_scales(row->error, other) : verify_error_vanishes(coarse, fine))
+        row->verdict = VERIFY_ROUNDING;
+    snprintf(row->note, sizeof row->note, "%sin %s precision %.1e", good ? "" : "breaks down; ",
+             by_single ? "single" : is_quad ? "double" : "quad", other);
+}
+
+/* Loop forces are no better than the accelerations: `rounded` tells that rounding explains those. */
+static void lambda_row(struct verify_case *v, const char *name, const struct answer *x, bool rounded)
 {
     const struct vector_case *c = v->vector;
     if (!c->lambda) return;
@@ -186,7 +193,9 @@ static void lambda_row(struct verify_case *v, const char *name, const struct ans
         verify_row_skip(v, name, "lambda", why);
         return;
     }
-    judge(verify_row_add(v, name, "lambda"), verify_error(x->lambda, c->lambda, c->nrow), verify_tolerance_forward(v));
+    struct verify_row *row = verify_row_add(v, name, "lambda");
+    judge(row, verify_error(x->lambda, c->lambda, c->nrow), verify_tolerance_forward(v));
+    if (row->verdict == VERIFY_FAIL && rounded) row->verdict = VERIFY_ROUNDING;
 }
 
 static void forward_rows(struct verify_case *v)
@@ -206,8 +215,8 @@ static void forward_rows(struct verify_case *v)
         bool robust = method == FORWARD_CFA_ROBUST;
         judge(row, x.good ? verify_error(x.qdd, c->qdd_fd, c->nv) : INFINITY,
               robust ? verify_tolerance_robust(v) : verify_tolerance_forward(v));
-        if (row->verdict == VERIFY_FAIL && !(robust && row->tolerance < 1e-10)) explain(v, method, &x, row);
-        if (x.good && c->nrow > 0) lambda_row(v, name, &x);
+        if (row->verdict == VERIFY_FAIL && !(robust && row->tolerance < 1e-10)) explain(v, method, x.good, row);
+        if (x.good && c->nrow > 0) lambda_row(v, name, &x, row->verdict == VERIFY_ROUNDING);
     }
 }
 

@@ -84,7 +84,9 @@ static void trajectories_are_followed(void **state)
 {
     (void)state;
     const struct verify_options o = {.machine = NULL};
-    all_vectors_pass(DATA("trajectories/*.json"), &o);
+    all_vectors_pass(DATA("trajectories/traj_double*.json"), &o);
+    all_vectors_pass(DATA("trajectories/traj_spherical*.json"), &o);
+    all_vectors_pass(DATA("trajectories/traj_stiff_n*.json"), &o);
 }
 
 /* A copy of a vector in which the text `old` once became `new`. */
@@ -109,8 +111,9 @@ static void a_wrong_answer_fails(void **state)
     (void)state;
     static const struct { const char *old, *new, *algorithm, *quantity; } lie[] = {
         {"\"tau_id\": [", "\"tau_id\": [1", "rnea", "tau_id"},
-        {"\"qdd_fd\": [", "\"qdd_fd\": [1", "aba", "qdd_fd"},
-        {"\"qdd_fd\": [", "\"qdd_fd\": [1", "cfa-direct", "qdd_fd"},
+        {"\"qdd_fd\": [-45.57", "\"qdd_fd\": [-45.58", "aba", "qdd_fd"},
+        {"\"qdd_fd\": [-45.57", "\"qdd_fd\": [-45.58", "cfa-direct", "qdd_fd"},
+        {"\"lambda\": [-0.73", "\"lambda\": [-0.74", "cfa-robust", "lambda"},
         {"\"M\": [\n  [", "\"M\": [\n  [1", "crba", "M"},
         {"\"kinetic\": ", "\"kinetic\": 1", "totals", "energy"},
         {"\"bias\": [", "\"bias\": [1", "rnea", "bias"},
