@@ -43,8 +43,14 @@ static void doubling(struct job *j)
     int n = nnode * steps;
     struct traffic *q = &j->q;
     struct arena *a = j->arena;
-    *q = (struct traffic){n, TAKE(a, n, int), TAKE(a, n, int), TAKE(a, n, int64_t), TAKE(a, n, sim_ps),
-                          TAKE(a, n, sim_ps), TAKE(a, n + 1, int), TAKE(a, 2 * n, int)};
+    *q = (struct traffic){n,
+                          TAKE(a, n, int),
+                          TAKE(a, n, int),
+                          TAKE(a, n, int64_t),
+                          TAKE(a, n, sim_ps),
+                          TAKE(a, n, sim_ps),
+                          TAKE(a, n + 1, int),
+                          TAKE(a, 2 * n, int)};
     for (int k = 0; k < n; k++) {
         int step = k / nnode, i = k % nnode, before = (step - 1) * nnode;
         q->src[k] = i;
@@ -71,8 +77,7 @@ static void measure(struct job *j, const char *what, enum network_level level, d
     bool ok = traffic_run(&j->q, &j->machine, j->topology, a, false, &r, &e);
     double took = host_seconds() - begin, n = j->q.nmessage;
     printf("%-26s %-7s ", what, netcheck_level_name(level));
-    if (!ok)
-        printf("%s\n", e.text);
+    if (!ok) printf("%s\n", e.text);
     else
         printf("%9.0f %10.0f %9.0f %9.2f %9.0f", n, n / took, took / n * 1e9, (double)r.events / n,
                (double)arena_peak(a) / j->topology->nnode);

@@ -1,10 +1,7 @@
 /* node_cost.c - rates and cycles of a node as picoseconds per operation. */
 #include "machine/node_cost.h"
 
-static double cycles_ps(double cycles, double clock)
-{
-    return clock > 0 ? cycles / clock * 1e12 : 0;
-}
+static double cycles_ps(double cycles, double clock) { return clock > 0 ? cycles / clock * 1e12 : 0; }
 
 struct node_cost node_cost_make(const struct node_spec *s)
 {

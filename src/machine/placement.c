@@ -26,9 +26,12 @@ static int snake_router(const struct topology_spec *s, int i)
 static int ordered_router(const struct machine_spec *m, int i)
 {
     switch (m->placement.kind) {
-    case PLACEMENT_SNAKE: return snake_router(&m->topology, i);
-    case PLACEMENT_GRAY: return i ^ i >> 1;
-    default: return i;
+    case PLACEMENT_SNAKE:
+        return snake_router(&m->topology, i);
+    case PLACEMENT_GRAY:
+        return i ^ i >> 1;
+    default:
+        return i;
     }
 }
 
@@ -91,8 +94,7 @@ static bool place_by_list(struct placement *p, const struct machine_spec *m, int
         else if (taken[processor])
             ok = err_set(e, ERR_CONFIG, "placement list: ranks %d and %d on processor %d", taken[processor] - 1, r,
                          processor);
-        else
-            taken[processor] = r + 1;
+        else taken[processor] = r + 1;
         if (ok) put(p, r, processor, m->topology.processors_per_node);
     }
     arena_release(a, mark);
@@ -110,8 +112,13 @@ bool placement_create(struct placement *p, const struct machine_spec *m, const s
     if (!kind_fits(m, e)) return false;
     *p = (struct placement){nrank, TAKE(a, nrank, int), TAKE(a, nrank, int)};
     switch (m->placement.kind) {
-    case PLACEMENT_LIST: return place_by_list(p, m, nprocessor, a, e);
-    case PLACEMENT_RANDOM: place_randomly(p, m, nprocessor, a); return true;
-    default: place_in_order(p, m, t); return true;
+    case PLACEMENT_LIST:
+        return place_by_list(p, m, nprocessor, a, e);
+    case PLACEMENT_RANDOM:
+        place_randomly(p, m, nprocessor, a);
+        return true;
+    default:
+        place_in_order(p, m, t);
+        return true;
     }
 }

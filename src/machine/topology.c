@@ -7,10 +7,10 @@
 #include "machine/topology_internal.h"
 
 static const struct topology_type *const types[] = {
-    [TOPOLOGY_CROSSBAR] = &topology_crossbar,   [TOPOLOGY_TORUS] = &topology_torus,
-    [TOPOLOGY_MESH] = &topology_mesh,           [TOPOLOGY_HYPERCUBE] = &topology_hypercube,
-    [TOPOLOGY_BUS] = &topology_bus,             [TOPOLOGY_FULL_MESH] = &topology_full_mesh,
-    [TOPOLOGY_FAT_TREE] = &topology_fat_tree,   [TOPOLOGY_DRAGONFLY] = &topology_dragonfly,
+    [TOPOLOGY_CROSSBAR] = &topology_crossbar, [TOPOLOGY_TORUS] = &topology_torus,
+    [TOPOLOGY_MESH] = &topology_mesh,         [TOPOLOGY_HYPERCUBE] = &topology_hypercube,
+    [TOPOLOGY_BUS] = &topology_bus,           [TOPOLOGY_FULL_MESH] = &topology_full_mesh,
+    [TOPOLOGY_FAT_TREE] = &topology_fat_tree, [TOPOLOGY_DRAGONFLY] = &topology_dragonfly,
     [TOPOLOGY_GRAPH] = &topology_graph,
 };
 
@@ -46,10 +46,7 @@ int topology_router_of(const struct topology *t, int node)
     return t->nodes_per_router == 1 ? node : node / t->nodes_per_router;
 }
 
-int topology_injection_port(const struct topology *t, int node)
-{
-    return t->nport + node % t->nodes_per_router;
-}
+int topology_injection_port(const struct topology *t, int node) { return t->nport + node % t->nodes_per_router; }
 
 struct route_cursor topology_start(const struct topology *t, int src, int dst, uint64_t choice)
 {
@@ -59,10 +56,7 @@ struct route_cursor topology_start(const struct topology *t, int src, int dst, u
     return c;
 }
 
-bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h)
-{
-    return t->type->next(t, c, h);
-}
+bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h) { return t->type->next(t, c, h); }
 
 int topology_route(const struct topology *t, int src, int dst, uint64_t choice, struct hop *route)
 {

@@ -14,31 +14,31 @@
 
 /* A directed link between two routers, one step of a route. */
 struct hop {
-    int link;      /* 0 .. nlink-1 */
-    int vc_class;  /* dateline class to use on it, 0 .. nclass-1 */
-    int port;      /* the input port at the router that it leads to, as of topology_link_ends */
+    int link;     /* 0 .. nlink-1 */
+    int vc_class; /* dateline class to use on it, 0 .. nclass-1 */
+    int port;     /* the input port at the router that it leads to, as of topology_link_ends */
 };
 
 /* A walk along one route: begun by topology_start, advanced by topology_next. Plain data, may be copied. */
 struct route_cursor {
-    int router;    /* where the head is */
-    int target;    /* the destination's router */
-    int stage;     /* of the family: dimension, level, leg */
-    int left;      /* of the family: steps left in this stage */
-    int step, at;  /* of the family: direction, coordinate */
-    int via;       /* of the family: intermediate group or router, -1: none */
+    int router;   /* where the head is */
+    int target;   /* the destination's router */
+    int stage;    /* of the family: dimension, level, leg */
+    int left;     /* of the family: steps left in this stage */
+    int step, at; /* of the family: direction, coordinate */
+    int via;      /* of the family: intermediate group or router, -1: none */
 };
 
 struct topology {
     const struct topology_spec *spec; /* borrowed */
     int nnode, nrouter, nlink;        /* links are directed */
     int nodes_per_router;             /* nodes i nodes_per_router .. on router i */
-    int nport;                        /* largest number of links into a router; injection ports are numbered from here */
-    int nclass;                       /* virtual-channel classes that its routes need to be free of deadlock */
-    int max_hops;                     /* longest route in links */
-    bool fixed_routes;                /* a route depends on its ends alone, not on `choice` */
+    int nport;         /* largest number of links into a router; injection ports are numbered from here */
+    int nclass;        /* virtual-channel classes that its routes need to be free of deadlock */
+    int max_hops;      /* longest route in links */
+    bool fixed_routes; /* a route depends on its ends alone, not on `choice` */
     const struct topology_type *type;
-    void *state;                      /* of the family */
+    void *state; /* of the family */
 };
 
 /* topology_create: the network of `s`, memory from `a`. Returns NULL with ERR_CONFIG when the numbers do not fit. */

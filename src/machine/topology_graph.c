@@ -14,9 +14,9 @@ enum { GRAPH_EXACT_DIAMETER = 1024 }; /* routers; above, twice the distance from
 struct graph {
     struct arena *arena;
     int nrouter;
-    int *first;         /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
+    int *first; /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
     int *from, *to, *port; /* (nlink) of each directed link */
-    int **next;         /* (nrouter) per target: the link to take from every router; NULL until needed */
+    int **next;            /* (nrouter) per target: the link to take from every router; NULL until needed */
     int *distance, *queue; /* (nrouter) of the search */
     bool tree;
 };
@@ -36,8 +36,8 @@ static bool links_read(const struct topology_spec *s, struct graph_link *all, st
     for (int i = 0; i < s->nlink; i++) {
         int a = s->link[i][0], b = s->link[i][1];
         if (a < 0 || b < 0 || a >= s->dims[0] || b >= s->dims[0] || a == b)
-            return err_set(e, ERR_CONFIG, "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i, a,
-                           b, s->dims[0] - 1);
+            return err_set(e, ERR_CONFIG, "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i,
+                           a, b, s->dims[0] - 1);
         all[2 * i] = (struct graph_link){a, b};
         all[2 * i + 1] = (struct graph_link){b, a};
     }

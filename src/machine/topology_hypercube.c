@@ -18,7 +18,8 @@ static bool hypercube_create(struct topology *t, struct arena *a, struct err *e)
     if (n < 0 || n > 24)
         return err_set(e, ERR_CONFIG, "topology hypercube: %d dimensions; expected 0 to 24 (2^n routers)", n);
     if (s->xpress && n < 2)
-        return err_set(e, ERR_CONFIG, "topology hypercube: Xpress links need opposite corners, so at least 2 dimensions");
+        return err_set(e, ERR_CONFIG,
+                       "topology hypercube: Xpress links need opposite corners, so at least 2 dimensions");
     g->ndim = n;
     g->xpress = s->xpress;
     t->state = g;
@@ -85,5 +86,6 @@ static int hypercube_rate_dim(const struct topology *t, int link)
     return link >= g->ndim << g->ndim ? 1 : 0; /* dim_bandwidth[0]: cube links, [1]: Xpress links */
 }
 
-const struct topology_type topology_hypercube = {"hypercube",        hypercube_create, hypercube_start, hypercube_next,
-                                                 hypercube_distance, hypercube_ends,   hypercube_rate_dim};
+const struct topology_type topology_hypercube = {"hypercube",       hypercube_create,   hypercube_start,
+                                                 hypercube_next,    hypercube_distance, hypercube_ends,
+                                                 hypercube_rate_dim};

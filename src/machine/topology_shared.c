@@ -104,7 +104,7 @@ static void full_mesh_ends(const struct topology *t, int link, int *from, int *t
 
 const struct topology_type topology_crossbar = {
     "crossbar", crossbar_create, crossbar_start, crossbar_next, crossbar_distance, crossbar_ends, NULL};
-const struct topology_type topology_bus = {
-    "bus", bus_create, crossbar_start, crossbar_next, crossbar_distance, crossbar_ends, NULL};
+const struct topology_type topology_bus = {"bus",         bus_create, crossbar_start, crossbar_next, crossbar_distance,
+                                           crossbar_ends, NULL};
 const struct topology_type topology_full_mesh = {
     "full-mesh", full_mesh_create, full_mesh_start, full_mesh_next, full_mesh_distance, full_mesh_ends, NULL};

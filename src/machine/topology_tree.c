@@ -13,8 +13,8 @@ enum { TREE_MAX_LEVELS = 24 };
 
 struct tree {
     int k, n;
-    int nswitch;               /* per level */
-    bool random;               /* up ports */
+    int nswitch;                    /* per level */
+    bool random;                    /* up ports */
     int power[TREE_MAX_LEVELS + 1]; /* k^i */
 };
 

@@ -6,11 +6,8 @@
 #include "net/net_internal.h"
 
 static const struct net_type *const levels[] = {
-    [LEVEL_LOGGP] = &net_loggp,
-    [LEVEL_LINK] = &net_link,
-    [LEVEL_PACKET] = &net_packet,
-    [LEVEL_FLIT] = &net_flit,
-    [LEVEL_AUTO] = &net_auto,
+    [LEVEL_LOGGP] = &net_loggp, [LEVEL_LINK] = &net_link, [LEVEL_PACKET] = &net_packet,
+    [LEVEL_FLIT] = &net_flit,   [LEVEL_AUTO] = &net_auto,
 };
 
 /* a bus is one resource, served first come first served: all levels mean the same, which is what `link` does */
@@ -68,7 +65,8 @@ static void loads_make(struct net *n)
 static bool sizes_fit(const struct topology *t, struct err *e)
 {
     if (2 * (int64_t)t->nnode + t->nlink <= INT32_MAX) return true;
-    return err_set(e, ERR_CONFIG, "the network has %d nodes and %d links, more than can be numbered", t->nnode, t->nlink);
+    return err_set(e, ERR_CONFIG, "the network has %d nodes and %d links, more than can be numbered", t->nnode,
+                   t->nlink);
 }
 
 struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
@@ -78,8 +76,8 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     struct net *n = TAKE(a, 1, struct net);
     if (!level_of(m)) err_set(e, ERR_CONFIG, "network level %d is not there", (int)w->level);
     if (!level_of(m) || !sizes_fit(t, e)) return NULL;
-    *n = (struct net){.type = level_of(m), .machine = m, .topology = t, .sim = s, .arena = a,
-                      .deliver = deliver, .context = context};
+    *n = (struct net){
+        .type = level_of(m), .machine = m, .topology = t, .sim = s, .arena = a, .deliver = deliver, .context = context};
     n->nnode = t->nnode;
     n->nlink = t->nlink;
     n->nresource = 2 * t->nnode + t->nlink;
@@ -89,8 +87,8 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->gap = sim_from_seconds(m->software.gap);
     n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
     n->link = rate_make(w, w->link_bandwidth, 0);
-    n->injection = rate_make(w, w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth,
-                             m->software.gap_per_byte);
+    n->injection =
+        rate_make(w, w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth, m->software.gap_per_byte);
     n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
     link_rates_make(n, w);
     /* a processor that runs ahead is in order with itself, but not with others, nor with the data of a rendezvous */

@@ -25,15 +25,15 @@ enum { NET_LANE_FREE = 16, NET_LANE_START = 32, NET_LANE_HEAD = 48, NET_LANE_ARB
 
 /* One message on its way; embedded in the mailbox's own struct, which stays in place until deliver. */
 struct net_message {
-    int src, dst;            /* nodes (not ranks, not routers) */
-    int processor;           /* of the source node that sends: the own messages of `uncontended` are its */
-    int64_t bytes;           /* payload >= 0 */
-    int64_t id;              /* unique and deterministic: breaks ties; (source, count) order */
-    sim_ps ready;            /* when the source may start injecting */
-    sim_ps injected;         /* out: when injection began */
-    sim_ps arrival;          /* out: when the tail arrived */
-    sim_ps uncontended;      /* out: when it would have arrived had no other message (of another rank) been in its way;
-                                the sender's own gap g and port are part of it, as in LogGP */
+    int src, dst;       /* nodes (not ranks, not routers) */
+    int processor;      /* of the source node that sends: the own messages of `uncontended` are its */
+    int64_t bytes;      /* payload >= 0 */
+    int64_t id;         /* unique and deterministic: breaks ties; (source, count) order */
+    sim_ps ready;       /* when the source may start injecting */
+    sim_ps injected;    /* out: when injection began */
+    sim_ps arrival;     /* out: when the tail arrived */
+    sim_ps uncontended; /* out: when it would have arrived had no other message (of another rank) been in its way;
+                           the sender's own gap g and port are part of it, as in LogGP */
 };
 
 typedef void net_deliver_fn(void *context, struct net_message *m);

@@ -14,8 +14,8 @@
 
 /* How fast a resource moves flits. */
 struct net_rate {
-    sim_ps flit;   /* time of one flit [ps], exact; 0 when a flit is a byte */
-    double byte;   /* time of one byte [ps], used when flit is 0 */
+    sim_ps flit; /* time of one flit [ps], exact; 0 when a flit is a byte */
+    double byte; /* time of one byte [ps], used when flit is 0 */
 };
 
 /* net_rate_time: time that `flits` flits take at rate r. */
@@ -25,10 +25,7 @@ static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
 }
 
 /* net_rate_slower: the slower of two rates. */
-static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b)
-{
-    return a.byte >= b.byte ? a : b;
-}
+static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b) { return a.byte >= b.byte ? a : b; }
 
 struct net {
     const struct net_type *type;
@@ -39,22 +36,26 @@ struct net {
     net_deliver_fn *deliver;
     void *context;
 
-    sim_ps tau, end, credit, gap;       /* hop, end and credit latency, the software's gap g [ps] */
-    int64_t flit_bytes;                 /* >= 1 */
+    sim_ps tau, end, credit, gap;              /* hop, end and credit latency, the software's gap g [ps] */
+    int64_t flit_bytes;                        /* >= 1 */
     struct net_rate injection, ejection, link; /* injection includes the interface's gap per byte */
-    struct net_rate *link_rate;         /* (nlink), NULL when all links have the rate `link` */
+    struct net_rate *link_rate;                /* (nlink), NULL when all links have the rate `link` */
     int nnode, nlink, nresource;
 
-    bool port_private;                  /* messages of one node are handed over in the order of their ready times */
-    int64_t in_flight;                  /* messages accepted and not yet delivered */
-    struct link_load *load;             /* (nresource), NULL unless wanted */
-    void *state;                        /* of the level */
+    bool port_private;      /* messages of one node are handed over in the order of their ready times */
+    int64_t in_flight;      /* messages accepted and not yet delivered */
+    struct link_load *load; /* (nresource), NULL unless wanted */
+    void *state;            /* of the level */
 };
 
 extern const struct net_type net_loggp, net_link, net_packet, net_flit, net_auto;
 
 /* Resources are numbered: injection ports of nodes, then links, then ejection ports. */
-static inline int net_injection(const struct net *n, int node) { (void)n; return node; }
+static inline int net_injection(const struct net *n, int node)
+{
+    (void)n;
+    return node;
+}
 static inline int net_resource(const struct net *n, int link) { return n->nnode + link; }
 static inline int net_ejection(const struct net *n, int node) { return n->nnode + n->nlink + node; }
 static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }

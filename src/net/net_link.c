@@ -13,16 +13,16 @@
 struct flight {
     struct net_message *m;
     struct route_cursor cursor;
-    int resource;        /* where the head arrives next */
-    int port;            /* through which it arrives there */
+    int resource; /* where the head arrives next */
+    int port;     /* through which it arrives there */
     int64_t flits;
-    struct net_rate slow;/* slowest rate of the route */
-    struct flight *next; /* in the pool of unused ones */
+    struct net_rate slow; /* slowest rate of the route */
+    struct flight *next;  /* in the pool of unused ones */
 };
 
 struct link_level {
-    sim_ps *free;        /* (nresource) from when on */
-    sim_ps *own_port;    /* (nnode x processors) injection port had no other processor of the node sent anything */
+    sim_ps *free;     /* (nresource) from when on */
+    sim_ps *own_port; /* (nnode x processors) injection port had no other processor of the node sent anything */
     int nprocessor;
     struct flight *pool;
 };
@@ -131,10 +131,8 @@ static void link_start(void *subject, uint64_t argument, sim_ps now)
 
 static void link_send(struct net *n, struct net_message *m)
 {
-    if (n->port_private)
-        link_inject(n, m);
-    else
-        sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
+    if (n->port_private) link_inject(n, m);
+    else sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
 const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, NULL};

@@ -56,10 +56,8 @@ static void loggp_start(void *subject, uint64_t argument, sim_ps now)
 
 static void loggp_send(struct net *n, struct net_message *m)
 {
-    if (n->port_private)
-        loggp_inject(n, m);
-    else
-        sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), loggp_start, n, (uintptr_t)m);
+    if (n->port_private) loggp_inject(n, m);
+    else sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), loggp_start, n, (uintptr_t)m);
 }
 
 const struct net_type net_loggp = {"loggp", LEVEL_LOGGP, loggp_create, loggp_send, NULL};

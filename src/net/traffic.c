@@ -45,7 +45,8 @@ static void start_message(void *subject, uint64_t argument, sim_ps now)
 {
     struct replay *r = subject;
     int m = (int)argument;
-    if (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m) start_at(r, r->initial[r->next_initial++]);
+    if (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m)
+        start_at(r, r->initial[r->next_initial++]);
     r->message[m].ready = now;
     net_send(r->net, &r->message[m]);
 }

@@ -10,12 +10,12 @@
 
 struct traffic {
     int nmessage;
-    int *src, *dst;        /* (nmessage) nodes */
-    int64_t *bytes;        /* (nmessage) payload */
-    sim_ps *time;          /* (nmessage) earliest start [ps] */
-    sim_ps *delay;         /* (nmessage) after the last dependency's arrival [ps] */
-    int *dep_first;        /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
-    int *dep;              /* numbers of other messages */
+    int *src, *dst; /* (nmessage) nodes */
+    int64_t *bytes; /* (nmessage) payload */
+    sim_ps *time;   /* (nmessage) earliest start [ps] */
+    sim_ps *delay;  /* (nmessage) after the last dependency's arrival [ps] */
+    int *dep_first; /* (nmessage + 1) dependencies of m: dep[dep_first[m] .. dep_first[m+1] - 1]; NULL: none */
+    int *dep;       /* numbers of other messages */
 };
 
 /* What a replay tells; the arrays are the caller's, (nmessage) or NULL where not wanted. */
@@ -23,11 +23,11 @@ struct traffic_result {
     sim_ps *arrival, *injected, *uncontended; /* [ps]; SIM_NEVER for messages that never arrived */
     sim_ps makespan;                          /* last arrival [ps] */
     int arrived;
-    int64_t events;                           /* dispatched, those that start messages included */
-    uint64_t digest;                          /* of the events */
+    int64_t events;  /* dispatched, those that start messages included */
+    uint64_t digest; /* of the events */
     int nlink;
-    const struct link_load *link;             /* when asked for, in the arena */
-    bool deadlock;                            /* messages are left that nothing can move; text names the cycle */
+    const struct link_load *link; /* when asked for, in the arena */
+    bool deadlock;                /* messages are left that nothing can move; text names the cycle */
     char text[512];
 };
 

@@ -29,8 +29,8 @@ struct question {
 struct reader {
     struct netcheck *n;
     const char *path, *filter;
-    struct arena *rows;    /* keeps the rows */
-    struct arena *arena;   /* scratch, released after each case */
+    struct arena *rows;  /* keeps the rows */
+    struct arena *arena; /* scratch, released after each case */
     struct err *e;
     int capacity;
 };
@@ -104,10 +104,8 @@ static void ask_level(struct question *k, const struct topology *t, enum network
     struct traffic_result r = {.arrival = TAKE(k->arena, k->q.nmessage + 1, sim_ps)};
     err_clear(&e);
     k->machine.network.level = level;
-    if (traffic_run(&k->q, &k->machine, t, k->arena, false, &r, &e))
-        judge(k, &r, answer);
-    else
-        text_copy(answer->why, sizeof answer->why, e.text);
+    if (traffic_run(&k->q, &k->machine, t, k->arena, false, &r, &e)) judge(k, &r, answer);
+    else text_copy(answer->why, sizeof answer->why, e.text);
     arena_release(k->arena, mark);
 }
 
@@ -125,10 +123,8 @@ static void ask(struct question *k)
     k->row->nmessage = k->q.nmessage;
     for (int l = 0; l < NETCHECK_LEVELS; l++) {
         if (!k->n->level[l]) continue;
-        if (t)
-            ask_level(k, t, (enum network_level)l);
-        else
-            text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, e.text);
+        if (t) ask_level(k, t, (enum network_level)l);
+        else text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, e.text);
     }
 }
 
@@ -170,8 +166,8 @@ static bool network_read(const struct node *c, int buffer, struct question *k)
     int vcs = number_or(c, "vcs", 1);
     const char *topology = document_text(c, "topology");
     err_clear(&e);
-    snprintf(k->row->group, sizeof k->row->group, "%.*s vc=%d B=%d", (int)strcspn(topology, "0123456789_"), topology, vcs,
-             buffer);
+    snprintf(k->row->group, sizeof k->row->group, "%.*s vc=%d B=%d", (int)strcspn(topology, "0123456789_"), topology,
+             vcs, buffer);
     if (!netcheck_topology(topology, number_or(c, "tie", 0), &s, &e)) {
         unanswered(k, e.text);
         return false;
@@ -243,9 +239,16 @@ static bool trace_read(struct reader *r, const struct node *trace, struct traffi
     static const char *const key[] = {"src", "dst", "flits", "time", "delay"};
     for (int i = 0; i < 5; i++)
         if (!(column[i] = numbers(r, trace, key[i], n))) return false;
-    if (deps->count != n) return err_set_at(r->e, ERR_DATA, r->path, deps->line, "deps has %d entries, not %d", deps->count, n);
-    *q = (struct traffic){n, TAKE(r->arena, n + 1, int), TAKE(r->arena, n + 1, int), TAKE(r->arena, n + 1, int64_t),
-                          TAKE(r->arena, n + 1, sim_ps), TAKE(r->arena, n + 1, sim_ps), TAKE(r->arena, n + 1, int), NULL};
+    if (deps->count != n)
+        return err_set_at(r->e, ERR_DATA, r->path, deps->line, "deps has %d entries, not %d", deps->count, n);
+    *q = (struct traffic){n,
+                          TAKE(r->arena, n + 1, int),
+                          TAKE(r->arena, n + 1, int),
+                          TAKE(r->arena, n + 1, int64_t),
+                          TAKE(r->arena, n + 1, sim_ps),
+                          TAKE(r->arena, n + 1, sim_ps),
+                          TAKE(r->arena, n + 1, int),
+                          NULL};
     int ndep = 0, m = 0;
     for (const struct node *d = deps->child; d; d = d->next) ndep += d->count;
     q->dep = TAKE(r->arena, ndep + 1, int);
@@ -321,8 +324,11 @@ static bool ask_point(struct reader *r, const struct node *c, const struct node 
 static bool hand_messages(struct reader *r, const struct node *list, struct traffic *q)
 {
     int n = list->count, m = 0;
-    *q = (struct traffic){.nmessage = n, .src = TAKE(r->arena, n + 1, int), .dst = TAKE(r->arena, n + 1, int),
-                          .bytes = TAKE(r->arena, n + 1, int64_t), .time = TAKE(r->arena, n + 1, sim_ps)};
+    *q = (struct traffic){.nmessage = n,
+                          .src = TAKE(r->arena, n + 1, int),
+                          .dst = TAKE(r->arena, n + 1, int),
+                          .bytes = TAKE(r->arena, n + 1, int64_t),
+                          .time = TAKE(r->arena, n + 1, sim_ps)};
     for (const struct node *x = list->child; x; x = x->next, m++) {
         int flits, t;
         if (!document_integer(x, "src", r->path, 0, MAX_NODES, &q->src[m], r->e) ||

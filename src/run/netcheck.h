@@ -28,18 +28,18 @@ struct netcheck_answer {
 };
 
 struct netcheck_row {
-    char name[112];       /* topology, pattern, size, channels, buffer */
-    char group[56];       /* what it is counted with: family, channels, buffer */
+    char name[112]; /* topology, pattern, size, channels, buffer */
+    char group[56]; /* what it is counted with: family, channels, buffer */
     int nmessage;
-    bool compared;        /* messages have reference arrivals */
+    bool compared; /* messages have reference arrivals */
     bool expect_deadlock;
-    bool counted;         /* false: the reference itself was unstable here; shown, not counted */
-    double low, high;     /* reference [cycles], equal but for a band */
+    bool counted;     /* false: the reference itself was unstable here; shown, not counted */
+    double low, high; /* reference [cycles], equal but for a band */
     struct netcheck_answer answer[NETCHECK_LEVELS];
 };
 
 struct netcheck {
-    const char *path;     /* borrowed */
+    const char *path;            /* borrowed */
     bool level[NETCHECK_LEVELS]; /* asked for */
     int nrow;
     struct netcheck_row *row; /* (nrow) in the arena */
@@ -56,11 +56,11 @@ bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const
 
 /* Statistics of the answers of one level over the rows of one group. */
 struct netcheck_total {
-    int cases, skipped;        /* answered; not answerable at this level */
-    int exact_cases;           /* with the reference's makespan, to a thousandth of a cycle */
-    int64_t messages, exact;   /* compared; with the reference's arrival */
-    double mean, worst;        /* of |error|; the largest error with its sign */
-    double message_error;      /* mean over cases */
+    int cases, skipped;      /* answered; not answerable at this level */
+    int exact_cases;         /* with the reference's makespan, to a thousandth of a cycle */
+    int64_t messages, exact; /* compared; with the reference's arrival */
+    double mean, worst;      /* of |error|; the largest error with its sign */
+    double message_error;    /* mean over cases */
 };
 
 /* netcheck_total: over the rows whose group is `group` (NULL: all) at `level`. */

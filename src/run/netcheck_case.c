@@ -18,10 +18,10 @@ struct family_name {
 };
 
 static const struct family_name families[] = {
-    {"fattree", TOPOLOGY_FAT_TREE},     {"fat_tree", TOPOLOGY_FAT_TREE},   {"dragonfly", TOPOLOGY_DRAGONFLY},
-    {"fullmesh", TOPOLOGY_FULL_MESH},   {"full_mesh", TOPOLOGY_FULL_MESH}, {"crossbar", TOPOLOGY_CROSSBAR},
-    {"hypercube", TOPOLOGY_HYPERCUBE},  {"hcube", TOPOLOGY_HYPERCUBE},     {"torus", TOPOLOGY_TORUS},
-    {"ring", TOPOLOGY_TORUS},           {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
+    {"fattree", TOPOLOGY_FAT_TREE},    {"fat_tree", TOPOLOGY_FAT_TREE},   {"dragonfly", TOPOLOGY_DRAGONFLY},
+    {"fullmesh", TOPOLOGY_FULL_MESH},  {"full_mesh", TOPOLOGY_FULL_MESH}, {"crossbar", TOPOLOGY_CROSSBAR},
+    {"hypercube", TOPOLOGY_HYPERCUBE}, {"hcube", TOPOLOGY_HYPERCUBE},     {"torus", TOPOLOGY_TORUS},
+    {"ring", TOPOLOGY_TORUS},          {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
 };
 
 /* the numbers in `text`, whatever stands between them */
@@ -55,7 +55,7 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
     if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s' lacks its numbers", name);
     if (s->family == TOPOLOGY_FAT_TREE) s->routing = ROUTE_VALIANT; /* the reference's way up is random */
-    if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0; /* what follows p, a and h is the number of nodes */
+    if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0;            /* what follows p, a and h is the number of nodes */
     return true;
 }
 
@@ -114,10 +114,10 @@ enum rule { UNIFORM, BIT_COMPLEMENT, BIT_REVERSE, TRANSPOSE, SHUFFLE, TORNADO, N
 
 struct pattern {
     enum rule rule;
-    int nnode, bits;  /* nodes; log2 of them */
-    int radix, ndim;  /* tornado, neighbour */
-    int distance;     /* shift */
-    int group;        /* nodes per group of a dragonfly */
+    int nnode, bits; /* nodes; log2 of them */
+    int radix, ndim; /* tornado, neighbour */
+    int distance;    /* shift */
+    int group;       /* nodes per group of a dragonfly */
 };
 
 static const struct {
@@ -125,9 +125,9 @@ static const struct {
     enum rule rule;
     bool power_of_two;
 } rules[] = {
-    {"uniform", UNIFORM, false},     {"bitcomp", BIT_COMPLEMENT, true}, {"bitrev", BIT_REVERSE, true},
-    {"transpose", TRANSPOSE, true},  {"shuffle", SHUFFLE, true},        {"tornado", TORNADO, false},
-    {"neighbor", NEIGHBOUR, false},  {"shift", SHIFT, false},           {"bad_dragon", BAD_DRAGONFLY, false},
+    {"uniform", UNIFORM, false},    {"bitcomp", BIT_COMPLEMENT, true}, {"bitrev", BIT_REVERSE, true},
+    {"transpose", TRANSPOSE, true}, {"shuffle", SHUFFLE, true},        {"tornado", TORNADO, false},
+    {"neighbor", NEIGHBOUR, false}, {"shift", SHIFT, false},           {"bad_dragon", BAD_DRAGONFLY, false},
 };
 
 static bool pattern_read(const char *text, const struct topology *t, struct pattern *p, struct err *e)
@@ -171,14 +171,22 @@ static int destination(const struct pattern *p, int i, struct random *r)
 {
     int mask = p->nnode - 1, half = p->bits / 2;
     switch (p->rule) {
-    case UNIFORM: return (int)random_below(r, (uint64_t)p->nnode);
-    case BIT_COMPLEMENT: return ~i & mask;
-    case BIT_REVERSE: return bits_reversed(i, p->bits);
-    case TRANSPOSE: return (i >> half | i << half) & mask;
-    case SHUFFLE: return (i << 1 & mask) | i >> (p->bits - 1);
-    case TORNADO: return digits_moved(p, i, (p->radix + 1) / 2 - 1);
-    case NEIGHBOUR: return digits_moved(p, i, 1);
-    case SHIFT: return (i + p->distance) % p->nnode;
+    case UNIFORM:
+        return (int)random_below(r, (uint64_t)p->nnode);
+    case BIT_COMPLEMENT:
+        return ~i & mask;
+    case BIT_REVERSE:
+        return bits_reversed(i, p->bits);
+    case TRANSPOSE:
+        return (i >> half | i << half) & mask;
+    case SHUFFLE:
+        return (i << 1 & mask) | i >> (p->bits - 1);
+    case TORNADO:
+        return digits_moved(p, i, (p->radix + 1) / 2 - 1);
+    case NEIGHBOUR:
+        return digits_moved(p, i, 1);
+    case SHIFT:
+        return (i + p->distance) % p->nnode;
     case BAD_DRAGONFLY:
         return ((i / p->group + 1) * p->group) % p->nnode + (int)random_below(r, (uint64_t)p->group);
     }

@@ -61,12 +61,9 @@ static void print_cases(const struct netcheck *n, FILE *out)
         for (int l = 0; l < NETCHECK_LEVELS; l++) {
             const struct netcheck_answer *a = &row->answer[l];
             if (!n->level[l]) continue;
-            if (!a->ran || !row->counted)
-                fprintf(out, " %9s", "-");
-            else if (a->deadlock)
-                fprintf(out, " %9s", "deadlock");
-            else
-                fprintf(out, " %+9.2f", 100 * a->error);
+            if (!a->ran || !row->counted) fprintf(out, " %9s", "-");
+            else if (a->deadlock) fprintf(out, " %9s", "deadlock");
+            else fprintf(out, " %+9.2f", 100 * a->error);
         }
         fprintf(out, "\n");
     }
@@ -79,10 +76,8 @@ static void print_total(const struct netcheck *n, const char *group, FILE *out)
         if (!n->level[l] || t.cases == 0) continue;
         fprintf(out, "%-30s %-7s %6d %7d %7d %9.3f %+9.2f %9.3f ", group ? group : "all", level_names[l], t.cases,
                 t.skipped, t.exact_cases, 100 * t.mean, 100 * t.worst, 100 * t.message_error);
-        if (t.messages > 0)
-            fprintf(out, "%9.3f\n", 100.0 * (double)t.exact / (double)t.messages);
-        else
-            fprintf(out, "%9s\n", "-");
+        if (t.messages > 0) fprintf(out, "%9.3f\n", 100.0 * (double)t.exact / (double)t.messages);
+        else fprintf(out, "%9s\n", "-");
     }
 }
 
@@ -178,8 +173,11 @@ static void json_total(const struct netcheck *n, const char *group, struct json 
         const struct {
             const char *key;
             int64_t value;
-        } counts[] = {{"cases", t.cases},       {"skipped", t.skipped}, {"exact_cases", t.exact_cases},
-                      {"messages", t.messages}, {"exact_messages", t.exact}};
+        } counts[] = {{"cases", t.cases},
+                      {"skipped", t.skipped},
+                      {"exact_cases", t.exact_cases},
+                      {"messages", t.messages},
+                      {"exact_messages", t.exact}};
         json_object(j);
         json_key(j, "group");
         json_text(j, group ? group : "all");
@@ -225,10 +223,8 @@ bool netcheck_file(const char *path, const enum network_level *level, bool json,
     struct arena *a = arena_create();
     if (level) wanted[*level] = true;
     bool ok = netcheck_run(&n, path, level ? wanted : NULL, NULL, quiet, a, e);
-    if (ok && json)
-        netcheck_json(&n, out);
-    else if (ok)
-        netcheck_print(&n, brief, out);
+    if (ok && json) netcheck_json(&n, out);
+    else if (ok) netcheck_print(&n, brief, out);
     arena_destroy(a);
     return ok;
 }

@@ -11,8 +11,13 @@
 static void each_class_of_operation_costs_its_own(void **state)
 {
     (void)state;
-    struct node_spec s = {.flop_rate = 50e6, .clock = 300e6, .div_cycles = 22, .sqrt_cycles = 60, .trig_cycles = 150,
-                          .call_time = 40e-9, .copy_bandwidth = 250e6};
+    struct node_spec s = {.flop_rate = 50e6,
+                          .clock = 300e6,
+                          .div_cycles = 22,
+                          .sqrt_cycles = 60,
+                          .trig_cycles = 150,
+                          .call_time = 40e-9,
+                          .copy_bandwidth = 250e6};
     struct node_cost c = node_cost_make(&s);
     /* 20 ns a flop; 1e12/300e6 ps a cycle; 4 ns a byte; 40 ns a call */
     assert_int_equal(node_cost_ps(&c, &(struct work){.flop = 7}), 7 * 20000);

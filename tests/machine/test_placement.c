@@ -15,7 +15,8 @@ enum { MAX_ROUTE = 64 };
 static struct machine_spec machine(enum topology_family family, int ndim, const int *dims, enum placement_kind kind)
 {
     struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = family, .ndim = ndim, .nodes_per_router = 1, .processors_per_node = 1};
+    m.topology =
+        (struct topology_spec){.family = family, .ndim = ndim, .nodes_per_router = 1, .processors_per_node = 1};
     for (int d = 0; d < ndim; d++) m.topology.dims[d] = dims[d];
     m.placement.kind = kind;
     return m;

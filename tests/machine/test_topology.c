@@ -125,7 +125,8 @@ static void check_routes(const struct named_topology *named, const struct topolo
         search(t, topology_router_of(t, src), distance, queue);
         for (int dst = 0; dst < t->nnode; dst++) {
             int hops = topology_distance(t, src, dst);
-            for (uint64_t choice = 0; choice < (t->fixed_routes ? 1 : CHOICES); choice++) check_route(t, src, dst, choice);
+            for (uint64_t choice = 0; choice < (t->fixed_routes ? 1 : CHOICES); choice++)
+                check_route(t, src, dst, choice);
             assert_true(hops >= distance[topology_router_of(t, dst)]);
             if (named->shortest) assert_int_equal(hops, distance[topology_router_of(t, dst)]);
             if (hops > longest) longest = hops;
@@ -209,8 +210,8 @@ static void a_ring_without_classes_could_deadlock(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_TORUS, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_TORUS, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
     assert_true(may_deadlock(make(&s, a), false, a));
     arena_destroy(a);
 }
@@ -221,8 +222,8 @@ static void ties_go_up_or_by_parity(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_TORUS, .ndim = 1, .dims = {8}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_TORUS, .ndim = 1, .dims = {8}, .nodes_per_router = 1, .processors_per_node = 1};
     for (int rule = 0; rule < 2; rule++) {
         s.tie = rule == 0 ? TIE_POSITIVE : TIE_PARITY;
         struct topology *t = make(&s, a);
@@ -241,8 +242,8 @@ static void a_million_nodes_route_by_arithmetic(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_TORUS, .ndim = 3, .dims = {128, 128, 64}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_TORUS, .ndim = 3, .dims = {128, 128, 64}, .nodes_per_router = 1, .processors_per_node = 1};
     struct topology *t = make(&s, a);
     struct hop route[160];
     assert_int_equal(t->nnode, 1 << 20);
@@ -257,8 +258,8 @@ static void the_mean_route_of_a_dragonfly_is_the_reference_s(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 0}, .nodes_per_router = 1, .processors_per_node = 1};
     struct topology *t = make(&s, a);
     double routers = 0, worst = 0;
     assert_int_equal(t->nnode, 72);
@@ -275,8 +276,8 @@ static void shifts_on_a_fat_tree_share_no_link(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {4, 3}, .nodes_per_router = 1, .processors_per_node = 1};
     struct topology *t = make(&s, a);
     for (int shift = 1; shift < 64; shift++) {
         int load[256] = {0};
@@ -293,8 +294,12 @@ static void rates_belong_to_dimensions(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .dim_bandwidth = {0, 300e6},
-                              .nodes_per_router = 1, .processors_per_node = 1};
+    struct topology_spec s = {.family = TOPOLOGY_TORUS,
+                              .ndim = 2,
+                              .dims = {4, 4},
+                              .dim_bandwidth = {0, 300e6},
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1};
     struct topology *t = make(&s, a);
     struct hop route[4];
     topology_route(t, 0, 5, 0, route);

@@ -238,8 +238,8 @@ static void transactions_of_a_bus_follow_one_another(void **state)
     int src[N], dst[N];
     int64_t bytes[N];
     sim_ps time[N] = {0}, arrival[N];
-    struct topology_spec s = {.family = TOPOLOGY_BUS, .ndim = 1, .dims = {N}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_BUS, .ndim = 1, .dims = {N}, .nodes_per_router = 1, .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 0);
     m.network.end_latency = 0;
     for (int i = 0; i < N; i++) {
@@ -260,13 +260,17 @@ static void a_slow_dimension_holds_its_links_longer(void **state)
     int src[] = {0, 1}, dst[] = {13, 13}; /* on 4 x 4: both go up column 1 */
     int64_t bytes[] = {320, 320};
     sim_ps time[] = {0, 0}, arrival[2];
-    struct topology_spec s = {.family = TOPOLOGY_MESH, .ndim = 2, .dims = {4, 4}, .dim_bandwidth = {0, 4e9},
-                              .nodes_per_router = 1, .processors_per_node = 1};
+    struct topology_spec s = {.family = TOPOLOGY_MESH,
+                              .ndim = 2,
+                              .dims = {4, 4},
+                              .dim_bandwidth = {0, 4e9},
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic q = {.nmessage = 2, .src = src, .dst = dst, .bytes = bytes, .time = time};
     replay_list(&s, LEVEL_LINK, &q, arrival, &m);
-    assert_int_equal(arrival[1], (4 * 3 + 19 * 4 + 2) * 1000);            /* 20 flits, one in 4 cycles */
-    assert_int_equal(arrival[0], (3 + 80 + 3 * 3 + 19 * 4 + 2) * 1000);   /* from when the first frees the column */
+    assert_int_equal(arrival[1], (4 * 3 + 19 * 4 + 2) * 1000);          /* 20 flits, one in 4 cycles */
+    assert_int_equal(arrival[0], (3 + 80 + 3 * 3 + 19 * 4 + 2) * 1000); /* from when the first frees the column */
 }
 
 static void wrong_lists_are_refused(void **state)
@@ -275,14 +279,28 @@ static void wrong_lists_are_refused(void **state)
     int node[] = {0, 1}, beyond[] = {0, 9}, first[] = {0, 1, 2}, self[] = {1, 1}, missing[] = {1, 7};
     int64_t bytes[] = {16, 16}, negative[] = {16, -1};
     sim_ps time[] = {0, 0};
-    struct topology_spec s = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic bad[] = {
         {.nmessage = 2, .src = node, .dst = beyond, .bytes = bytes, .time = time},
         {.nmessage = 2, .src = node, .dst = node, .bytes = negative, .time = time},
-        {.nmessage = 2, .src = node, .dst = node, .bytes = bytes, .time = time, .delay = time, .dep_first = first, .dep = self},
-        {.nmessage = 2, .src = node, .dst = node, .bytes = bytes, .time = time, .delay = time, .dep_first = first, .dep = missing},
+        {.nmessage = 2,
+         .src = node,
+         .dst = node,
+         .bytes = bytes,
+         .time = time,
+         .delay = time,
+         .dep_first = first,
+         .dep = self},
+        {.nmessage = 2,
+         .src = node,
+         .dst = node,
+         .bytes = bytes,
+         .time = time,
+         .delay = time,
+         .dep_first = first,
+         .dep = missing},
     };
     struct arena *a = arena_create();
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -302,8 +320,8 @@ static void messages_that_wait_for_each_other_are_reported(void **state)
     int src[] = {0, 1, 2}, dst[] = {1, 2, 0}, first[] = {0, 0, 1, 2}, dep[] = {2, 1};
     int64_t bytes[] = {16, 16, 16};
     sim_ps zero[] = {0, 0, 0}, arrival[3];
-    struct topology_spec s = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
     struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
     struct traffic q = {3, src, dst, bytes, zero, zero, first, dep};
     struct arena *a = arena_create();

@@ -37,9 +37,10 @@ static void note_nothing(void *context, struct net_message *m)
 static struct machine_spec crossbar(const struct loggp *p, int nrank)
 {
     struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
-                                        .processors_per_node = 1};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP, .link_bandwidth = 1e12 / (double)p->G,
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1, .processors_per_node = 1};
+    m.network = (struct network_spec){.level = LEVEL_LOGGP,
+                                      .link_bandwidth = 1e12 / (double)p->G,
                                       .hop_latency = (double)(p->L / 3) * 1e-12,
                                       .end_latency = (double)(p->L - p->L / 3) * 1e-12};
     m.software.gap = (double)p->g * 1e-12;
@@ -176,8 +177,8 @@ static void random_programs_follow_the_recursion_on_a_torus(void **state)
     struct random r = random_make(3, 0, 0);
     struct loggp p = random_parameters(&r);
     struct machine_spec m = crossbar(&p, NODES);
-    m.topology = (struct topology_spec){.family = TOPOLOGY_TORUS, .ndim = 3, .dims = {5, 4, 3}, .nodes_per_router = 1,
-                                        .processors_per_node = 1};
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_TORUS, .ndim = 3, .dims = {5, 4, 3}, .nodes_per_router = 1, .processors_per_node = 1};
     struct row w;
     row_make(&w, &m, &p, NODES);
     struct topology *t = topology_create(&m.topology, w.arena, &(struct err){0});
@@ -209,10 +210,10 @@ static void only_the_own_port_delays(void **state)
     int64_t bytes[] = {160, 16, 320, 1600, 1600};
     sim_ps time[] = {5000, 5000, 5000, 0, 0}, arrival[5], uncontended[5];
     struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1,
-                                        .processors_per_node = 1};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP, .link_bandwidth = 16e9, .hop_latency = 3e-9,
-                                      .end_latency = 2e-9, .flit_bytes = 16};
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {4}, .nodes_per_router = 1, .processors_per_node = 1};
+    m.network = (struct network_spec){
+        .level = LEVEL_LOGGP, .link_bandwidth = 16e9, .hop_latency = 3e-9, .end_latency = 2e-9, .flit_bytes = 16};
     m.software.eager_bytes = -1;
     struct arena *a = arena_create();
     struct err e;
@@ -248,10 +249,10 @@ static void processors_of_a_node_share_its_port(void **state)
     (void)state;
     for (int level = LEVEL_LOGGP; level <= LEVEL_LINK; level++) {
         struct machine_spec m = {.name = "test"};
-        m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {2}, .nodes_per_router = 1,
-                                            .processors_per_node = 2};
-        m.network = (struct network_spec){.level = (enum network_level)level, .link_bandwidth = 1e9,
-                                          .hop_latency = 3e-9, .end_latency = 2e-9};
+        m.topology = (struct topology_spec){
+            .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {2}, .nodes_per_router = 1, .processors_per_node = 2};
+        m.network = (struct network_spec){
+            .level = (enum network_level)level, .link_bandwidth = 1e9, .hop_latency = 3e-9, .end_latency = 2e-9};
         m.software.eager_bytes = -1;
         struct arena *a = arena_create();
         struct sim *s = sim_create();
@@ -271,7 +272,8 @@ static void processors_of_a_node_share_its_port(void **state)
         assert_int_equal(x[2].injected, 1000);
         assert_int_equal(x[0].injected, 21000);
         assert_int_equal(x[1].injected, 31000);
-        for (int i = 0; i < 3; i++) assert_int_equal(x[i].arrival, x[i].injected + 3000 + (x[i].bytes - 1) * 1000 + 2000);
+        for (int i = 0; i < 3; i++)
+            assert_int_equal(x[i].arrival, x[i].injected + 3000 + (x[i].bytes - 1) * 1000 + 2000);
         assert_int_equal(x[2].uncontended, x[2].arrival);
         assert_int_equal(x[0].uncontended, 4000 + 3000 + 9000 + 2000);
         assert_int_equal(x[1].uncontended, 14000 + 3000 + 9000 + 2000);

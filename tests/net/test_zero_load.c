@@ -100,8 +100,8 @@ static void headers_count_with_every_packet(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_MESH, .ndim = 1, .dims = {8}, .nodes_per_router = 1,
-                              .processors_per_node = 1};
+    struct topology_spec s = {
+        .family = TOPOLOGY_MESH, .ndim = 1, .dims = {8}, .nodes_per_router = 1, .processors_per_node = 1};
     struct machine_spec m = machine(&s);
     struct err e;
     err_clear(&e);
@@ -122,8 +122,12 @@ static void the_slowest_rate_of_the_route_rules(void **state)
     (void)state;
     static const enum network_level levels[] = {LEVEL_LOGGP, LEVEL_LINK};
     struct arena *a = arena_create();
-    struct topology_spec s = {.family = TOPOLOGY_MESH, .ndim = 2, .dims = {4, 4}, .dim_bandwidth = {0, 250e6},
-                              .nodes_per_router = 1, .processors_per_node = 1};
+    struct topology_spec s = {.family = TOPOLOGY_MESH,
+                              .ndim = 2,
+                              .dims = {4, 4},
+                              .dim_bandwidth = {0, 250e6},
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1};
     struct machine_spec m = machine(&s);
     struct err e;
     err_clear(&e);
