@@ -96,11 +96,42 @@ static void make_ranks(struct world *w, uint64_t seed)
     }
 }
 
+static inline struct vp *ready_ahead(const struct world *w, int ahead)
+{
+    if (ahead >= w->ready_count) return NULL;
+    int at = w->ready_head + ahead;
+    return &w->vp[w->ready[at >= w->nrank ? at - w->nrank : at]];
+}
+
+/* With many ranks each lies cold in memory when its turn comes: the ring tells early enough who is next. */
+static inline void warm_up(const struct world *w)
+{
+    const struct vp *far = ready_ahead(w, 6), *near = ready_ahead(w, 3);
+    if (far) {
+        __builtin_prefetch(far);
+        __builtin_prefetch((const char *)far + 64);
+        __builtin_prefetch((const char *)far + 128);
+    }
+    if (near) {
+        fiber_prefetch(near->fiber);
+        __builtin_prefetch(near->stages + near->stage);
+        if (near->waiting) __builtin_prefetch(near->waiting);
+    }
+    const struct vp *next = ready_ahead(w, 1);
+    if (next && next->waiting && next->waiting->active == REQUEST_MATCHED) {
+        const char *m = next->waiting->detail;
+        __builtin_prefetch(m);
+        __builtin_prefetch(m + 64);
+        __builtin_prefetch(m + 128);
+    }
+}
+
 /* Ranks run ahead until they wait; only then is it safe to let simulated time pass. */
 static void loop(struct world *w)
 {
     do {
         while (w->ready_count) {
+            warm_up(w);
             struct vp *v = &w->vp[w->ready[w->ready_head]];
             if (++w->ready_head == w->nrank) w->ready_head = 0;
             w->ready_count--;
