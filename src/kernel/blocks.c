@@ -24,8 +24,10 @@ void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *s
     if (method == SOLVER_PARTITION) method = spec->part_solver == PART_CR ? SOLVER_CR : SOLVER_PCR_SYMMETRIC;
     reduction_carve(&b->reduction, c, spec, method, interface, rank, nrank, largest, m, keep);
     b->left = CARVE(c, largest * m, real);
+    const bool all_rows = nrow > nrank && (spec->solver == SOLVER_PCR || spec->solver == SOLVER_PCR_SYMMETRIC);
     if (method == SOLVER_THOMAS) blocks_serial_carve(b, c, rank);
-    if (rows == 1) { /* the reduction's own row, nothing is copied */
+    if (all_rows) blocks_rows_carve(b, c);
+    if (rows == 1 && !all_rows) { /* the reduction's own row, nothing is copied */
         b->D = b->reduction.D;
         b->r = b->reduction.r;
         b->L = reduction_left(&b->reduction);
@@ -36,7 +38,7 @@ void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *s
     b->D = CARVE(c, rows * b->d_stride, real);
     b->L = CARVE(c, rows * b->l_stride, real);
     b->r = CARVE(c, rows * b->r_stride, real);
-    b->factor = CARVE(c, (rows - 1) * b->factor_stride, real);
+    if (!all_rows) b->factor = CARVE(c, (rows - 1) * b->factor_stride, real);
 }
 
 /* transpose: out (n x m) from in (m x n). */
@@ -138,6 +140,10 @@ void blocks_solve(struct blocks *b, struct work *w)
         blocks_serial_solve(b, false, w);
         return;
     }
+    if (b->rows) {
+        blocks_rows_solve(b, false, w);
+        return;
+    }
     if (rows > 1) {
         eliminate_inside(b, b->message + c * cs, w);
         memcpy(b->reduction.D, blocks_row_D(b, last), (size_t)packed_size(c) * sizeof(real));
@@ -159,6 +165,10 @@ void blocks_resolve(struct blocks *b, struct work *w)
     struct reduction *red = &b->reduction;
     if (red->method == SOLVER_THOMAS) {
         blocks_serial_solve(b, true, w);
+        return;
+    }
+    if (b->rows) {
+        blocks_rows_solve(b, true, w);
         return;
     }
     for (int i = 0; i < cs * m; i++) b->message[i] = 0;

@@ -24,6 +24,7 @@ struct blocks {
     bool keep;
     bool broken;                /* a local pivot was not positive */
     struct reduction reduction; /* of the interface row */
+    struct rows *rows;          /* all rows take part in the reduction: its buffers */
     struct block_tridiag *whole;/* SOLVER_THOMAS, rank 0: the whole system */
     real *x, *gathered;         /* and its solution (nrow x 6 m); messages of rows */
 };
@@ -67,6 +68,13 @@ void blocks_solve(struct blocks *b, struct work *w);
 /* blocks_resolve: another right-hand side in the rows' r, with the factors of blocks_solve (keep). */
 #define blocks_resolve REAL_NAME(blocks_resolve)
 void blocks_resolve(struct blocks *b, struct work *w);
+
+/* blocks_rows_solve: SOLVER_PCR, SOLVER_PCR_SYMMETRIC with several rows on some rank: all rows are reduced; `again`:
+ * further right-hand sides with kept factors (symmetric only). blocks_rows_carve: room for it. */
+#define blocks_rows_solve REAL_NAME(blocks_rows_solve)
+void blocks_rows_solve(struct blocks *b, bool again, struct work *w);
+#define blocks_rows_carve REAL_NAME(blocks_rows_carve)
+void blocks_rows_carve(struct blocks *b, struct carve *c);
 
 /* blocks_serial_solve: SOLVER_THOMAS: gather to rank 0, solve, scatter. */
 #define blocks_serial_solve REAL_NAME(blocks_serial_solve)

@@ -11,22 +11,16 @@
 
 #include <string.h>
 
-/* A row's parts and orders. */
-struct row {
-    int c, nl, nu;
-    real *L, *D, *U, *r;
-};
-
-static struct row row_at(real *base, int c, int nl, int nu)
+struct textbook_row textbook_row_at(real *base, int c, int nl, int nu)
 {
-    struct row v = {.c = c, .nl = nl, .nu = nu, .L = base};
+    struct textbook_row v = {.c = c, .nl = nl, .nu = nu, .L = base};
     v.D = v.L + c * (nl > 0 ? nl : c);
     v.U = v.D + c * c;
     v.r = v.U + c * (nu > 0 ? nu : c);
     return v;
 }
 
-static int row_size(const struct row *v, int m) { return (int)(v->r - v->L) + v->c * m; }
+static int row_size(const struct textbook_row *v, int m) { return (int)(v->r - v->L) + v->c * m; }
 
 /* orders: of the rows at `distance` from rank k; 0 where there is none. */
 static void orders(const struct reduction *s, int k, int distance, int *nl, int *nu)
@@ -35,8 +29,7 @@ static void orders(const struct reduction *s, int k, int distance, int *nl, int 
     *nu = k + distance < comm_size(s->comm) ? s->size[k + distance] : 0;
 }
 
-/* fold: the row `v` behind the coupling K (c x v.c) of `row`: D -= alpha back, r -= alpha r_v, next = -alpha onward. */
-static bool fold(struct row *row, const real *K, struct row *v, const real *back, const real *onward, int norder,
+bool textbook_row_fold(struct textbook_row *row, const real *K, struct textbook_row *v, const real *back, const real *onward, int norder,
                  real *next, int m, struct work *w)
 {
     real alpha[BLOCK_FULL], product[BLOCK_FULL];
@@ -58,11 +51,11 @@ static bool fold(struct row *row, const real *K, struct row *v, const real *back
 }
 
 /* begin: the row in its first form, out of where the assembly put its blocks. */
-static struct row begin(struct reduction *s)
+static struct textbook_row begin(struct reduction *s)
 {
     int nl, nu;
     orders(s, comm_rank(s->comm), 1, &nl, &nu);
-    struct row row = row_at(s->out_a, s->c, nl, nu);
+    struct textbook_row row = textbook_row_at(s->out_a, s->c, nl, nu);
     memcpy(row.L, reduction_left(s), (size_t)(s->c * nl) * sizeof(real));
     memcpy(row.U, reduction_right(s), (size_t)(s->c * nu) * sizeof(real));
     for (int i = 0; i < s->c; i++)
@@ -72,9 +65,9 @@ static struct row begin(struct reduction *s)
 }
 
 /* next_row: lay out the row for its neighbours at the next distance: D and r move, L and U come in. */
-static struct row next_row(struct reduction *s, const struct row *row, int nl, int nu, const real *L, const real *U)
+static struct textbook_row next_row(struct reduction *s, const struct textbook_row *row, int nl, int nu, const real *L, const real *U)
 {
-    struct row next = row_at(s->out_b, s->c, nl, nu);
+    struct textbook_row next = textbook_row_at(s->out_b, s->c, nl, nu);
     memcpy(next.L, L, (size_t)(s->c * nl) * sizeof(real));
     memcpy(next.U, U, (size_t)(s->c * nu) * sizeof(real));
     memcpy(next.D, row->D, (size_t)(s->c * s->c) * sizeof(real));
@@ -89,7 +82,7 @@ void pcr_textbook_run(struct reduction *s, int tag, struct work *w)
 {
     struct comm *comm = s->comm;
     const int P = comm_size(comm), k = comm_rank(comm), m = s->m;
-    struct row row = begin(s);
+    struct textbook_row row = begin(s);
     bool sound = true;
     work_report(comm, w);
     for (int d = 1, slot = 0; d < P; d *= 2, slot++) {
@@ -100,16 +93,16 @@ void pcr_textbook_run(struct reduction *s, int tag, struct work *w)
         if (k >= d) comm_send(comm, k - d, tag + slot, row.L, bytes);
         if (k >= d) {
             orders(s, k - d, d, &far_a, &unused);
-            struct row v = row_at(s->in_a, row.nl, far_a, s->c);
+            struct textbook_row v = textbook_row_at(s->in_a, row.nl, far_a, s->c);
             comm_recv(comm, k - d, tag + slot, s->in_a, row_size(&v, m) * (int64_t)sizeof(real));
-            sound = fold(&row, row.L, &v, v.U, v.L, far_a, L, m, w) && sound;
+            sound = textbook_row_fold(&row, row.L, &v, v.U, v.L, far_a, L, m, w) && sound;
             work_report(comm, w);
         }
         if (k + d < P) {
             orders(s, k + d, d, &unused, &far_b);
-            struct row v = row_at(s->in_b, row.nu, s->c, far_b);
+            struct textbook_row v = textbook_row_at(s->in_b, row.nu, s->c, far_b);
             comm_recv(comm, k + d, tag + slot, s->in_b, row_size(&v, m) * (int64_t)sizeof(real));
-            sound = fold(&row, row.U, &v, v.L, v.U, far_b, U, m, w) && sound;
+            sound = textbook_row_fold(&row, row.U, &v, v.L, v.U, far_b, U, m, w) && sound;
             work_report(comm, w);
         }
         row = next_row(s, &row, far_a, far_b, L, U);

@@ -18,6 +18,7 @@ void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_s
     s->method = method;
     s->hybrid_levels = spec->hybrid_levels;
     s->m = m;
+    s->largest = largest;
     s->c = size[rank];
     s->keep = keep;
     const bool textbook = method == SOLVER_PCR;

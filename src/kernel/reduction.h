@@ -24,6 +24,7 @@ struct reduction {
     int hybrid_levels;
     int m;                     /* right-hand sides */
     int c;                     /* order of the own row */
+    int largest;               /* largest order of any row */
     bool keep;                 /* store the factors of every step for further right-hand sides */
     real *D;                   /* (c x c, packed) */
     real *r;                   /* (c x m) right-hand side, then solution */
@@ -71,6 +72,22 @@ void pcr_textbook_run(struct reduction *s, int tag, struct work *w);
 void cr_run(struct reduction *s, int levels, int tag, struct work *w);
 #define cr_rerun REAL_NAME(cr_rerun)
 void cr_rerun(struct reduction *s, int levels, int tag, struct work *w);
+
+/* A row of the textbook's form in a message or a buffer: the numbers [L D U r]. */
+struct textbook_row {
+    int c, nl, nu;       /* orders of the row and of its neighbours; 0: none, its block then takes c x c numbers */
+    real *L, *D, *U, *r; /* full blocks */
+};
+
+/* textbook_row_at: the row that begins at `base`. */
+#define textbook_row_at REAL_NAME(textbook_row_at)
+struct textbook_row textbook_row_at(real *base, int c, int nl, int nu);
+
+/* textbook_row_fold: the row `v` behind the coupling K (c x v.c) of `row`: alpha = K D_v^-1, D -= alpha back,
+ * r -= alpha r_v, next (c x order) = -alpha onward. v's D is destroyed. Returns false when it has no inverse. */
+#define textbook_row_fold REAL_NAME(textbook_row_fold)
+bool textbook_row_fold(struct textbook_row *row, const real *K, struct textbook_row *v, const real *back,
+                       const real *onward, int order, real *next, int m, struct work *w);
 
 /* reduction_break: mark the row as broken and spread "not a number" through everything it sends. */
 #define reduction_break REAL_NAME(reduction_break)
