@@ -217,7 +217,7 @@ static bool write_script(struct figure *f, struct err *e)
     if (ok && out == NULL) ok = err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
     if (out != NULL) {
         bool written = fwrite(script.s, 1, script.length, out) == script.length;
-        if ((fclose(out) != 0 || !written) && ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
+        if (fclose(out) != 0 || !written) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
     }
     text_free(&script);
     text_free(&source);

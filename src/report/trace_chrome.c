@@ -59,9 +59,10 @@ static void put_names(const struct timeline *t, FILE *out)
     for (int64_t i = 0; i < t->nspan; i++) {
         int rank = t->span[i]->rank;
         if (i > 0 && t->span[i - 1]->rank == rank) continue;
-        fprintf(out, ",\n{\"ph\":\"M\",\"pid\":0,\"tid\":%d,\"name\":\"thread_name\",\"args\":{\"name\":\"rank %d\"}}", rank, rank);
-        fprintf(out, ",\n{\"ph\":\"M\",\"pid\":0,\"tid\":%d,\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":%d}}", rank,
-                rank);
+        put_head(out, "M", rank, "thread_name");
+        fprintf(out, ",\"args\":{\"name\":\"rank %d\"}}", rank);
+        put_head(out, "M", rank, "thread_sort_index");
+        fprintf(out, ",\"args\":{\"sort_index\":%d}}", rank);
     }
 }
 

@@ -68,7 +68,8 @@ static int64_t gather(const struct timeline *t, const int64_t *partner, struct e
     int64_t n = 0;
     for (int64_t i = 0; i < t->nspan; i++) {
         const struct span *p = t->span[i];
-        bool first = i == 0 || t->span[i - 1]->rank != p->rank, last = i + 1 == t->nspan || t->span[i + 1]->rank != p->rank;
+        bool first = i == 0 || t->span[i - 1]->rank != p->rank;
+        bool last = i + 1 == t->nspan || t->span[i + 1]->rank != p->rank;
         if (first || t->span[i - 1]->stage != p->stage) event[n++] = (struct event){p->begin_ps, STAGE_BEGINS, i};
         event[n++] = (struct event){p->begin_ps, SPAN_BEGINS, i};
         if (partner[i] >= 0 && p->kind == SPAN_SEND) event[n++] = (struct event){p->end_ps, MESSAGE_LEAVES, i};

@@ -58,8 +58,8 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
     *r = (struct run_result){0};
     struct reading g = {.a = a, .r = r};
     snprintf(id, sizeof id, "%lld", (long long)run_id);
-    if (!store_query(s, "SELECT P, makespan_ps, (SELECT count(*) FROM span WHERE run_id = run.id) FROM run WHERE id = ?1",
-                     1, param, NULL, read_run, &g, e))
+    if (!store_query(s, "SELECT P, makespan_ps, (SELECT count(*) FROM span WHERE run_id = run.id) FROM run "
+                        "WHERE id = ?1", 1, param, NULL, read_run, &g, e))
         return false;
     if (!g.found) return err_set(e, ERR_NO_INPUT, "there is no run %s in %s", id, store_path(s));
     if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL, read_stage, &g, e) ||

@@ -200,7 +200,8 @@ static void several_tables_become_several_files(void **state)
 static void cells_are_quoted_where_rfc_4180_says_so(void **state)
 {
     struct fixture *f = *state;
-    write_file(f, "plots/curve.sql", "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, 1e300*10 AS big, "
+    write_file(f, "plots/curve.sql", "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, "
+                                     "1e300*10 AS big, "
                                      "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
     setenv("MIMDSIM_GNUPLOT", "true", 1);
     assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));

@@ -69,10 +69,13 @@ static int64_t ask(struct fixture *f, const char *sql)
     sqlite3 *db;
     sqlite3_stmt *q;
     assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, "CREATE TABLE event AS SELECT value ->> 'ph' AS ph, value ->> 'tid' AS tid, "
-                                            "value ->> 'name' AS name, value ->> 'cat' AS cat, value ->> 'ts' AS ts, "
-                                            "value ->> 'dur' AS dur, value ->> 'id' AS id "
-                                            "FROM json_each(json_extract(?1, '$.traceEvents'))", -1, &q, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db,
+                                        "CREATE TABLE event AS SELECT value ->> 'ph' AS ph, value ->> 'tid' AS tid, "
+                                        "value ->> 'name' AS name, value ->> 'cat' AS cat, value ->> 'ts' AS ts, "
+                                        "value ->> 'dur' AS dur, value ->> 'id' AS id "
+                                        "FROM json_each(json_extract(?1, '$.traceEvents'))",
+                                        -1, &q, NULL),
+                     SQLITE_OK);
     sqlite3_bind_text(q, 1, f->text, -1, SQLITE_STATIC);
     assert_int_equal(sqlite3_step(q), SQLITE_DONE);
     sqlite3_finalize(q);
@@ -93,10 +96,12 @@ static void chrome_slices_nest_and_carry_their_times(void **state)
     /* every slice lies within one of its stage, none overlaps its neighbour */
     assert_int_equal(ask(f, "SELECT count(*) FROM event x WHERE ph = 'X' AND cat <> 'stage' AND 1 <> (SELECT count(*) "
                             "FROM event y WHERE y.cat = 'stage' AND y.tid = x.tid AND y.ts <= x.ts + 1e-9 AND "
-                            "x.ts + x.dur <= y.ts + y.dur + 1e-6 AND y.ts + y.dur > x.ts + 1e-9)"), 0);
+                            "x.ts + x.dur <= y.ts + y.dur + 1e-6 AND y.ts + y.dur > x.ts + 1e-9)"),
+                     0);
     assert_int_equal(ask(f, "SELECT count(*) FROM event x JOIN event y ON x.tid = y.tid AND x.cat <> 'stage' AND "
                             "y.cat <> 'stage' AND x.ph = 'X' AND y.ph = 'X' AND x.ts < y.ts AND "
-                            "x.ts + x.dur > y.ts + 1e-6"), 0);
+                            "x.ts + x.dur > y.ts + 1e-6"),
+                     0);
     assert_int_equal(ask(f, "SELECT round(1e6 * max(ts + dur)) FROM event WHERE ph = 'X'"), f->r.makespan_ps / 7 * 7);
 }
 
@@ -105,11 +110,13 @@ static void chrome_flows_are_matched_and_bound_to_slices(void **state)
     struct fixture *f = *state;
     trace(f, TRACE_CHROME);
     assert_int_equal(ask(f, "SELECT count(*) FROM event s JOIN event r ON s.ph = 's' AND r.ph = 'f' AND s.id = r.id "
-                            "AND s.tid <> r.tid AND s.ts <= r.ts"), NRANK * 7);
+                            "AND s.tid <> r.tid AND s.ts <= r.ts"),
+                     NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph IN ('s', 'f')"), 2 * NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(DISTINCT id) FROM event WHERE ph = 's'"), NRANK * 7);
     assert_int_equal(ask(f, "SELECT count(*) FROM event s WHERE s.ph = 's' AND NOT EXISTS (SELECT 1 FROM event x WHERE "
-                            "x.ph = 'X' AND x.name = 'send' AND x.tid = s.tid AND x.ts = s.ts)"), 0);
+                            "x.ph = 'X' AND x.name = 'send' AND x.tid = s.tid AND x.ts = s.ts)"),
+                     0);
     assert_int_equal(ask(f, "SELECT count(*) FROM event WHERE ph = 'M' AND name = 'thread_name'"), NRANK);
 }
 
@@ -153,10 +160,11 @@ static void paje_is_in_order_of_time_and_pj_dump_reads_it(void **state)
     FILE *out = fopen(scratch_path(path, sizeof path, f->folder, "t.paje"), "w");
     assert_true(trace_write(&f->r, TRACE_PAJE, &f->o, out, &f->left_out, &f->e));
     fclose(out);
-    snprintf(command, sizeof command, "pj_dump %s >%s/dump 2>%s/errors && [ ! -s %s/errors ]", path, f->folder, f->folder,
-             f->folder);
+    snprintf(command, sizeof command, "pj_dump %s >%s/dump 2>%s/errors && [ ! -s %s/errors ]", path, f->folder,
+             f->folder, f->folder);
     assert_int_equal(system(command), 0);
-    snprintf(command, sizeof command, "[ $(grep -c '^Link' %s/dump) = %d ] && [ $(grep -c '^State.*activity' %s/dump) = %d ]"
+    snprintf(command, sizeof command,
+             "[ $(grep -c '^Link' %s/dump) = %d ] && [ $(grep -c '^State.*activity' %s/dump) = %d ]"
              " && [ $(grep -c '^State.*stage' %s/dump) = %d ] && [ $(grep -c '^Container' %s/dump) = %d ]",
              f->folder, NRANK * 7, f->folder, NSPAN + NRANK, f->folder, NRANK * 7, f->folder, NRANK + 2);
     if (system(command) != 0) {

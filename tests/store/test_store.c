@@ -90,15 +90,18 @@ static void a_run_comes_back_as_it_was_put(void **state)
     assert_string_equal(cell(f, "SELECT status || '|' || text FROM run"), "invalid|tau is wrong: 'x' \"y\" \xc3\xa9");
     assert_string_equal(cell(f, "SELECT digest FROM run"), "fedcba9876543210");
     assert_string_equal(cell(f, "SELECT left_out FROM run"), "base terms: the base is fixed");
-    assert_string_equal(cell(f, "SELECT machine||level||topology||kernel||formulation||solver||operators||precision"
-                                "||model||base||joint||n||'/'||P||'/'||rep FROM run"),
-                        "t3e-300linkcrossbardynamicspaperpcr-symmetricstructureddoubleserial-chainfixedrevolute128/128/3");
+    assert_string_equal(
+        cell(f, "SELECT machine||level||topology||kernel||formulation||solver||operators||precision"
+                "||model||base||joint||n||'/'||P||'/'||rep FROM run"),
+        "t3e-300linkcrossbardynamicspaperpcr-symmetricstructureddoubleserial-chainfixedrevolute128/128/3");
     assert_int_equal(number(f, "SELECT makespan_ps FROM run"), r.makespan_ps);
     assert_int_equal(number(f, "SELECT count(*) FROM rank_stage"), 128 * 7);
     assert_int_equal(number(f, "SELECT count(*) FROM stage"), 7);
-    assert_int_equal(number(f, "SELECT recv_ps FROM rank_stage WHERE rank = 5 AND stage = 2"), r.stage[5 * 7 + 2].recv_ps);
+    assert_int_equal(number(f, "SELECT recv_ps FROM rank_stage WHERE rank = 5 AND stage = 2"),
+                     r.stage[5 * 7 + 2].recv_ps);
     assert_string_equal(cell(f, "SELECT name FROM stage WHERE stage = 6"), "CFA[3]");
-    assert_string_equal(cell(f, "SELECT quantity || reference || passed FROM error_check WHERE ordinal = 1"), "qddaba1");
+    assert_string_equal(cell(f, "SELECT quantity || reference || passed FROM error_check WHERE ordinal = 1"),
+                        "qddaba1");
     assert_string_equal(cell(f, "SELECT created_utc LIKE '20__-__-__T__:__:__Z' FROM run"), "1");
 }
 
@@ -290,7 +293,8 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
     assert_string_equal(cell(f, "SELECT to_router IS NULL AND node = 50 FROM link_load WHERE link = 50"), "1");
     assert_int_equal(number(f, "SELECT count(*) FROM span"), r.nspan);
     assert_int_equal(number(f, "SELECT count(*) FROM span a JOIN span b USING (run_id, message) WHERE a.kind = 'send' "
-                               "AND b.kind = 'recv' AND a.peer = b.rank AND b.peer = a.rank"), 4 * 7);
+                               "AND b.kind = 'recv' AND a.peer = b.rank AND b.peer = a.rank"),
+                     4 * 7);
     r.nspan = 20001;
     put(f, &spec, &r);
     assert_int_equal(number(f, "SELECT count(*) FROM span"), 0);
@@ -299,8 +303,8 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
 static void every_view_answers_on_an_empty_database(void **state)
 {
     struct fixture *f = *state;
-    static const char *const view[] = {"v_speedup", "v_stage",  "v_accounting", "v_errors",     "v_indicator",
-                                       "v_setting", "v_itervar", "v_claims",    "v_provenance"};
+    static const char *const view[] = {"v_speedup", "v_stage",   "v_accounting", "v_errors",    "v_indicator",
+                                       "v_setting", "v_itervar", "v_claims",     "v_provenance"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);
@@ -309,20 +313,22 @@ static void every_view_answers_on_an_empty_database(void **state)
     assert_int_equal(number(f, "SELECT count(*) FROM sqlite_schema WHERE type = 'view'"),
                      (double)(sizeof view / sizeof *view));
     assert_int_equal(number(f, "SELECT count(*) FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND "
-                               "strict = 0 AND name NOT LIKE 'sqlite_%'"), 0);
+                               "strict = 0 AND name NOT LIKE 'sqlite_%'"),
+                     0);
 }
 
 static void generic_rows_replace_their_like_and_obey_the_schema(void **state)
 {
     struct fixture *f = *state;
-    static const char *const name[] = {"suite", "subject", "quantity", "at", "unit", "reference", "value",
-                                       "relative_error", "class", "verdict", "source"};
-    struct store_value v[] = {store_text("closed"), store_text("ring"), store_text("time"), store_text("P=8"),
-                              store_text("s"), store_real(1.5), store_real(NAN), store_real(0.25), store_text("exact"),
-                              store_text("pass"), store_text("by hand")};
+    static const char *const name[] = {"suite", "subject",        "quantity", "at",      "unit",  "reference",
+                                       "value", "relative_error", "class",    "verdict", "source"};
+    struct store_value v[] = {store_text("closed"), store_text("ring"), store_text("time"),   store_text("P=8"),
+                              store_text("s"),      store_real(1.5),    store_real(NAN),      store_real(0.25),
+                              store_text("exact"),  store_text("pass"), store_text("by hand")};
     for (int i = 0; i < 2; i++) assert_true(store_insert(f->s, "check_point", 11, name, v, &f->e));
-    assert_string_equal(cell(f, "SELECT count(*) || ifnull(max(value), ' null') || max(relative_error) FROM check_point"),
-                        "1 null0.25");
+    assert_string_equal(
+        cell(f, "SELECT count(*) || ifnull(max(value), ' null') || max(relative_error) FROM check_point"),
+        "1 null0.25");
     v[9] = store_text("perhaps");
     assert_false(store_insert(f->s, "check_point", 11, name, v, &f->e));
     assert_int_equal(f->e.kind, ERR_DATA);
@@ -357,8 +363,11 @@ static void a_run_that_fails_half_way_leaves_no_row(void **state)
     put(f, &next, &r);
     sqlite3 *db;
     assert_int_equal(sqlite3_open(f->path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "CREATE TRIGGER stop BEFORE INSERT ON error_check WHEN NEW.ordinal = 1 "
-                                      "BEGIN SELECT RAISE(ABORT, 'planted'); END", NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db,
+                                  "CREATE TRIGGER stop BEFORE INSERT ON error_check WHEN NEW.ordinal = 1 "
+                                  "BEGIN SELECT RAISE(ABORT, 'planted'); END",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
     assert_false(store_put(f->s, &spec, &r, NULL, &f->e));
     assert_non_null(strstr(f->e.text, "planted"));
     assert_int_equal(number(f, "SELECT count(*) FROM run"), 1);
@@ -396,8 +405,8 @@ static void queries_keep_the_kinds_of_values_and_bind_parameters(void **state)
     struct fixture *f = *state;
     int seen[5] = {0};
     const char *param[] = {"x'; DROP TABLE run; --"};
-    assert_true(store_query(f->s, "SELECT 1 AS a, 2.5 AS b, NULL AS c, ?1 AS d UNION ALL SELECT 2, 1.0, 3, 'y'", 1, param,
-                            count_kinds, count_kinds, seen, &f->e));
+    assert_true(store_query(f->s, "SELECT 1 AS a, 2.5 AS b, NULL AS c, ?1 AS d UNION ALL SELECT 2, 1.0, 3, 'y'", 1,
+                            param, count_kinds, count_kinds, seen, &f->e));
     assert_int_equal(seen[STORE_INT], 3);
     assert_int_equal(seen[STORE_REAL], 2);
     assert_int_equal(seen[STORE_NULL], 1);

@@ -118,7 +118,8 @@ static void a_missing_folder_cannot_be_written_to(void **state)
 {
     struct fixture *f = *state;
     char path[256];
-    expect(f, scratch_path(path, sizeof path, f->folder, "none/t.db"), STORE_WRITE, ERR_CREATE, "No such file or directory");
+    expect(f, scratch_path(path, sizeof path, f->folder, "none/t.db"), STORE_WRITE, ERR_CREATE,
+           "No such file or directory");
     write_file(f->path, "");
     expect(f, scratch_path(path, sizeof path, f->folder, "t.db/t.db"), STORE_WRITE, ERR_CREATE, "Not a directory");
 }
@@ -210,7 +211,7 @@ static int without_root(void (*body)(struct fixture *), struct fixture *f)
 #define REQUIRE(cond)                                                                                                  \
     do {                                                                                                               \
         if (!(cond)) {                                                                                                 \
-            fprintf(stderr, "line %d: %s: %s\n", __LINE__, #cond, f->e.text);                                           \
+            fprintf(stderr, "line %d: %s: %s\n", __LINE__, #cond, f->e.text);                                          \
             _exit(1);                                                                                                  \
         }                                                                                                              \
     } while (0)

@@ -11,7 +11,7 @@
 void scratch_make(char *folder, size_t size)
 {
     const char *tmp = getenv("TMPDIR");
-    snprintf(folder, size, "%s/mimdsim-test-XXXXXX", tmp && *tmp ? tmp : "/tmp");
+    snprintf(folder, size, "%s/mimdsim-test-XXXXXX", tmp && *tmp ? tmp : P_tmpdir);
     CHECK(mkdtemp(folder) != NULL);
 }
 
