@@ -1,10 +1,16 @@
 #!/bin/bash
 # lengths.sh - functions fit on a screen: over 60 lines only under a comment "long: why"; in src half of them within 15
 # lines and nine of ten within 40. Files within 500 lines, headers 150, lines 120 columns without tabs.
+# `tests/house/lengths.sh --wrap` lets clang-format break the lines that are too long, and touches no others.
 . "$(dirname "$0")/house.bash"
 mapfile -t files < <(sources '*.[ch]' src tests; [ -z "$(find "$HOUSE/bench" -name '*.c' 2>/dev/null)" ] || sources '*.c' bench)
 [ "${#files[@]}" -gt 0 ]
 cd "$HOUSE"
+if [ "${1-}" = --wrap ]; then # from the last line of a file to its first, so that the numbers stay true
+    bash "$HERE/lengths.sh" | awk -F: '/columns$/ { print $1, $2 }' | sort -k1,1 -k2,2nr |
+        while read -r file line; do clang-format -i --style=file --lines="$line:$line" "$file"; done
+    exit
+fi
 awk '
 function ended(length_) {
     if (FILENAME ~ /^src\//) { count[length_]++; total++ }
