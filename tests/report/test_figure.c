@@ -272,16 +272,87 @@ static void figures_are_listed_in_order(void **state)
     free(name);
 }
 
+/* Runs of the four machines with several bodies a processor, one of them with its timeline. */
+static void put_machines(struct fixture *f)
+{
+    static const char *const machine[] = {"t3e-300", "paragon", "origin2000", "quad-ppro"};
+    struct arena *a = arena_create();
+    for (int m = 0; m < 4; m++)
+        for (int p = 1; p <= 16; p *= 2)
+            for (int ratio = 1; ratio <= 4; ratio *= 2) {
+                struct run_spec spec = made_spec(a, machine[m], p * ratio, p, 0);
+                struct run_result r = made_result(a, &spec);
+                strcpy(r.baseline[0].name, "fastest serial");
+                strcpy(r.baseline[3].name, "parallel code on one processor");
+                if (p == 4 && ratio == 1) made_spans(&r, a);
+                assert_true(store_put(f->s, &spec, &r, NULL, &f->e));
+            }
+    arena_destroy(a);
+}
+
+/* Two rows each for the figures that are not about runs. */
+static void put_tables(struct fixture *f)
+{
+    static const char *const ladder[] = {"scenario", "ladder", "at", "method", "rung", "ordinal", "quantity",
+                                         "reference", "relative_error", "host_s", "machine_ps", "status"};
+    static const char *const case_[] = {"suite", "subject", "algorithm", "precision", "ordinal", "status",
+                                        "relative_error", "reason"};
+    static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
+    for (int i = 0; i < 2; i++) {
+        const struct store_value rung[] = {
+            store_text("made"), store_text("network"), store_text("P=4"), store_text(i ? "link" : "loggp"),
+            store_text("x"), store_int(i), store_text("makespan"), store_text("flit"),
+            i ? store_real(0.01) : store_null(), store_real(0.1 + i), store_int(1000), store_text(i ? "ok" : "failed")};
+        const struct store_value row[] = {
+            store_text("made"), store_text("heavy tip"), store_text(i ? "aba" : "cfa"), store_text("double"),
+            store_int(i), store_text(i ? "ok" : "failed"), i ? store_real(0) : store_null(), store_text("")};
+        const struct store_value held[] = {store_text(i ? "C1" : "C10"), store_text(""), store_text("it rises, sharply"),
+                                           store_text("S(24) > S(16)"), store_text(""),
+                                           i ? store_real(0.5) : store_null(), store_text(i ? "pass" : "fail")};
+        assert_true(store_insert(f->s, "ladder", 12, ladder, rung, &f->e));
+        assert_true(store_insert(f->s, "stability", 8, case_, row, &f->e));
+        assert_true(store_insert(f->s, "claim", 7, claim, held, &f->e));
+    }
+}
+
 /* The figures that the program ships, drawn from made data: gnuplot has nothing to complain about. */
-static void the_paper_figures_can_be_drawn(void **state)
+static void every_shipped_figure_can_be_drawn(void **state)
 {
     struct fixture *f = *state;
-    draw(f, MIMDSIM_SRCDIR, "fig6");
-    draw(f, MIMDSIM_SRCDIR, "fig5");
+    char **name;
+    put_machines(f);
+    put_tables(f);
+    int n = report_figures(MIMDSIM_SRCDIR, &name);
+    assert_true(n >= 9);
+    for (int i = 0; i < n; i++) {
+        char svg[80];
+        snprintf(svg, sizeof svg, "%s.svg", name[i]);
+        draw(f, MIMDSIM_SRCDIR, name[i]);
+        struct text drawn = read_out(f, svg);
+        assert_non_null(strstr(drawn.s, "</svg>"));
+        text_free(&drawn);
+        free(name[i]);
+    }
+    free(name);
     struct text csv = read_out(f, "fig6.csv");
     assert_non_null(strstr(csv.s, "series,baseline,P,makespan_ps,baseline_ps,speedup,parallel_fraction"));
     text_free(&csv);
-    assert_true(exists(f, "fig6.png") && exists(f, "fig5.svg"));
+}
+
+static void every_shipped_figure_says_what_to_run_first(void **state)
+{
+    struct fixture *f = *state;
+    char path[256], **name;
+    struct store *empty = store_open(scratch_path(path, sizeof path, f->folder, "empty.db"), STORE_WRITE, &f->e);
+    int n = report_figures(MIMDSIM_SRCDIR, &name);
+    for (int i = 0; i < n; i++) {
+        assert_false(report_figure(empty, MIMDSIM_SRCDIR, name[i], f->out, &f->e));
+        if (f->e.kind != ERR_NO_INPUT || strstr(f->e.text, "first: mimdsim ") == NULL) fail_msg("%s", f->e.text);
+        err_clear(&f->e);
+        free(name[i]);
+    }
+    free(name);
+    store_close(empty);
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, make_fixture, drop_fixture)
@@ -302,7 +373,8 @@ int main(void)
         TEST(wrong_sql_names_the_figure),
         TEST(a_folder_that_cannot_be_made_is_said),
         TEST(figures_are_listed_in_order),
-        TEST(the_paper_figures_can_be_drawn),
+        TEST(every_shipped_figure_can_be_drawn),
+        TEST(every_shipped_figure_says_what_to_run_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
