@@ -119,8 +119,14 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
         for (int j = 0; j < s->c; j++) z[k] += b->wh[s->d * j + k] * w[j];
     }
     if (s->d > 0) dense_solve(s->d, 1, b->g, z, &uncounted);
-    for (int k = 0; k < s->d; k++) ud[k] = (b->e[k] - z[k]) - h[k];
-    subspace_h(s, ud, a);
+    /* the acceleration along H comes from the forces alone: no digit is lost to what moves along */
+    for (int k = 0; k < s->d; k++) {
+        z[k] = b->e[k] - z[k];
+        ud[k] = z[k] - h[k];
+    }
+    six_zero(a);
+    subspace_w(s, w, a);
+    subspace_h(s, z, a);
 }
 
 /* The three sweeps at d's poses and, if moving, velocities. */

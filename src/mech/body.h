@@ -117,8 +117,8 @@ void body_load(const struct body *b, const double *fext, real *f);
 #define body_spring REAL_NAME(body_spring)
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);
 
-/* body_step: coordinates after the time h at constant u: q (nq) moves along the group by u h exactly where the joint
- * allows it (quaternions by the exponential map), keeping quaternions normalised. */
+/* body_step: coordinates after the time h at constant u, in place: rotations by the exponential map, displacements in
+ * moving axes along those of mid-step. Symmetric in time, exact for one-degree joints; quaternions stay normalised. */
 #define body_step REAL_NAME(body_step)
 void body_step(const struct body *b, real *q, const real *u, real h);
 

@@ -288,7 +288,7 @@ static void step_quaternion(real *c, const real *w, real h)
 
 void body_step(const struct body *b, real *q, const real *u, real h)
 {
-    real rate[7];
+    real rate[7], half = h / 2;
     switch (b->joint) {
     case JOINT_SPHERICAL: step_quaternion(q, u, h); return;
     case JOINT_SLOT:
@@ -297,9 +297,17 @@ void body_step(const struct body *b, real *q, const real *u, real h)
         for (int i = 3; i < b->d; i++) q[1 + i] += h * u[i];
         return;
     case JOINT_FLOATING:
+        /* displacement along the axes of mid-step, so that the step is symmetric in time */
+        step_quaternion(q + 3, u + 3, half);
         body_qdot(b, q, u, rate);
         for (int i = 0; i < 3; i++) q[i] += h * rate[i];
-        step_quaternion(q + 3, u + 3, h);
+        step_quaternion(q + 3, u + 3, half);
+        return;
+    case JOINT_PLANAR:
+        q[0] += half * u[0];
+        body_qdot(b, q, u, rate);
+        for (int i = 1; i < 3; i++) q[i] += h * rate[i];
+        q[0] += half * u[0];
         return;
     default:
         body_qdot(b, q, u, rate);
