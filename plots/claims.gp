@@ -7,10 +7,10 @@ claims = int(STATS_max)
 array claim[claims]; array variant[columns]
 pass = 0; open = 0; fail = 0
 stats data using (claim[int(column("y"))] = strcol("id").": ".strcol("statement"), \
-    variant[int(column("x"))] = strcol("variant"), g = column("grade"), pass = pass + (g == 0), open = open + (g == 1), \
-    fail = fail + (g == 2), 0) nooutput
-# at most 56 letters of a statement
-cut(s) = strlen(s) > 56 ? s[1:55]."…" : s
+    variant[int(column("x"))] = strcol("variant"), g = column("grade"), v = strcol("variant") eq "verdict", pass = pass + (v && g == 0), open = open + (v && g == 1), \
+    fail = fail + (v && g == 2), 0) nooutput
+# at most 64 letters of a statement
+cut(s) = strlen(s) > 64 ? s[1:63]."…" : s
 headline = "The claims of the paper"
 subline = sprintf("%d pass, %d not testable, %d fail; percentages: share of parameter samples in which a claim holds", pass, open, fail)
 is(grade, v) = column("grade") == grade ? v : NaN

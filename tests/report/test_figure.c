@@ -184,8 +184,10 @@ static void several_tables_become_several_files(void **state)
 {
     struct fixture *f = *state;
     struct text sql = {0};
-    text_add(&sql, "-- needs: x\n%s-- table: stages\nSELECT name FROM v_stage WHERE P = 2 ORDER BY run_id, stage;\n"
-                   "-- table: none\nSELECT 1 AS x WHERE 0;\n", points);
+    text_add(&sql,
+             "-- needs: x\n%s-- table: stages\nSELECT name FROM v_stage WHERE P = 2 ORDER BY run_id, stage;\n"
+             "-- table: none\nSELECT 1 AS x WHERE 0;\n",
+             points);
     write_file(f, "plots/curve.sql", sql.s);
     text_free(&sql);
     setenv("MIMDSIM_GNUPLOT", "true", 1);
@@ -200,9 +202,10 @@ static void several_tables_become_several_files(void **state)
 static void cells_are_quoted_where_rfc_4180_says_so(void **state)
 {
     struct fixture *f = *state;
-    write_file(f, "plots/curve.sql", "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, "
-                                     "1e300*10 AS big, "
-                                     "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
+    write_file(f, "plots/curve.sql",
+               "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, "
+               "1e300*10 AS big, "
+               "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
     setenv("MIMDSIM_GNUPLOT", "true", 1);
     assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
     struct text csv = read_out(f, "curve.csv");
@@ -293,22 +296,32 @@ static void put_machines(struct fixture *f)
 /* Two rows each for the figures that are not about runs. */
 static void put_tables(struct fixture *f)
 {
-    static const char *const ladder[] = {"scenario", "ladder", "at", "method", "rung", "ordinal", "quantity",
-                                         "reference", "relative_error", "host_s", "machine_ps", "status"};
-    static const char *const case_[] = {"suite", "subject", "algorithm", "precision", "ordinal", "status",
-                                        "relative_error", "reason"};
+    static const char *const ladder[] = {"scenario",       "ladder",  "at",         "method",
+                                         "rung",           "ordinal", "quantity",   "reference",
+                                         "relative_error", "host_s",  "machine_ps", "status"};
+    static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
+                                        "ordinal", "status",  "relative_error", "reason"};
     static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
     for (int i = 0; i < 2; i++) {
-        const struct store_value rung[] = {
-            store_text("made"), store_text("network"), store_text("P=4"), store_text(i ? "link" : "loggp"),
-            store_text("x"), store_int(i), store_text("makespan"), store_text("flit"),
-            i ? store_real(0.01) : store_null(), store_real(0.1 + i), store_int(1000), store_text(i ? "ok" : "failed")};
+        const struct store_value rung[] = {store_text("made"),
+                                           store_text("network"),
+                                           store_text("P=4"),
+                                           store_text(i ? "link" : "loggp"),
+                                           store_text("x"),
+                                           store_int(i),
+                                           store_text("makespan"),
+                                           store_text("flit"),
+                                           i ? store_real(0.01) : store_null(),
+                                           store_real(0.1 + i),
+                                           store_int(1000),
+                                           store_text(i ? "ok" : "failed")};
         const struct store_value row[] = {
-            store_text("made"), store_text("heavy tip"), store_text(i ? "aba" : "cfa"), store_text("double"),
-            store_int(i), store_text(i ? "ok" : "failed"), i ? store_real(0) : store_null(), store_text("")};
-        const struct store_value held[] = {store_text(i ? "C1" : "C10"), store_text(""), store_text("it rises, sharply"),
-                                           store_text("S(24) > S(16)"), store_text(""),
-                                           i ? store_real(0.5) : store_null(), store_text(i ? "pass" : "fail")};
+            store_text("made"), store_text("heavy tip"),         store_text(i ? "aba" : "cfa"),    store_text("double"),
+            store_int(i),       store_text(i ? "ok" : "failed"), i ? store_real(0) : store_null(), store_text("")};
+        const struct store_value held[] = {
+            store_text(i ? "C1" : "C10"),   store_text(""), store_text("it rises, sharply"),
+            store_text("S(24) > S(16)"),    store_text(""), i ? store_real(0.5) : store_null(),
+            store_text(i ? "pass" : "fail")};
         assert_true(store_insert(f->s, "ladder", 12, ladder, rung, &f->e));
         assert_true(store_insert(f->s, "stability", 8, case_, row, &f->e));
         assert_true(store_insert(f->s, "claim", 7, claim, held, &f->e));
