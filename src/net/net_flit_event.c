@@ -299,23 +299,35 @@ static int source_channel(struct flits *g, int node)
     return -1;
 }
 
-/* the next packet of a node begins when the one before has gone; returns when to look again */
-static sim_ps source_next(struct flits *g, int node, sim_ps now)
+static bool source_busy(const struct flits *g, int node)
 {
-    struct fabric *f = &g->fabric;
-    struct source *z = &f->source[node];
+    const struct vc *v = g->crossing[node].vc;
+    for (int i = 0; v && i < g->fabric.nchannel; i++)
+        if (v[i].owner) return true;
+    return false;
+}
+
+/* the next packet of a node begins when the one before has gone */
+static void source_next(struct flits *g, int node, sim_ps now)
+{
+    struct source *z = &g->fabric.source[node];
     struct flight *m = z->front;
-    for (int i = 0; g->crossing[node].vc && i < f->nchannel; i++)
-        if (g->crossing[node].vc[i].owner) return SIM_NEVER;
-    if (!m) return SIM_NEVER;
-    if (m->m->ready > now) return m->m->ready;
+    if (!m || m->m->ready > now || source_busy(g, node)) return;
     int channel = source_channel(g, node);
-    if (channel < 0) return SIM_NEVER;
+    if (channel < 0) return; /* a credit will wake us */
     struct worm *w = worm_take(g, m);
-    w->leg[0].ask = m->injected == 0 ? m->m->ready : f->resource[node].free;
+    w->leg[0].ask = m->injected == 0 ? m->m->ready : g->fabric.resource[node].free;
     if (++m->injected == m->npacket && !(z->front = m->next)) z->back = NULL;
     own(g, &w->leg[0], channel);
-    return SIM_NEVER;
+}
+
+/* when to look again for the next packet of a node */
+static sim_ps source_again(const struct flits *g, int node, sim_ps now)
+{
+    const struct flight *m = g->fabric.source[node].front;
+    if (!m || source_busy(g, node)) return SIM_NEVER;
+    sim_ps at = later(m->m->ready, g->fabric.resource[node].free);
+    return at > now ? at : SIM_NEVER;
 }
 
 /* ---- events ---- */
@@ -333,10 +345,14 @@ static void flits_look(void *subject, uint64_t argument, sim_ps now)
         return;
     }
     bool source = net_is_injection(f->net, r);
-    sim_ps again = source ? source_next(g, r, now) : channels_give(g, r, now);
+    sim_ps again = SIM_NEVER;
+    if (source)
+        source_next(g, r, now);
+    else
+        again = channels_give(g, r, now);
     if (g->crossing[r].vc) again = sooner(again, resource_send(g, r, now));
-    if (source && f->source[r].front) again = sooner(again, later(o->free, f->source[r].front->m->ready));
-    if (again != SIM_NEVER && (again > now || o->free > now)) packet_wake(f, r, later(again, o->free));
+    if (source) again = sooner(again, source_again(g, r, now));
+    if (again != SIM_NEVER) packet_wake(f, r, later(again, o->free));
 }
 
 /* ---- the way ---- */

@@ -1,0 +1,235 @@
+/* test_flit.c - wormhole switching: hand cases and every arrival of the reference router, deadlock, and the two ways
+ * (trains, single flits) against each other. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/random.h"
+#include "net/net_flit.h"
+#include "net/traffic.h"
+#include "run/netcheck.h"
+#include "run/netcheck_case.h"
+
+#define DATA MIMDSIM_SRCDIR "/tests/data/net/"
+
+static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
+{
+    struct err e;
+    bool level[NETCHECK_LEVELS] = {[LEVEL_FLIT] = true};
+    err_clear(&e);
+    if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
+    assert_true(n->nrow > 0);
+}
+
+static void hand_cases_are_exact(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct netcheck n;
+    int exact = 0, stuck = 0;
+    ask(&n, DATA "hand_cases.json", " wormhole B", a);
+    for (int i = 0; i < n.nrow; i++) {
+        const struct netcheck_row *row = &n.row[i];
+        const struct netcheck_answer *x = &row->answer[LEVEL_FLIT];
+        assert_true(x->ran);
+        assert_true(x->deadlock == row->expect_deadlock);
+        stuck += x->deadlock;
+        if (x->deadlock || row->name[0] == 'L') continue;
+        if (x->differing > 0) fail_msg("%s differs", row->name);
+        exact++;
+    }
+    assert_int_equal(exact, 36);
+    assert_int_equal(stuck, 1);
+    arena_destroy(a);
+}
+
+/* rows of files whose group says one virtual channel: no arrival may differ */
+static int exact_rows(const char *file, const char *filter, int64_t *messages)
+{
+    struct arena *a = arena_create();
+    struct netcheck n;
+    int count = 0;
+    ask(&n, file, filter, a);
+    for (int i = 0; i < n.nrow; i++) {
+        const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
+        if (!strstr(n.row[i].group, "vc=1")) continue;
+        assert_true(n.row[i].compared && x->ran);
+        if (x->differing > 0 || x->deadlock) fail_msg("%s: %d arrivals differ", n.row[i].name, x->differing);
+        *messages += n.row[i].nmessage;
+        count++;
+    }
+    arena_destroy(a);
+    return count;
+}
+
+static void one_channel_is_exact(void **state)
+{
+    (void)state;
+    int64_t messages = 0;
+    assert_int_equal(exact_rows(DATA "makespan.json", "mesh", &messages), 168);
+    assert_int_equal(exact_rows(DATA "makespan.json", "hcube", &messages), 264);
+    assert_int_equal(exact_rows(DATA "collectives.json", NULL, &messages), 22);
+    assert_int_equal(messages, 47232 + 19288);
+}
+
+/* the reference's allocators for several channels are its own: bounds, not equality */
+static void several_channels_are_close(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct netcheck n;
+    double sum = 0, worst = 0;
+    int count = 0;
+    ask(&n, DATA "makespan.json", "torus", a);
+    for (int i = 0; i < n.nrow; i++) {
+        const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
+        double error = x->error < 0 ? -x->error : x->error;
+        assert_true(x->ran && !x->deadlock);
+        sum += error;
+        worst = error > worst ? error : worst;
+        count++;
+    }
+    assert_true(count >= 220);
+    assert_true(sum / count < 0.01 && worst < 0.15);
+    ask(&n, DATA "makespan_sensitivity.json", NULL, a);
+    for (int i = 0; i < n.nrow; i++) {
+        const struct netcheck_answer *x = &n.row[i].answer[LEVEL_FLIT];
+        assert_true(x->found >= 0.98 * n.row[i].low && x->found <= 1.02 * n.row[i].high);
+    }
+    arena_destroy(a);
+}
+
+/* ---- lists made here ---- */
+
+enum { MOST = 600 };
+
+struct bench {
+    struct arena *arena;
+    struct topology_spec spec;
+    struct machine_spec machine;
+    struct topology *topology;
+    int count, delivered;
+    struct net_message message[MOST];
+};
+
+static void bench_open(struct bench *b, const char *topology, int vcs, int buffer)
+{
+    struct err e;
+    err_clear(&e);
+    b->arena = arena_create();
+    b->delivered = 0;
+    assert_true(netcheck_topology(topology, 0, &b->spec, &e));
+    b->machine = netcheck_machine(&b->spec, vcs, buffer, 0, 3);
+    b->machine.network.level = LEVEL_FLIT;
+    b->topology = topology_create(&b->machine.topology, b->arena, &e);
+    assert_non_null(b->topology);
+}
+
+static void ring_deadlock_names_the_cycle(void **state)
+{
+    (void)state;
+    int src[4] = {0, 1, 2, 3}, dst[4] = {2, 3, 0, 1};
+    int64_t bytes[4] = {288, 288, 288, 288};
+    sim_ps time[4] = {0};
+    struct traffic q = {.nmessage = 4, .src = src, .dst = dst, .bytes = bytes, .time = time};
+    for (int vcs = 1; vcs <= 2; vcs++) {
+        struct traffic_result r = {0};
+        struct bench b;
+        struct err e;
+        err_clear(&e);
+        bench_open(&b, "ring4", vcs, 5);
+        assert_true(traffic_run(&q, &b.machine, b.topology, b.arena, false, &r, &e));
+        assert_true(r.deadlock == (vcs == 1)); /* two channels are two dateline classes */
+        assert_int_equal(r.arrived, vcs == 1 ? 0 : 4);
+        for (int l = 0; l < 4 && r.deadlock; l++) {
+            char name[32];
+            snprintf(name, sizeof name, "router %d to %d", l, (l + 1) % 4);
+            if (!strstr(r.text, name)) fail_msg("'%s' does not name %s", r.text, name);
+        }
+        arena_destroy(b.arena);
+    }
+}
+
+static void message_delivered(void *context, struct net_message *m)
+{
+    struct bench *b = context;
+    assert_true(m->arrival > m->ready);
+    b->delivered++;
+}
+
+/* random messages on b's machine by one of the two ways; arrivals into out[b->count] */
+static void replay(struct bench *b, const struct flit_way *way, uint64_t seed, sim_ps *out)
+{
+    struct random r = random_make(seed, 7, 0);
+    struct sim *s = sim_create();
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    struct net *n = net_create(&b->machine, b->topology, s, a, message_delivered, b, false, &e);
+    if (!n) fail_msg("%s", e.text);
+    n->state = way->create(n, &e);
+    int flits = 1 + (int)random_below(&r, 40);
+    double span = b->count * flits * 500.0 / b->topology->nnode * (double)(1 + random_below(&r, 20));
+    sim_ps at = 0;
+    b->delivered = 0;
+    for (int i = 0; i < b->count; i++) {
+        at += (sim_ps)random_uniform(&r, 0, 2 * span / b->count);
+        b->message[i] = (struct net_message){.id = i, .ready = at};
+        b->message[i].src = (int)random_below(&r, (uint64_t)b->topology->nnode);
+        b->message[i].dst = (int)random_below(&r, (uint64_t)b->topology->nnode);
+        b->message[i].bytes = 1 + (int64_t)random_below(&r, (uint64_t)flits * 16);
+        net_send(n, &b->message[i]);
+    }
+    while (sim_step(s)) continue;
+    if (b->delivered != b->count) fail_msg("seed %d: %d messages lost", (int)seed, b->count - b->delivered);
+    for (int i = 0; i < b->count; i++) out[i] = b->message[i].arrival;
+    sim_destroy(s);
+    arena_destroy(a);
+}
+
+/* Trains work out piecewise linear times far ahead, events move single flits; they share no arithmetic. With one
+ * channel they must agree, whatever the rates, latencies, buffers and packets. */
+static void trains_equal_single_flits(void **state)
+{
+    (void)state;
+    static const char *const topologies[] = {"mesh4x4", "mesh1x8", "hcube4", "mesh2x3x4"};
+    static sim_ps train[MOST], flit[MOST];
+    for (uint64_t seed = 0; seed < 120; seed++) {
+        struct random r = random_make(seed, 8, 0);
+        struct bench b;
+        bench_open(&b, topologies[seed % 4], 1, 1 + (int)random_below(&r, 24));
+        struct network_spec *w = &b.machine.network;
+        b.count = 20 + (int)random_below(&r, MOST / 3);
+        if (random_below(&r, 2)) w->packet_bytes = 16 * (1 + (int64_t)random_below(&r, 30));
+        if (random_below(&r, 2)) w->hop_latency = 1e-10 * (double)(1 + random_below(&r, 60));
+        if (random_below(&r, 2)) w->credit_latency = 1e-10 * (double)random_below(&r, 60);
+        if (random_below(&r, 3) == 0) w->injection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
+        if (random_below(&r, 3) == 0) w->ejection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
+        if (random_below(&r, 3) == 0) b.machine.software.gap = 1e-9 * (double)random_below(&r, 50);
+        if (random_below(&r, 3) == 0) w->arbitration = ARBITRATION_FIRST_COME;
+        replay(&b, &flit_train, seed, train);
+        replay(&b, &flit_event, seed, flit);
+        for (int i = 0; i < b.count; i++)
+            if (train[i] != flit[i])
+                fail_msg("seed %d message %d: %lld by train, %lld by flits", (int)seed, i, (long long)train[i],
+                         (long long)flit[i]);
+        arena_destroy(b.arena);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hand_cases_are_exact),
+        cmocka_unit_test(one_channel_is_exact),
+        cmocka_unit_test(several_channels_are_close),
+        cmocka_unit_test(ring_deadlock_names_the_cycle),
+        cmocka_unit_test(trains_equal_single_flits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
