@@ -1,5 +1,6 @@
 /* crba.c - composite rigid bodies: the mass matrix, and forward dynamics through it, physics 2.3. */
 #include "mech/dynamics.h"
+#include "mech/revolute.h"
 #include "mech/work_count.h"
 
 /* Composite inertias (nbody), tip to base. */
@@ -45,6 +46,11 @@ static void fill_rows(const struct dynamics *d, int i, const struct inertia *com
 
 void crba(struct dynamics *d, const real *q, real *mass, struct work *w)
 {
+    work_count_crba(d, w);
+    if (d->revolute) {
+        crba_revolute(d, q, mass);
+        return;
+    }
     struct arena_mark mark = arena_mark(d->arena);
     struct inertia *c = TAKE(d->arena, d->nbody, struct inertia);
     dynamics_place(d, q);
@@ -52,7 +58,6 @@ void crba(struct dynamics *d, const real *q, real *mass, struct work *w)
     for (size_t k = 0; k < (size_t)d->nu * (size_t)d->nu; k++) mass[k] = 0;
     for (int i = 0; i < d->nbody; i++) fill_rows(d, i, &c[i], mass);
     arena_release(d->arena, mark);
-    work_count_crba(d, w);
 }
 
 /* Dense Cholesky, lower triangle in place; false when a pivot is not positive. */

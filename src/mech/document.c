@@ -219,8 +219,8 @@ bool document_integer(const struct node *map, const char *key, const char *path,
     double x;
     if (!document_number(map, key, path, &x, e)) return false;
     if (x < lo || x > hi || x != floor(x))
-        return err_set_at(e, ERR_DATA, path, document_find(map, key)->line, "'%s' must be an integer from %d to %d, not %g",
-                          key, lo, hi, x);
+        return err_set_at(e, ERR_DATA, path, document_find(map, key)->line,
+                          "'%s' must be an integer from %d to %d, not %g", key, lo, hi, x);
     *i = (int)x;
     return true;
 }

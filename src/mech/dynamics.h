@@ -3,7 +3,6 @@
  * A `struct dynamics` holds one model's constants and work arrays; functions take coordinates in model order (model.h).
  * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Each function
  * returns what it did as work, by formula from the number of bodies of each joint type.
- *
  * Sources: Featherstone, Rigid Body Dynamics Algorithms, chapters 5-7; the constraint force algorithm after Fijany,
  * Sharf and D'Eleuterio (1995). */
 #ifndef MECH_DYNAMICS_H

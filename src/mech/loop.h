@@ -2,7 +2,7 @@
  *
  * A loop joint acts in a loop frame. Its force F = W lambda acts on body b as T_b F and on body a as -T_a F; with A
  * classical, W^T (T_b^T A_b - T_a^T A_a + gamma) + 2 alpha W^T rho + beta^2 g = 0 (physics 7.2).
- * Loops given by rows use frame a's axes and each body's own point; loops given by a joint use frame b (physics 7.3). */
+ * Loops given by rows use frame a's axes and each body's own point; those by a joint use frame b (physics 7.3). */
 #ifndef MECH_LOOP_H
 #define MECH_LOOP_H
 

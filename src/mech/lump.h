@@ -25,8 +25,8 @@ struct lumped {
  *   J1 + J2 + m1 m2 / (m1 + m2) (d^2 U - d d^T), d between the centres. Returns false with *e set as model_finish. */
 bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, struct lumped *out, struct err *e);
 
-/* lump_state: the state of `lumped` that is state s of the old model: the same arrays, external wrenches gathered on the
- * new bodies (new array). */
+/* lump_state: the state of `lumped` that is state s of the old model: the same arrays, external wrenches gathered on
+ * the new bodies (new array). */
 struct state *lump_state(const struct lumped *lumped, const struct model *old, const struct state *s, struct arena *a);
 
 /* frame_compose: outer o inner. frame_apply: y = R x + p; frame_turn: y = R x. frame_normalise: quaternion to length 1;

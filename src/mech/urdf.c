@@ -1,4 +1,4 @@
-/* urdf.c - reading URDF with expat: elements into links and joints, then names into a tree.
+/* urdf.c - reading URDF with expat: elements into links and joints.
  *
  * A stack of open elements says where we are; only the dozen elements that matter for dynamics have a reader. A tag or
  * attribute that looks like a misspelling of one of them is an error, since skipping it would change the robot. */
@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "mech/urdf_tree.h"
 
 enum { MAX_DEPTH = 64, MAX_BYTES = 64 * 1024 * 1024 };
 
@@ -20,22 +21,12 @@ const char *urdf_kind_name(enum urdf_kind kind) { return kind_name[kind]; }
 
 enum where { IN_FILE, IN_ROBOT, IN_LINK, IN_INERTIAL, IN_JOINT, IN_LEAF, IN_SKIPPED };
 
-struct name_line {
-    const char *name;
-    int line;
-};
-
-/* A joint as read, before its names are looked up. */
-struct pending {
-    struct name_line parent, child;
-};
-
 struct reader {
     XML_Parser parser;
     struct arena *a;
     struct err *e;
     struct urdf_robot *robot;
-    struct pending *pending;          /* one per joint */
+    struct urdf_names *names;         /* one per joint */
     int link_capacity, joint_capacity, warning_capacity;
     enum where where[MAX_DEPTH];
     int depth;
@@ -110,7 +101,8 @@ static bool numbers_parse(struct reader *r, const char *tag, const char *name, c
 }
 
 /* Numbers of an attribute that may be left out; x then keeps its value. */
-static bool numbers_maybe(struct reader *r, const char *tag, const char **attributes, const char *name, double *x, int n)
+static bool numbers_maybe(struct reader *r, const char *tag, const char **attributes, const char *name, double *x,
+                          int n)
 {
     const char *s = attribute(attributes, name);
     return !s || numbers_parse(r, tag, name, s, x, n);
@@ -200,7 +192,8 @@ static bool kind_read(struct reader *r, const char *joint, const char *type, enu
     }
     const char *nearest = text_nearest(type, kind_name, URDF_KINDS);
     REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s%s%s", joint, type, nearest ? "; did you mean '" : "",
-           nearest ? nearest : "; known: fixed, revolute, continuous, prismatic, floating, planar", nearest ? "'?" : "");
+           nearest ? nearest : "; known: fixed, revolute, continuous, prismatic, floating, planar",
+           nearest ? "'?" : "");
     return false;
 }
 
@@ -212,11 +205,18 @@ static void joint_read(struct reader *r, const char **attributes)
     enum urdf_kind kind;
     if (!type || !kind_read(r, name, type, &kind)) return;
     int capacity = r->joint_capacity;
-    r->pending = grown(r->a, r->pending, robot->njoint, &capacity, sizeof *r->pending);
+    r->names = grown(r->a, r->names, robot->njoint, &capacity, sizeof *r->names);
     robot->joint = grown(r->a, robot->joint, robot->njoint, &r->joint_capacity, sizeof *robot->joint);
-    r->pending[robot->njoint] = (struct pending){{NULL, 0}, {NULL, 0}};
-    robot->joint[robot->njoint++] = (struct urdf_joint){.name = name, .line = line_now(r), .kind = kind, .axis = {1, 0, 0},
-        .quat = {0, 0, 0, 1}, .lower = -INFINITY, .upper = INFINITY, .effort = INFINITY, .velocity = INFINITY};
+    r->names[robot->njoint] = (struct urdf_names){{NULL, 0}, {NULL, 0}};
+    robot->joint[robot->njoint++] = (struct urdf_joint){.name = name,
+                                                        .line = line_now(r),
+                                                        .kind = kind,
+                                                        .axis = {1, 0, 0},
+                                                        .quat = {0, 0, 0, 1},
+                                                        .lower = -INFINITY,
+                                                        .upper = INFINITY,
+                                                        .effort = INFINITY,
+                                                        .velocity = INFINITY};
 }
 
 static void joint_origin_read(struct reader *r, const char **attributes)
@@ -224,20 +224,20 @@ static void joint_origin_read(struct reader *r, const char **attributes)
     origin_read(r, attributes, joint_now(r)->p, joint_now(r)->quat);
 }
 
-static void end_read(struct reader *r, const char **attributes, const char *tag, struct name_line *end)
+static void end_read(struct reader *r, const char **attributes, const char *tag, struct urdf_name *end)
 {
     if (end->name) REFUSE(r, "joint '%.100s' has a second <%s>", joint_now(r)->name, tag);
-    *end = (struct name_line){name_need(r, tag, attributes, "link"), line_now(r)};
+    *end = (struct urdf_name){name_need(r, tag, attributes, "link"), line_now(r)};
 }
 
 static void parent_read(struct reader *r, const char **attributes)
 {
-    end_read(r, attributes, "parent", &r->pending[r->robot->njoint - 1].parent);
+    end_read(r, attributes, "parent", &r->names[r->robot->njoint - 1].parent);
 }
 
 static void child_read(struct reader *r, const char **attributes)
 {
-    end_read(r, attributes, "child", &r->pending[r->robot->njoint - 1].child);
+    end_read(r, attributes, "child", &r->names[r->robot->njoint - 1].child);
 }
 
 static void axis_read(struct reader *r, const char **attributes)
@@ -283,7 +283,8 @@ static void dynamics_read(struct reader *r, const char **attributes)
 static void mimic_read(struct reader *r, const char **attributes)
 {
     const char *other = attribute(attributes, "joint");
-    WARN(r, "joint '%.80s' mimics '%.80s': not supported; it moves on its own", joint_now(r)->name, other ? other : "?");
+    WARN(r, "joint '%.80s' mimics '%.80s': not supported; it moves on its own", joint_now(r)->name,
+         other ? other : "?");
 }
 
 /* The elements that are known in each place: with a reader, skipped, or skipped with a warning. */
@@ -329,7 +330,8 @@ static void attributes_check(struct reader *r, const struct element *element, co
         for (int k = 0; k < known; k++) found = found || strcmp(attributes[i], element->attribute[k]) == 0;
         const char *nearest = found ? NULL : text_nearest(attributes[i], element->attribute, known);
         if (nearest)
-            REFUSE(r, "<%s> has an unknown attribute '%.60s'; did you mean '%s'?", element->tag, attributes[i], nearest);
+            REFUSE(r, "<%s> has an unknown attribute '%.60s'; did you mean '%s'?", element->tag, attributes[i],
+                   nearest);
         else if (!found)
             WARN(r, "<%s>: unknown attribute '%.60s' ignored", element->tag, attributes[i]);
     }
@@ -393,131 +395,6 @@ static void XMLCALL on_end(void *context, const char *tag)
         REFUSE(r, "link '%.100s': <inertial> without <inertia>", link_now(r)->name);
 }
 
-/* --- from names to a tree -------------------------------------------------------------------------------------- */
-
-struct named {
-    const char *name;
-    int line, index;
-};
-
-static int named_compare(const void *x, const void *y)
-{
-    const struct named *a = x, *b = y;
-    int order = strcmp(a->name, b->name);
-    return order != 0 ? order : (a->index > b->index) - (a->index < b->index);
-}
-
-/* Sort by name; a name used twice is an error at its second use. */
-static bool names_sort(struct reader *r, struct named *named, int n, const char *what)
-{
-    qsort(named, (size_t)n, sizeof *named, named_compare);
-    for (int i = 1; i < n; i++)
-        if (strcmp(named[i - 1].name, named[i].name) == 0)
-            return err_set_at(r->e, ERR_DATA, r->robot->path, named[i].line, "a second %s '%.100s'; the first is on line %d",
-                              what, named[i].name, named[i - 1].line);
-    return true;
-}
-
-static bool link_find(struct reader *r, const struct named *named, const struct urdf_joint *joint,
-                      const struct name_line *end, const char *tag, int *index)
-{
-    const struct urdf_robot *robot = r->robot;
-    if (!end->name)
-        return err_set_at(r->e, ERR_DATA, robot->path, joint->line, "joint '%.100s' has no <%s>", joint->name, tag);
-    int lo = 0, hi = robot->nlink;
-    while (lo < hi) {
-        int mid = (lo + hi) / 2, order = strcmp(named[mid].name, end->name);
-        if (order == 0) {
-            *index = named[mid].index;
-            return true;
-        }
-        if (order < 0)
-            lo = mid + 1;
-        else
-            hi = mid;
-    }
-    const char **names = TAKE(r->a, robot->nlink, const char *);
-    for (int i = 0; i < robot->nlink; i++) names[i] = named[i].name;
-    const char *nearest = text_nearest(end->name, names, robot->nlink);
-    return err_set_at(r->e, ERR_DATA, robot->path, end->line, "joint '%.100s': there is no link '%.100s'%s%.100s%s",
-                      joint->name, end->name, nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
-}
-
-static bool joints_resolve(struct reader *r, const struct named *named)
-{
-    struct urdf_robot *robot = r->robot;
-    for (int j = 0; j < robot->njoint; j++) {
-        struct urdf_joint *joint = &robot->joint[j];
-        if (!link_find(r, named, joint, &r->pending[j].parent, "parent", &joint->parent) ||
-            !link_find(r, named, joint, &r->pending[j].child, "child", &joint->child))
-            return false;
-        struct urdf_link *child = &robot->link[joint->child];
-        if (child->joint >= 0)
-            return err_set_at(r->e, ERR_DATA, robot->path, joint->line,
-                              "link '%.100s' has two parents: joints '%.100s' and '%.100s'; loops are not URDF", child->name,
-                              robot->joint[child->joint].name, joint->name);
-        child->joint = j;
-    }
-    return true;
-}
-
-static bool root_find(struct reader *r, int *root)
-{
-    const struct urdf_robot *robot = r->robot;
-    *root = -1;
-    for (int i = 0; i < robot->nlink; i++) {
-        if (robot->link[i].joint >= 0) continue;
-        if (*root >= 0)
-            return err_set_at(r->e, ERR_DATA, robot->path, robot->link[i].line,
-                              "two roots: no joint carries link '%.100s', nor '%.100s' on line %d", robot->link[i].name,
-                              robot->link[*root].name, robot->link[*root].line);
-        *root = i;
-    }
-    return *root >= 0 || err_set_at(r->e, ERR_DATA, robot->path, robot->link[0].line,
-                                    "every link is carried by a joint: the joints form a cycle through '%.100s'",
-                                    robot->link[0].name);
-}
-
-/* Depth first with first-child and next-sibling lists; what is not reached hangs on a cycle. */
-static bool order_walk(struct reader *r, int root)
-{
-    struct urdf_robot *robot = r->robot;
-    int *first = TAKE(r->a, robot->nlink, int), *next = TAKE(r->a, robot->nlink, int), *stack = TAKE(r->a, robot->nlink, int);
-    bool *reached = TAKE(r->a, robot->nlink, bool);
-    int n = 0, top = 0;
-    robot->order = TAKE(r->a, robot->nlink, int);
-    for (int i = 0; i < robot->nlink; i++) first[i] = next[i] = -1;
-    for (int j = 0; j < robot->njoint; j++) { /* the file's last child comes first, so that the stack gives the first */
-        next[robot->joint[j].child] = first[robot->joint[j].parent];
-        first[robot->joint[j].parent] = robot->joint[j].child;
-    }
-    stack[top++] = root;
-    while (top > 0) {
-        int i = stack[--top];
-        reached[i] = true;
-        robot->order[n++] = i;
-        for (int c = first[i]; c >= 0; c = next[c]) stack[top++] = c;
-    }
-    for (int i = 0; i < robot->nlink; i++)
-        if (!reached[i])
-            return err_set_at(r->e, ERR_DATA, robot->path, robot->link[i].line,
-                              "link '%.100s' is not connected to the root '%.100s': its joints form a cycle",
-                              robot->link[i].name, robot->link[root].name);
-    return true;
-}
-
-static bool tree_build(struct reader *r)
-{
-    struct urdf_robot *robot = r->robot;
-    if (robot->nlink == 0) return err_set_at(r->e, ERR_DATA, robot->path, 0, "the robot has no links");
-    struct named *links = TAKE(r->a, robot->nlink, struct named), *joints = TAKE(r->a, robot->njoint, struct named);
-    for (int i = 0; i < robot->nlink; i++) links[i] = (struct named){robot->link[i].name, robot->link[i].line, i};
-    for (int j = 0; j < robot->njoint; j++) joints[j] = (struct named){robot->joint[j].name, robot->joint[j].line, j};
-    int root;
-    return names_sort(r, links, robot->nlink, "link") && names_sort(r, joints, robot->njoint, "joint") &&
-           joints_resolve(r, links) && root_find(r, &root) && order_walk(r, root);
-}
-
 /* --- the file -------------------------------------------------------------------------------------------------- */
 
 static bool xml_parse(struct reader *r, const struct text *text)
@@ -526,7 +403,8 @@ static bool xml_parse(struct reader *r, const struct text *text)
     XML_SetElementHandler(r->parser, on_start, on_end);
     bool good = XML_Parse(r->parser, text->s ? text->s : "", (int)text->length, XML_TRUE) == XML_STATUS_OK;
     if (!good && r->e->kind == ERR_NONE)
-        err_set_at(r->e, ERR_DATA, r->robot->path, line_now(r), "XML: %s", XML_ErrorString(XML_GetErrorCode(r->parser)));
+        err_set_at(r->e, ERR_DATA, r->robot->path, line_now(r), "XML: %s",
+                   XML_ErrorString(XML_GetErrorCode(r->parser)));
     return good && r->e->kind == ERR_NONE;
 }
 
@@ -543,5 +421,5 @@ bool urdf_read(const char *path, struct urdf_robot *robot, struct arena *a, stru
         if (r.parser) XML_ParserFree(r.parser);
     }
     text_free(&text);
-    return good && tree_build(&r);
+    return good && urdf_tree(robot, r.names, a, e);
 }

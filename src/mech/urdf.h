@@ -1,8 +1,8 @@
 /* urdf.h - robots described by URDF files: links with inertias, joined to a tree.
  *
  * Units of the format are SI. What matters for dynamics is read; geometry is skipped; what would matter and is not
- * supported (mimic, transmission, friction, ...) is listed as a warning with its line. Links are bodies in the order of a
- * depth-first walk from the root, children in the order of the file's joints. */
+ * supported (mimic, transmission, friction, ...) is listed as a warning with its line. Links are bodies in the order of
+ * a depth-first walk from the root, children in the order of the file's joints. */
 #ifndef MECH_URDF_H
 #define MECH_URDF_H
 
@@ -57,7 +57,8 @@ struct urdf_robot {
  *
  *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): XML errors, names missing, repeated or
  *   unknown (with the nearest known one), joint type unknown, numbers malformed or not finite, an axis of length zero,
- *   a link with two parents, several roots, a cycle, more than 64 MB. Whether the inertias are possible is asked later. */
+ *   a link with two parents, several roots, a cycle, more than 64 MB. Whether the inertias are possible is asked later.
+ */
 bool urdf_read(const char *path, struct urdf_robot *robot, struct arena *a, struct err *e);
 
 /* urdf_kind_name: "fixed", "revolute", ... */

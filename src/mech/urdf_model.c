@@ -56,19 +56,22 @@ static struct body_def body_from(const struct urdf_robot *robot, int link_index)
     return def;
 }
 
-/* A link that has mass or inertia must be one that a body can have; one that has neither must not have to move alone. */
-static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_options *o, struct arena *a, struct err *e)
+/* A link that has mass or inertia must be one that a body can have; one that has neither must not have to move alone.
+ */
+static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_options *o, struct arena *a,
+                       struct err *e)
 {
     const struct urdf_link *link = &robot->link[i];
     bool frame_only = link->mass == 0;
     for (int k = 0; k < 6; k++) frame_only = frame_only && link->inertia[k] == 0;
     if (link->mass < 0)
-        return err_set_at(e, ERR_DATA, robot->path, link->inertial_line, "link '%.100s' has negative mass %g kg", link->name,
-                          link->mass);
+        return err_set_at(e, ERR_DATA, robot->path, link->inertial_line, "link '%.100s' has negative mass %g kg",
+                          link->name, link->mass);
     bool is_base = link->joint < 0 && !o->floating;
     if (o->allow_nonphysical || (frame_only && (is_base || !o->keep_fixed))) return true;
     if (!link->has_inertial)
-        return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass", link->name);
+        return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass",
+                          link->name);
     struct arena_mark mark = arena_mark(a);
     struct model *alone = model_begin(a, robot->path);
     struct body_def def = body_from(robot, i);
@@ -79,8 +82,8 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
 }
 
 /* A body for every link; the root is body 0 of a floating robot and no body of a fixed one. */
-static struct model *every_link(const struct urdf_robot *robot, const struct urdf_options *o, bool allow, struct arena *a,
-                                struct err *e)
+static struct model *every_link(const struct urdf_robot *robot, const struct urdf_options *o, bool allow,
+                                struct arena *a, struct err *e)
 {
     struct model *m = model_begin(a, robot->path);
     int *body = TAKE(a, robot->nlink, int);

@@ -19,8 +19,8 @@ struct urdf_options {
 
 /* urdf_model: the robot as a model in `a`; bodies in the robot's order. Joint damping acts, limits do not.
  *
- *   Returns NULL with ERR_DATA at the link's line: a moving link without mass or with an inertia that no body has, unless
- *   allowed; a negative mass or a number that is not finite, always; nothing moves. */
+ *   Returns NULL with ERR_DATA at the link's line: a moving link without mass or with an inertia that no body has,
+ * unless allowed; a negative mass or a number that is not finite, always; nothing moves. */
 struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_options *o, struct arena *a, struct err *e);
 
 /* urdf_model_build: the model of the URDF file spec->path with the base and gravity of `spec`, fixed links merged. */

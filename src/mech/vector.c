@@ -12,7 +12,8 @@ enum { MAX_BODIES = 1000000, JOINT_KINDS = 5 };
 static const struct {
     const char *name;
     int nq, nv;
-} joint_table[JOINT_KINDS] = {{"fixed", 0, 0}, {"revolute", 1, 1}, {"prismatic", 1, 1}, {"spherical", 4, 3}, {"floating", 7, 6}};
+} joint_table[JOINT_KINDS] = {
+    {"fixed", 0, 0}, {"revolute", 1, 1}, {"prismatic", 1, 1}, {"spherical", 4, 3}, {"floating", 7, 6}};
 
 const char *vector_joint_name(enum vector_joint joint) { return joint_table[joint].name; }
 int vector_joint_nq(enum vector_joint joint) { return joint_table[joint].nq; }
@@ -116,8 +117,8 @@ static bool counts_check(struct reader *r, const struct node *root, const struct
         !document_integer(root, "nv", r->path, 0, 6 * MAX_BODIES, &nv, r->e))
         return false;
     if (nq == c->nq && nv == c->nv) return true;
-    return err_set_at(r->e, ERR_DATA, r->path, root->line, "nq, nv = %d, %d do not fit the joints, which have %d, %d", nq,
-                      nv, c->nq, c->nv);
+    return err_set_at(r->e, ERR_DATA, r->path, root->line, "nq, nv = %d, %d do not fit the joints, which have %d, %d",
+                      nq, nv, c->nq, c->nv);
 }
 
 static bool loop_read(struct reader *r, const struct node *node, int nbody, struct vector_loop *loop)
@@ -169,9 +170,10 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
     c->pose = TAKE(r->a, list->count, struct vector_pose);
     for (const struct node *node = list->child; node; node = node->next) {
         struct vector_pose *p = &c->pose[c->npose++];
-        if (!document_integer(node, "body", r->path, 0, c->nbody - 1, &p->body, r->e) || !numbers(r, node, "R", p->R, 9) ||
-            !numbers(r, node, "p", p->p, 3) || !numbers(r, node, "v", p->v, 3) || !numbers(r, node, "w", p->w, 3) ||
-            !numbers(r, node, "a", p->a, 3) || !numbers(r, node, "alpha", p->alpha, 3))
+        if (!document_integer(node, "body", r->path, 0, c->nbody - 1, &p->body, r->e) ||
+            !numbers(r, node, "R", p->R, 9) || !numbers(r, node, "p", p->p, 3) || !numbers(r, node, "v", p->v, 3) ||
+            !numbers(r, node, "w", p->w, 3) || !numbers(r, node, "a", p->a, 3) ||
+            !numbers(r, node, "alpha", p->alpha, 3))
             return false;
     }
     return true;
@@ -222,7 +224,8 @@ static void peers_read(const struct node *root, struct vector_case *c)
     }
 }
 
-static bool instant_read(struct reader *r, const struct node *node, const struct vector_case *c, struct vector_instant *t)
+static bool instant_read(struct reader *r, const struct node *node, const struct vector_case *c,
+                         struct vector_instant *t)
 {
     const struct node *energy = document_need(node, "energy", r->path, r->e);
     return energy && document_number(energy, "total", r->path, &t->energy, r->e) &&
@@ -268,7 +271,8 @@ static bool complete_check(struct reader *r, const struct node *root, const stru
     if (c->ninstant > 0) return true;
     if (c->tau_id && !c->qdd) return fail(r, root, "'tau_id' is given without 'qdd'");
     if (c->qdd_fd && !c->tau) return fail(r, root, "'qdd_fd' is given without 'tau'");
-    return c->tau_id || c->qdd_fd || fail(r, root, "neither 'tau_id', 'qdd_fd' nor 'trajectory': nothing to compare with");
+    return c->tau_id || c->qdd_fd ||
+           fail(r, root, "neither 'tau_id', 'qdd_fd' nor 'trajectory': nothing to compare with");
 }
 
 bool vector_read(const char *path, struct vector_case *c, struct arena *a, struct err *e)
@@ -278,7 +282,9 @@ bool vector_read(const char *path, struct vector_case *c, struct arena *a, struc
     if (!root) return false;
     if (strcmp(document_text(root, "format"), "dynref-1") != 0)
         return fail(&r, root, "not a reference vector: 'format' must be \"dynref-1\"");
-    *c = (struct vector_case){.path = r.path, .name = document_text(root, "name"), .group = document_text(root, "group"),
+    *c = (struct vector_case){.path = r.path,
+                              .name = document_text(root, "name"),
+                              .group = document_text(root, "group"),
                               .urdf = document_text(root, "urdf")};
     bool good = numbers(&r, root, "gravity", c->gravity, 3) && bodies_read(&r, root, c) && counts_check(&r, root, c) &&
                 loops_read(&r, root, c) && state_read(&r, root, c) && answers_read(&r, root, c) &&

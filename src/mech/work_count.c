@@ -56,7 +56,7 @@ static void count_eliminate(const struct body *b, const struct joint_cost *cost,
 {
     uint64_t d = (uint64_t)b->d, c = 6 - d;
     bool dense = cost->h_transposed > 0;
-    w->flop += d * (d + 1) * (2 * d + 1) / 6 - d + d + (2 * d * d - d) + d * (d - 1) * c; /* e, factor, solve, forward */
+    w->flop += d * (d + 1) * (2 * d + 1) / 6 + (2 * d * d - d) + d * (d - 1) * c; /* e, factor, solve, forward */
     w->flop += c * (c + 1) / 2 * 3 * d + 2 * c * d;                                       /* Schur, p */
     w->div += d;
     if (dense) w->flop += 396 + 21 * 11 + 66 + c * c * 21 * 3;                            /* joint axes and back */
@@ -88,9 +88,25 @@ void work_count_aba(const struct dynamics *d, struct work *w)
     }
 }
 
+/* crba_revolute: pose 18 + 63 + 9, force 15 + 15 + 12 besides the composite's move; 11 a pair. */
+static void count_crba_revolute(const struct dynamics *d, struct work *w)
+{
+    for (int i = 0; i < d->nbody; i++) {
+        bool child = d->body[i].parent >= 0;
+        w->call += 1;
+        w->trig += 2;
+        w->flop += (uint64_t)(18 + 9 + (child ? XFORM_COMPOSE_FLOP + 42 + INERTIA_MOVE_FLOP + INERTIA_ADD_FLOP : 0));
+        for (int j = d->body[i].parent; j >= 0; j = d->body[j].parent) w->flop += 11;
+    }
+}
+
 void work_count_crba(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
+    if (d->revolute) {
+        count_crba_revolute(d, w);
+        return;
+    }
     work_count_place(d, w);
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
