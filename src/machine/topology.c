@@ -86,9 +86,16 @@ void topology_link_ends(const struct topology *t, int link, int *from, int *to, 
     t->type->ends(t, link, from, to, port);
 }
 
+bool topology_uniform(const struct topology *t)
+{
+    for (int d = 0; d < MACHINE_MAX_DIMS && t->type->rate_dim; d++)
+        if (t->spec->dim_bandwidth[d] > 0) return false;
+    return !t->type->share || t->spec->nlink_percent == 0;
+}
+
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth)
 {
-    int dim = t->type->rate_dim ? t->type->rate_dim(t, link) : -1;
-    double rate = dim >= 0 && dim < MACHINE_MAX_DIMS ? t->spec->dim_bandwidth[dim] : 0;
-    return rate > 0 && link_bandwidth > 0 ? rate / link_bandwidth : 1;
+    double own = t->type->rate_dim ? t->spec->dim_bandwidth[t->type->rate_dim(t, link)] : 0;
+    if (t->type->share) return t->type->share(t, link);
+    return own > 0 && link_bandwidth > 0 ? own / link_bandwidth : 1;
 }

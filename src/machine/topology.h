@@ -59,6 +59,9 @@ int topology_distance(const struct topology *t, int src, int dst);
  * (dimension order: from +, from - of dimension 0, then 1, ...; injection is last). */
 void topology_link_ends(const struct topology *t, int link, int *from, int *to, int *port);
 
+/* topology_uniform: all links have the same rate. */
+bool topology_uniform(const struct topology *t);
+
 /* topology_link_bandwidth: rate of a link relative to the machine's link rate (1 unless the file says otherwise). */
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth);
 

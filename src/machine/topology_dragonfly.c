@@ -121,8 +121,14 @@ static void dragonfly_ends(const struct topology *t, int link, int *from, int *t
 static int dragonfly_rate_dim(const struct topology *t, int link)
 {
     const struct dragonfly *g = t->state;
-    return link < g->first_global ? 1 : 2; /* as dims: [1] local, [2] global links */
+    return link < g->first_global ? 0 : 1; /* dim_bandwidth: local, global */
 }
 
-const struct topology_type topology_dragonfly = {"dragonfly", dragonfly_create, dragonfly_start,   dragonfly_next,
-                                                 NULL,        dragonfly_ends,   dragonfly_rate_dim};
+const struct topology_type topology_dragonfly = {
+    .name = "dragonfly",
+    .create = dragonfly_create,
+    .start = dragonfly_start,
+    .next = dragonfly_next,
+    .ends = dragonfly_ends,
+    .rate_dim = dragonfly_rate_dim,
+};

@@ -16,6 +16,7 @@ struct graph {
     int nrouter;
     int *first; /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
     int *from, *to, *port; /* (nlink) of each directed link */
+    int *percent;          /* (nlink) of the link rate, NULL: 100 */
     int **next;            /* (nrouter) per target: the link to take from every router; NULL until needed */
     int *distance, *queue; /* (nrouter) of the search */
     bool tree;
@@ -23,6 +24,7 @@ struct graph {
 
 struct graph_link {
     int from, to;
+    int percent;
 };
 
 static int link_order(const void *a, const void *b)
@@ -38,8 +40,10 @@ static bool links_read(const struct topology_spec *s, struct graph_link *all, st
         if (a < 0 || b < 0 || a >= s->dims[0] || b >= s->dims[0] || a == b)
             return err_set(e, ERR_CONFIG, "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i,
                            a, b, s->dims[0] - 1);
-        all[2 * i] = (struct graph_link){a, b};
-        all[2 * i + 1] = (struct graph_link){b, a};
+        int there = s->nlink_percent == 0 ? 100 : s->link_percent[s->nlink_percent == s->nlink ? i : 2 * i];
+        int back = s->nlink_percent == 2 * s->nlink ? s->link_percent[2 * i + 1] : there;
+        all[2 * i] = (struct graph_link){a, b, there};
+        all[2 * i + 1] = (struct graph_link){b, a, back};
     }
     qsort(all, 2 * (size_t)s->nlink, sizeof *all, link_order);
     for (int i = 1; i < 2 * s->nlink; i++)
@@ -54,6 +58,7 @@ static void graph_index(struct graph *g, const struct graph_link *all, int nlink
     for (int l = 0; l < nlink; l++) {
         g->from[l] = all[l].from;
         g->to[l] = all[l].to;
+        if (g->percent) g->percent[l] = all[l].percent;
         g->first[all[l].from + 1]++;
         g->port[l] = arrived[all[l].to]++; /* links are sorted by `from`, so ports go by neighbour */
     }
@@ -113,6 +118,9 @@ static bool graph_create(struct topology *t, struct arena *a, struct err *e)
     int n = s->dims[0], nlink = 2 * s->nlink;
     if (n < 1 || s->nlink < 0 || s->nlink > INT32_MAX / 4)
         return err_set(e, ERR_CONFIG, "topology graph: %d routers, %d links", n, s->nlink);
+    if (s->nlink_percent != 0 && s->nlink_percent != s->nlink && s->nlink_percent != 2 * s->nlink)
+        return err_set(e, ERR_CONFIG, "topology graph: %d rates for %d links; expected one or two for each",
+                       s->nlink_percent, s->nlink);
     struct graph *g = TAKE(a, 1, struct graph);
     *g = (struct graph){.arena = a, .nrouter = n, .tree = s->nlink == n - 1};
     struct graph_link *all = TAKE(a, nlink + 1, struct graph_link);
@@ -121,6 +129,7 @@ static bool graph_create(struct topology *t, struct arena *a, struct err *e)
     g->from = TAKE(a, nlink + 1, int);
     g->to = TAKE(a, nlink + 1, int);
     g->port = TAKE(a, nlink + 1, int);
+    g->percent = s->nlink_percent > 0 ? TAKE(a, nlink + 1, int) : NULL;
     g->next = TAKE(a, n, int *);
     g->distance = TAKE(a, n, int);
     g->queue = TAKE(a, n, int);
@@ -159,4 +168,17 @@ static void graph_ends(const struct topology *t, int link, int *from, int *to, i
     *port = g->port[link];
 }
 
-const struct topology_type topology_graph = {"graph", graph_create, graph_start, graph_next, NULL, graph_ends, NULL};
+static double graph_share(const struct topology *t, int link)
+{
+    const struct graph *g = t->state;
+    return g->percent ? g->percent[link] / 100.0 : 1;
+}
+
+const struct topology_type topology_graph = {
+    .name = "graph",
+    .create = graph_create,
+    .start = graph_start,
+    .next = graph_next,
+    .ends = graph_ends,
+    .share = graph_share,
+};

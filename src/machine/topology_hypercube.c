@@ -86,6 +86,12 @@ static int hypercube_rate_dim(const struct topology *t, int link)
     return link >= g->ndim << g->ndim ? 1 : 0; /* dim_bandwidth[0]: cube links, [1]: Xpress links */
 }
 
-const struct topology_type topology_hypercube = {"hypercube",       hypercube_create,   hypercube_start,
-                                                 hypercube_next,    hypercube_distance, hypercube_ends,
-                                                 hypercube_rate_dim};
+const struct topology_type topology_hypercube = {
+    .name = "hypercube",
+    .create = hypercube_create,
+    .start = hypercube_start,
+    .next = hypercube_next,
+    .distance = hypercube_distance,
+    .ends = hypercube_ends,
+    .rate_dim = hypercube_rate_dim,
+};

@@ -16,7 +16,8 @@ struct topology_type {
     bool (*next)(const struct topology *t, struct route_cursor *c, struct hop *h);
     int (*distance)(const struct topology *t, int from, int to); /* routers; NULL: walk and count */
     void (*ends)(const struct topology *t, int link, int *from, int *to, int *port);
-    int (*rate_dim)(const struct topology *t, int link); /* which dim_bandwidth holds for it; -1: none */
+    int (*rate_dim)(const struct topology *t, int link); /* which dim_bandwidth holds for it; NULL: none */
+    double (*share)(const struct topology *t, int link); /* of the link rate; NULL: 1 */
 };
 
 extern const struct topology_type topology_crossbar, topology_torus, topology_mesh, topology_hypercube, topology_bus,

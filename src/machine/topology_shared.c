@@ -103,8 +103,26 @@ static void full_mesh_ends(const struct topology *t, int link, int *from, int *t
 }
 
 const struct topology_type topology_crossbar = {
-    "crossbar", crossbar_create, crossbar_start, crossbar_next, crossbar_distance, crossbar_ends, NULL};
-const struct topology_type topology_bus = {"bus",         bus_create, crossbar_start, crossbar_next, crossbar_distance,
-                                           crossbar_ends, NULL};
+    .name = "crossbar",
+    .create = crossbar_create,
+    .start = crossbar_start,
+    .next = crossbar_next,
+    .distance = crossbar_distance,
+    .ends = crossbar_ends,
+};
+const struct topology_type topology_bus = {
+    .name = "bus",
+    .create = bus_create,
+    .start = crossbar_start,
+    .next = crossbar_next,
+    .distance = crossbar_distance,
+    .ends = crossbar_ends,
+};
 const struct topology_type topology_full_mesh = {
-    "full-mesh", full_mesh_create, full_mesh_start, full_mesh_next, full_mesh_distance, full_mesh_ends, NULL};
+    .name = "full-mesh",
+    .create = full_mesh_create,
+    .start = full_mesh_start,
+    .next = full_mesh_next,
+    .distance = full_mesh_distance,
+    .ends = full_mesh_ends,
+};

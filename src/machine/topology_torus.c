@@ -162,7 +162,21 @@ static void torus_ends(const struct topology *t, int link, int *from, int *to, i
     *port = 2 * d + (down ? 0 : 1); /* going down one comes from the + neighbour */
 }
 
-const struct topology_type topology_torus = {"torus",        torus_create, torus_start,   torus_next,
-                                             torus_distance, torus_ends,   torus_rate_dim};
-const struct topology_type topology_mesh = {"mesh",         mesh_create, torus_start,   torus_next,
-                                            torus_distance, torus_ends,  torus_rate_dim};
+const struct topology_type topology_torus = {
+    .name = "torus",
+    .create = torus_create,
+    .start = torus_start,
+    .next = torus_next,
+    .distance = torus_distance,
+    .ends = torus_ends,
+    .rate_dim = torus_rate_dim,
+};
+const struct topology_type topology_mesh = {
+    .name = "mesh",
+    .create = mesh_create,
+    .start = torus_start,
+    .next = torus_next,
+    .distance = torus_distance,
+    .ends = torus_ends,
+    .rate_dim = torus_rate_dim,
+};

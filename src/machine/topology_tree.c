@@ -110,5 +110,12 @@ static void tree_ends(const struct topology *t, int link, int *from, int *to, in
     *port = down ? g->k + up : digit(g, w, l);
 }
 
-const struct topology_type topology_fat_tree = {"fat-tree",    tree_create, tree_start,   tree_next,
-                                                tree_distance, tree_ends,   tree_rate_dim};
+const struct topology_type topology_fat_tree = {
+    .name = "fat-tree",
+    .create = tree_create,
+    .start = tree_start,
+    .next = tree_next,
+    .distance = tree_distance,
+    .ends = tree_ends,
+    .rate_dim = tree_rate_dim,
+};

@@ -30,12 +30,10 @@ static struct net_rate rate_make(const struct network_spec *w, double bandwidth,
     return r;
 }
 
-/* rates of single links, only where the file gives dimensions their own */
+/* rates of single links, only where they differ */
 static void link_rates_make(struct net *n, const struct network_spec *w)
 {
-    bool own = false;
-    for (int d = 0; d < MACHINE_MAX_DIMS; d++) own = own || n->topology->spec->dim_bandwidth[d] > 0;
-    if (!own) return;
+    if (topology_uniform(n->topology)) return;
     n->link_rate = TAKE(n->arena, n->nlink > 0 ? n->nlink : 1, struct net_rate);
     for (int l = 0; l < n->nlink; l++) {
         double factor = topology_link_bandwidth(n->topology, l, w->link_bandwidth);
@@ -183,6 +181,13 @@ sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)
     int nhop;
     struct net_rate slow = net_slowest(n, &m, &nhop);
     return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, bytes) - 1) + n->end;
+}
+
+bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
+{
+    if (!n->type->occupy) return false;
+    n->type->occupy(n, link, now, busy);
+    return true;
 }
 
 bool net_stuck(const struct net *n, char *text, int size)

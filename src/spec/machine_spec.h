@@ -43,6 +43,8 @@ struct topology_spec {
     bool xpress;                    /* 16-processor Origin: the extra links between opposite routers */
     int nlink;                      /* graph: number of undirected links, 0 otherwise */
     int (*link)[2];                 /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
+    int nlink_percent;              /* graph: 0, nlink or 2 nlink */
+    int *link_percent;              /* graph: rate of each link, or there and back of each, in % of the link's */
 };
 
 /* What computing costs on one processor. A rate holds for small dense double-precision code. */

@@ -308,10 +308,41 @@ static void rates_belong_to_dimensions(void **state)
     arena_destroy(a);
 }
 
+static void links_of_a_graph_have_rates_there_and_back(void **state)
+{
+    (void)state;
+    static const int cables[2][2] = {{1, 0}, {1, 2}};
+    int each[] = {50, 200}, both[] = {50, 25, 200, 100};
+    struct topology_spec s = {.family = TOPOLOGY_GRAPH,
+                              .ndim = 1,
+                              .dims = {3},
+                              .nlink = 2,
+                              .link = (int(*)[2])cables,
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1};
+    /* routes 0 to 2 and back: over cable 0 backwards, cable 1 forwards, and the reverse */
+    static const double expected[3][4] = {{1, 1, 1, 1}, {0.5, 2, 2, 0.5}, {0.25, 2, 1, 0.5}};
+    for (int k = 0; k < 3; k++) {
+        struct arena *a = arena_create();
+        struct hop out[2], back[2];
+        s.nlink_percent = 2 * k;
+        s.link_percent = k == 1 ? each : both;
+        struct topology *t = make(&s, a);
+        assert_int_equal(topology_route(t, 0, 2, 0, out) + topology_route(t, 2, 0, 0, back), 4);
+        assert_int_equal(topology_uniform(t), k == 0);
+        for (int i = 0; i < 4; i++) {
+            int link = i < 2 ? out[i].link : back[i - 2].link;
+            assert_true(topology_link_bandwidth(t, link, 1e9) == expected[k][i]);
+        }
+        arena_destroy(a);
+    }
+}
+
 static void impossible_networks_are_refused(void **state)
 {
     (void)state;
     static const int self[1][2] = {{1, 1}}, twice[2][2] = {{0, 1}, {1, 0}}, apart[1][2] = {{0, 1}};
+    int rates[3] = {100, 100, 100};
     const struct topology_spec bad[] = {
         {.family = TOPOLOGY_TORUS, .ndim = 0},
         {.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 0}},
@@ -326,6 +357,13 @@ static void impossible_networks_are_refused(void **state)
         {.family = TOPOLOGY_GRAPH, .ndim = 1, .dims = {2}, .nlink = 1, .link = (int(*)[2])self},
         {.family = TOPOLOGY_GRAPH, .ndim = 1, .dims = {2}, .nlink = 2, .link = (int(*)[2])twice},
         {.family = TOPOLOGY_GRAPH, .ndim = 1, .dims = {3}, .nlink = 1, .link = (int(*)[2])apart},
+        {.family = TOPOLOGY_GRAPH,
+         .ndim = 1,
+         .dims = {2},
+         .nlink = 1,
+         .link = (int(*)[2])apart,
+         .nlink_percent = 3,
+         .link_percent = rates},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct arena *a = arena_create();
@@ -354,6 +392,7 @@ int main(void)
         cmocka_unit_test(the_mean_route_of_a_dragonfly_is_the_reference_s),
         cmocka_unit_test(shifts_on_a_fat_tree_share_no_link),
         cmocka_unit_test(rates_belong_to_dimensions),
+        cmocka_unit_test(links_of_a_graph_have_rates_there_and_back),
         cmocka_unit_test(impossible_networks_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
