@@ -43,6 +43,7 @@ struct net_type {
     enum network_level level;
     bool (*create)(struct net *n, struct err *e);
     void (*send)(struct net *n, struct net_message *m);
+    void (*occupy)(struct net *n, int link, sim_ps now, sim_ps busy); /* NULL: the level cannot */
     bool (*stuck)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
 };
 
@@ -61,6 +62,10 @@ void net_send(struct net *n, struct net_message *m);
 
 /* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
+
+/* net_occupy: directed link `link` serves somebody else's traffic for `busy` from `now`, or from when it is free, first
+ * come first served. Called at the time `now` of the event being dispatched. False: this level knows no such thing. */
+bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
 
 /* net_stuck: true when messages are in the network but no event can move them; `text` (size bytes) then names the
  * cycle of links. */

@@ -135,4 +135,11 @@ static void link_send(struct net *n, struct net_message *m)
     else sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
-const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, NULL};
+static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
+{
+    struct link_level *g = n->state;
+    sim_ps *free = &g->free[net_resource(n, link)];
+    *free = (now > *free ? now : *free) + busy;
+}
+
+const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, link_occupy, NULL};

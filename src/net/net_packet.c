@@ -53,7 +53,9 @@ static void credits_drop(struct fabric *f, struct fifo *q)
     q->last = NULL;
 }
 
-sim_ps fifo_room(struct fabric *f, struct fifo *q, int32_t flits, sim_ps flit, sim_ps now)
+/* from when on (>= now) a packet of `flits`, one flit every `flit`, may enter q; SIM_NEVER when that depends on a
+ * grant yet to come */
+static sim_ps fifo_room(struct fabric *f, struct fifo *q, int32_t flits, sim_ps flit, sim_ps now)
 {
     if (q->first && q->home <= now) credits_drop(f, q);
     int32_t spare = f->buffer - flits;
@@ -389,4 +391,4 @@ void packet_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), packet_start, f, (uintptr_t)w);
 }
 
-const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_stuck};
+const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, NULL, packet_stuck};

@@ -42,8 +42,8 @@ static bool cut_through_config(const struct net *n, struct err *e)
     int64_t least = (trip + flit - 1) / flit;
     if (w->buffer_flits < least)
         return err_set(e, ERR_CONFIG,
-                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + credit_latency = %lld ps "
-                       "in flits of %lld ps)",
+                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + credit_latency = "
+                       "%lld ps in flits of %lld ps)",
                        w->buffer_flits, n->type->name, (long long)least, (long long)trip, (long long)flit);
     if (w->packet_bytes <= 0) return true;
     int64_t flits = net_flits(n, w->packet_bytes);

@@ -38,7 +38,8 @@ static const char *idle_unless_ring(const struct run_spec *r)
 static const char *idle_unless_dragonfly(const struct run_spec *r)
 {
     enum topology_family f = r->machine.topology.family;
-    return f == TOPOLOGY_DRAGONFLY || f == TOPOLOGY_FAT_TREE ? NULL : "only dragonflies and fat trees choose their routing";
+    bool chooses = f == TOPOLOGY_DRAGONFLY || f == TOPOLOGY_FAT_TREE;
+    return chooses ? NULL : "only dragonflies and fat trees choose their routing";
 }
 
 static const char *idle_unless_hypercube(const struct run_spec *r)
@@ -49,11 +50,6 @@ static const char *idle_unless_hypercube(const struct run_spec *r)
 static const char *idle_unless_graph(const struct run_spec *r)
 {
     return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only the family 'graph' takes its links from the file";
-}
-
-static const char *idle_at_loggp(const struct run_spec *r)
-{
-    return r->machine.network.level == LEVEL_LOGGP ? "level 'loggp' has no buffers and no shared links" : NULL;
 }
 
 /* Packets, flits and buffers: what only the levels that know them can use. */
@@ -110,6 +106,11 @@ static const char *idle_unless_list(const struct run_spec *r)
     return r->machine.placement.kind == PLACEMENT_LIST ? NULL : "placement.kind is not 'list'";
 }
 
+static const char *idle_unless_link(const struct run_spec *r)
+{
+    return r->machine.network.level == LEVEL_LINK ? NULL : "only network.level 'link' lets other jobs take links";
+}
+
 static const char *idle_unless_background(const struct run_spec *r)
 {
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
@@ -139,11 +140,15 @@ static const struct field fields[] = {
     {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
      .idle = idle_unless_ring, .doc = "half-way round a ring: always up, or up from even coordinates only"},
     {.key = "topology.routing", .kind = FIELD_CHOICE, AT(topology.routing), .choice = routings,
-     .fallback = "minimal", .idle = idle_unless_dragonfly, .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
+     .fallback = "minimal", .idle = idle_unless_dragonfly,
+     .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
      .idle = idle_unless_hypercube, .doc = "further links between opposite routers (Origin2000 with 16 processors)"},
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
      .max = 1 << 24, .fallback = "[]", .idle = idle_unless_graph, .doc = "graph: router pairs, each joined both ways"},
+    {.key = "topology.link_percent", .kind = FIELD_INT_LIST, AT(topology.link_percent), COUNT(topology.nlink_percent),
+     .min = 1, .max = 1000000, .fallback = "[]", .idle = idle_unless_graph,
+     .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there and back of each"},
 
     {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate), .min = 1, .max = 1e18,
      .doc = "additions and multiplications of small dense double-precision code"},
@@ -245,7 +250,7 @@ static const struct field fields[] = {
     {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
      .fallback = "0 %", .doc = "standard deviation of each computation over its mean"},
     {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
-     .max = 0.95, .fallback = "0 %", .idle = idle_at_loggp, .doc = "part of each link's time taken by other jobs"},
+     .max = 0.95, .fallback = "0 %", .idle = idle_unless_link, .doc = "part of each link's time taken by other jobs"},
     {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(noise.background_bytes), .min = 1,
      .max = 1 << 30, .fallback = "1024 B", .idle = idle_unless_background, .doc = "size of their messages"},
 };

@@ -7,6 +7,7 @@ static void travel(struct message *m, struct vp *from, struct vp *to, int64_t by
 {
     m->net.src = from->node;
     m->net.dst = to->node;
+    m->net.processor = from->processor;
     m->net.bytes = bytes;
     m->net.ready = ready;
     net_send(from->world->net, &m->net);

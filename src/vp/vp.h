@@ -52,7 +52,7 @@ struct vp {
     struct random noise;
 };
 
-enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA, MESSAGE_BACKGROUND };
+enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA };
 
 struct message {
     struct net_message net;        /* first */
@@ -160,7 +160,7 @@ sim_ps server_pass(struct vp *v, int64_t bytes);
 /* --- background.c --- */
 
 /* background_start: begin the seeded traffic of others on the links, when the machine has it; it ends with the ranks.
- * Random messages between random nodes, Poisson in time, so many that the mean load of a link is as asked. */
+ * Acts at levels that can occupy a link (net_occupy); the plan reports it as unused at the others. */
 void background_start(struct world *w, uint64_t seed);
 
 /* --- stuck.c --- */

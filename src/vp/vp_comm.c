@@ -89,6 +89,7 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
     m->net.src = v->node;
     m->net.dst = m->to->node;
+    m->net.processor = v->processor;
     m->sent = v->clock;
     stage_of(v)->messages++;
     stage_of(v)->bytes += bytes;

@@ -37,14 +37,13 @@ void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int
 
 static void deliver(void *context, struct net_message *nm)
 {
-    struct world *w = context;
+    (void)context;
     struct message *m = (struct message *)nm;
     switch ((enum message_kind)m->kind) {
     case MESSAGE_EAGER:
     case MESSAGE_REQUEST_TO_SEND: mailbox_deliver(m->to, m); break;
     case MESSAGE_CLEAR_TO_SEND:
     case MESSAGE_DATA: rendezvous_deliver(m); break;
-    case MESSAGE_BACKGROUND: message_give(w, m); break;
     }
 }
 
