@@ -17,14 +17,16 @@ struct variant {
 static const struct variant variant_table[] = {
     {"parallel inverse incoming", {.name = "inverse", .composites_incoming = true}},
     {"parallel inverse outgoing", {.name = "inverse"}},
-    {"parallel inverse dense operators", {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
+    {"parallel inverse dense operators",
+     {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
     {"parallel inverse balanced", {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
 #define FORWARD(text, ...) {"parallel forward " text, {.name = "forward", .composites_incoming = true, __VA_ARGS__}}
 #define BOTH(text, ...)                                                                                                \
     FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                                             \
-    FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                                           \
-    FORWARD("refined " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, __VA_ARGS__),                  \
-    FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, .outer_refinements = 1, __VA_ARGS__)
+        FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                                       \
+        FORWARD("refined " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, __VA_ARGS__),              \
+        FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, .outer_refinements = 1,     \
+                __VA_ARGS__)
     BOTH("thomas", .solver = SOLVER_THOMAS),
     BOTH("cr", .solver = SOLVER_CR),
     BOTH("pcr", .solver = SOLVER_PCR),
@@ -32,8 +34,10 @@ static const struct variant variant_table[] = {
     BOTH("cr-pcr", .solver = SOLVER_CR_PCR, .hybrid_levels = 1),
     BOTH("partition+pcr", .solver = SOLVER_PARTITION, .part_solver = PART_PCR),
     BOTH("partition+cr", .solver = SOLVER_PARTITION, .part_solver = PART_CR),
-    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR_SYMMETRIC, .operators = OPERATORS_DENSE),
-    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR, .partition = PARTITION_BALANCED),
+    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR_SYMMETRIC,
+            .operators = OPERATORS_DENSE),
+    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR,
+            .partition = PARTITION_BALANCED),
 };
 enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
 
@@ -109,7 +113,9 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
                    result, e))
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
-                            .x = kernel->does_forward ? job.qdd : job.tau, .lambda = job.lambda, .loop_rank = *job.loop_rank};
+                            .x = kernel->does_forward ? job.qdd : job.tau,
+                            .lambda = job.lambda,
+                            .loop_rank = *job.loop_rank};
     for (int i = 0; i < nrank; i++) out->condition = fmax(out->condition, job.condition[i]);
     text_copy(out->text, sizeof out->text, result->text);
     return true;
@@ -175,9 +181,9 @@ static bool error_in(struct verify_case *v, const struct kernel_spec *kernel, en
     return true;
 }
 
-/* Above the tolerance: by rounding, if the kernel itself finds the system singular to its precision, or if the error goes
- * away in quad precision, or, of large cases, for which that takes long, if it is in proportion to the error in single
- * precision. */
+/* Above the tolerance: by rounding, if the kernel itself finds the system singular to its precision, or if the error
+ * goes away in quad precision, or, of large cases, for which that takes long, if it is in proportion to the error in
+ * single precision. */
 static bool explain(struct verify_case *v, const struct kernel_spec *kernel, double condition, struct verify_row *row,
                     struct err *e)
 {
@@ -195,7 +201,8 @@ static bool explain(struct verify_case *v, const struct kernel_spec *kernel, dou
         row->verdict = VERIFY_ROUNDING;
     text_copy(before, sizeof before, row->note);
     snprintf(row->note, sizeof row->note, "P=%d%s%s%s; in %s precision %.1e", row->worst_rank,
-             isfinite(row->error) ? "" : " breaks down", before[0] ? ": " : "", before, quad ? "quad" : "single", error);
+             isfinite(row->error) ? "" : " breaks down", before[0] ? ": " : "", before, quad ? "quad" : "single",
+             error);
     return true;
 }
 

@@ -27,7 +27,8 @@ static void print_row(FILE *out, const struct verify_row *row)
     char ranks[48] = "";
     if (row->ranks[0]) snprintf(ranks, sizeof ranks, "P=%s", row->ranks);
     if (row->verdict == VERIFY_NOT_APPLICABLE) {
-        fprintf(out, "  %-40s %-15s %-20s %8s %8s  n/a: %s\n", row->algorithm, row->quantity, ranks, "-", "-", row->note);
+        fprintf(out, "  %-40s %-15s %-20s %8s %8s  n/a: %s\n", row->algorithm, row->quantity, ranks, "-", "-",
+                row->note);
         return;
     }
     fprintf(out, "  %-40s %-15s %-20s %8.1e %8.1e  %s%s%s\n", row->algorithm, row->quantity, ranks, row->error,
@@ -39,9 +40,11 @@ void verify_print(FILE *out, const struct verify_report *r, bool brief)
 {
     print_heading(out, r);
     if (!brief)
-        fprintf(out, "  %-40s %-15s %-20s %8s %8s  %s\n", "algorithm", "quantity", "ranks", "error", "at most", "verdict");
+        fprintf(out, "  %-40s %-15s %-20s %8s %8s  %s\n", "algorithm", "quantity", "ranks", "error", "at most",
+                "verdict");
     for (int i = 0; i < r->nrow; i++)
-        if (!brief || r->row[i].verdict == VERIFY_FAIL || r->row[i].verdict == VERIFY_ROUNDING) print_row(out, &r->row[i]);
+        if (!brief || r->row[i].verdict == VERIFY_FAIL || r->row[i].verdict == VERIFY_ROUNDING)
+            print_row(out, &r->row[i]);
 }
 
 void verify_print_summary(FILE *out, const struct verify_report *r, int n)
@@ -52,7 +55,8 @@ void verify_print_summary(FILE *out, const struct verify_report *r, int n)
         rows += r[i].nrow;
         for (int k = 0; k < r[i].nrow; k++) count[r[i].row[k].verdict]++;
     }
-    fprintf(out, "%d case%s, %d failed; %d rows: %d pass, %d beyond the tolerance by rounding, %d fail, %d not applicable\n",
+    fprintf(out,
+            "%d case%s, %d failed; %d rows: %d pass, %d beyond the tolerance by rounding, %d fail, %d not applicable\n",
             n, n == 1 ? "" : "s", failed, rows, count[VERIFY_PASS], count[VERIFY_ROUNDING], count[VERIFY_FAIL],
             count[VERIFY_NOT_APPLICABLE]);
 }

@@ -31,13 +31,13 @@ void verify_row_skip(struct verify_case *v, const char *algorithm, const char *q
 double verify_tolerance_inverse(const struct verify_case *v);
 double verify_tolerance_forward(const struct verify_case *v);
 
-/* verify_tolerance_robust: of the direct formulation with refinement. In extreme cases it must be as accurate as the best
- * library, unless that is better than ten roundings of the inputs or a few of the answer. */
+/* verify_tolerance_robust: of the direct formulation with refinement. In extreme cases it must be as accurate as the
+ * best library, unless that is better than ten roundings of the inputs or a few of the answer. */
 double verify_tolerance_robust(const struct verify_case *v);
 
-/* verify_error_vanishes: does an error `error` in double and `quad` in quad precision show that rounding causes it? What
- * is wrong stays wrong in any precision. verify_error_scales: the same from the error in single precision, where the
- * unit of rounding is 2^29 times larger. */
+/* verify_error_vanishes: does an error `error` in double and `quad` in quad precision show that rounding causes it?
+ * What is wrong stays wrong in any precision. verify_error_scales: the same from the error in single precision, where
+ * the unit of rounding is 2^29 times larger. */
 bool verify_error_vanishes(double error, double quad);
 bool verify_error_scales(double error, double single);
 

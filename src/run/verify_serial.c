@@ -9,7 +9,10 @@
 #include "mech/urdf_model.h"
 #include "run/verify_rows.h"
 
-static const struct dynamics_type *type_of(const struct verify_case *v) { return dynamics_type_of(v->options->precision); }
+static const struct dynamics_type *type_of(const struct verify_case *v)
+{
+    return dynamics_type_of(v->options->precision);
+}
 
 /* Judge a row whose answer is rounded once more than the reference: no explanation but the tolerance. */
 static void judge(struct verify_row *row, double error, double tolerance)
@@ -46,7 +49,8 @@ static void urdf_row(struct verify_case *v)
     snprintf(path, sizeof path, "%.*s%s", folder, c->path, c->urdf);
     if (!c->urdf[0] || !c->tau_id || access(path, R_OK) != 0) return;
     struct urdf_robot robot;
-    struct urdf_options o = {.floating = c->body[0].joint == VECTOR_FLOATING, .keep_fixed = true, .allow_nonphysical = true};
+    struct urdf_options o = {
+        .floating = c->body[0].joint == VECTOR_FLOATING, .keep_fixed = true, .allow_nonphysical = true};
     struct err e;
     err_clear(&e);
     memcpy(o.gravity, c->gravity, sizeof o.gravity);
@@ -168,7 +172,8 @@ static double error_in(struct verify_case *v, enum forward_method method, enum p
 }
 
 /* A large error is by rounding when the same algorithm is right in quad precision, or, where that would take long, when
- * the error is in proportion to that in single precision; a breakdown of the latter is as large an error as there is. */
+ * the error is in proportion to that in single precision; a breakdown of the latter is as large an error as there is.
+ */
 static void explain(struct verify_case *v, enum forward_method method, bool good, struct verify_row *row)
 {
     enum { QUAD_LIMIT = 310 };
@@ -189,7 +194,8 @@ static void lambda_row(struct verify_case *v, const char *name, const struct ans
     if (!c->lambda) return;
     if (x->report.rank < x->report.nrow) {
         char why[96];
-        snprintf(why, sizeof why, "redundant loops (rank %d of %d): lambda is not unique", x->report.rank, x->report.nrow);
+        snprintf(why, sizeof why, "redundant loops (rank %d of %d): lambda is not unique", x->report.rank,
+                 x->report.nrow);
         verify_row_skip(v, name, "lambda", why);
         return;
     }

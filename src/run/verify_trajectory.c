@@ -1,7 +1,7 @@
 /* verify_trajectory.c - rows of the integrators: the reference's states at its times, each by an independent stepper.
  *
- * An error made early grows with the motion's own sensitivity: the tolerance of an instant is the stepper's, or its local
- * errors grown until then. A row shows the instant that comes closest to its tolerance or exceeds it most. */
+ * An error made early grows with the motion's own sensitivity: the tolerance of an instant is the stepper's, or its
+ * local errors grown until then. A row shows the instant that comes closest to its tolerance or exceeds it most. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,7 +32,8 @@ static void worst_take(struct worst *w, double error, double tolerance)
 static double tolerance_at(const struct verify_case *v, int instant, int stepper)
 {
     double asked = v->options->tolerance_forward > 0 ? v->options->tolerance_forward : stepper_table[stepper].global;
-    double grown = stepper_table[stepper].slack * stepper_table[stepper].local * v->vector->instant[instant].sensitivity;
+    double grown =
+        stepper_table[stepper].slack * stepper_table[stepper].local * v->vector->instant[instant].sensitivity;
     return isfinite(grown) ? fmax(asked, grown) : asked;
 }
 
@@ -58,7 +59,8 @@ static void row_fill(struct verify_case *v, const char *name, const char *quanti
     row->verdict = w->error <= w->tolerance ? VERIFY_PASS : VERIFY_FAIL;
 }
 
-/* Evaluations that an interval may take: a stiff motion needs ever more of an explicit stepper, and is left to others. */
+/* Evaluations that an interval may take: a stiff motion needs ever more of an explicit stepper, and is left to others.
+ */
 static long evaluations_allowed(const struct vector_case *c) { return 24000000L / c->nbody / c->ninstant; }
 
 static bool stepper_rows(struct verify_case *v, int k)

@@ -68,7 +68,8 @@ static void every_number_of_a_joint_is_read(void **state)
     assert_true(j->p[0] == 1 && j->p[1] == -2 && j->p[2] == 0.3);
     assert_near(j->axis[1], 0.6, 1e-16);
     assert_near(j->axis[2], 0.8, 1e-16);
-    assert_true(j->has_limit && j->lower == -1 && j->upper == 2 && j->effort == 5 && j->velocity == 6 && j->damping == 0.5);
+    assert_true(j->has_limit && j->lower == -1 && j->upper == 2 && j->effort == 5 && j->velocity == 6 &&
+                j->damping == 0.5);
     /* Rz(0.3) Ry(0.2) Rx(0.1) applied to e_x is (cy cp, sy cp, -sp). */
     double x = j->quat[0], y = j->quat[1], z = j->quat[2], w = j->quat[3];
     assert_near(1 - 2 * (y * y + z * z), cos(0.3) * cos(0.2), 1e-15);
@@ -85,9 +86,11 @@ static void inertias_are_turned_into_link_axes(void **state)
     struct arena *a = arena_create();
     struct urdf_robot robot;
     struct err e;
-    assert_true(read_xml("<robot name='r'><link name='base'/><link name='b'><inertial><origin xyz='1 2 3' rpy='0 0 0.5'/>"
-                         "<mass value='4'/><inertia ixx='2' ixy='0' ixz='0' iyy='3' iyz='0' izz='4'/></inertial></link>"
-                         JOINT("j", "continuous", "base", "b") "</robot>", &robot, a, &e));
+    assert_true(
+        read_xml("<robot name='r'><link name='base'/><link name='b'><inertial><origin xyz='1 2 3' rpy='0 0 0.5'/>"
+                 "<mass value='4'/><inertia ixx='2' ixy='0' ixz='0' iyy='3' iyz='0' izz='4'/></inertial></link>" JOINT(
+                     "j", "continuous", "base", "b") "</robot>",
+                 &robot, a, &e));
     struct urdf_options o = {.keep_fixed = true};
     struct model *m = urdf_model(&robot, &o, a, &e);
     assert_non_null(m);
@@ -105,14 +108,15 @@ static void fixed_links_become_part_of_their_parents(void **state)
     struct arena *a = arena_create();
     struct urdf_robot robot;
     struct err e;
-    assert_true(read_xml("<robot name='r'>\n" LINK("base") LINK("left") LINK("right")
-                         "<link name='camera'/>" LINK("tip")
-                         "<joint name='hinge' type='revolute'><parent link='base'/><child link='left'/></joint>"
-                         "<joint name='weld' type='fixed'><origin xyz='2 0 0' rpy='0 0 1.5707963267948966'/>"
-                         "<parent link='left'/><child link='right'/></joint>"
-                         JOINT("mount", "fixed", "right", "camera")
-                         "<joint name='far' type='prismatic'><origin xyz='1 0 0'/><parent link='right'/><child link='tip'/></joint>"
-                         "</robot>", &robot, a, &e));
+    assert_true(read_xml(
+        "<robot name='r'>\n" LINK("base") LINK("left") LINK("right") "<link name='camera'/>" LINK(
+            "tip") "<joint name='hinge' type='revolute'><parent link='base'/><child link='left'/></joint>"
+                   "<joint name='weld' type='fixed'><origin xyz='2 0 0' rpy='0 0 1.5707963267948966'/>"
+                   "<parent link='left'/><child link='right'/></joint>" JOINT(
+                       "mount", "fixed", "right", "camera") "<joint name='far' type='prismatic'><origin xyz='1 0 "
+                                                            "0'/><parent link='right'/><child link='tip'/></joint>"
+                                                            "</robot>",
+        &robot, a, &e));
     struct urdf_options o = {.floating = false};
     struct model *m = urdf_model(&robot, &o, a, &e);
     assert_non_null(m);
@@ -154,26 +158,32 @@ static void what_is_not_supported_is_listed_with_its_line(void **state)
 static void malformed_robots_are_refused_at_their_line(void **state)
 {
     (void)state;
-    static const struct { const char *xml; int line; const char *text; } bad[] = {
+    static const struct { const char *xml; int line; const char *text;
+    } bad[] = {
         {"<robot name='r'>\n<link name='a'>\n</robot>", 3, "XML"},
         {"<sdf/>", 1, "not <robot>"},
         {"<robot name='r'/>", 0, "no links"},
         {"<robot name='r'>\n<link/></robot>", 2, "without a name"},
         {"<robot name='r'>\n" LINK("a") LINK("a") "</robot>", 3, "second link 'a'; the first is on line 2"},
         {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "hinge", "a", "b") "</robot>", 4, "unknown type 'hinge'"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolut", "a", "b") "</robot>", 4, "did you mean 'revolute'"},
+        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolut", "a", "b") "</robot>", 4,
+         "did you mean 'revolute'"},
         {"<robot name='r'>\n" LINK("forearm") LINK("b") JOINT("j", "revolute", "fourarm", "b") "</robot>", 4,
          "no link 'fourarm'; did you mean 'forearm'"},
         {"<robot name='r'>\n" LINK("a") LINK("b") "<joint name='j' type='fixed'><parent link='a'/></joint></robot>", 4,
          "no <child>"},
         {"<robot name='r'>\n" LINK("a") LINK("b") "</robot>", 3, "two roots"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolute", "a", "b") JOINT("k", "revolute", "b", "a")
-         "</robot>", 2, "cycle"},
-        {"<robot name='r'>\n" LINK("r") LINK("a") LINK("b") JOINT("j", "fixed", "a", "b") JOINT("k", "fixed", "b", "a")
-         "</robot>", 3, "cycle"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") LINK("c") JOINT("j", "fixed", "a", "c") JOINT("k", "fixed", "b", "c")
-         "</robot>", 6, "two parents"},
-        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "fixed", "a", "b") JOINT("j", "fixed", "a", "b") "</robot>",
+        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "revolute", "a", "b")
+             JOINT("k", "revolute", "b", "a") "</robot>",
+         2, "cycle"},
+        {"<robot name='r'>\n" LINK("r") LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
+             JOINT("k", "fixed", "b", "a") "</robot>",
+         3, "cycle"},
+        {"<robot name='r'>\n" LINK("a") LINK("b") LINK("c") JOINT("j", "fixed", "a", "c")
+             JOINT("k", "fixed", "b", "c") "</robot>",
+         6, "two parents"},
+        {"<robot name='r'>\n" LINK("a") LINK("b") JOINT("j", "fixed", "a", "b")
+             JOINT("j", "fixed", "a", "b") "</robot>",
          5, "second joint 'j'; the first is on line 4"},
         {"<robot name='r'>\n<link name='a'><inertial><mass value='heavy'/>", 2, "finite number expected"},
         {"<robot name='r'>\n<link name='a'><inertial><mass value='${m}'/>", 2, "expand xacro first"},
@@ -183,7 +193,8 @@ static void malformed_robots_are_refused_at_their_line(void **state)
         {"<robot name='r'>\n<link name='a'><inertial><origin xzy='1 2 3'/>", 2, "did you mean 'xyz'"},
         {"<robot name='r'>\n<link name='a'><intertial/>", 2, "did you mean <inertial>"},
         {"<robot name='r'>\n<link name='a'><inertial>\n</inertial></link></robot>", 3, "without <mass>"},
-        {"<robot name='r'>\n<link name='a'><inertial><mass value='1'/>\n</inertial></link></robot>", 3, "without <inertia>"},
+        {"<robot name='r'>\n<link name='a'><inertial><mass value='1'/>\n</inertial></link></robot>", 3,
+         "without <inertia>"},
         {"<robot name='r'>\n<link name='a'><inertial><inertia ixx='1'/>", 2, "without ixy="},
         {"<robot name='r'>\n" LINK("a") "<link name='b'/><joint name='j' type='revolute'>\n<axis xyz='0 0 0'/>", 4,
          "axis of joint 'j' has length zero"},
@@ -217,9 +228,12 @@ static void impossible_bodies_are_refused_by_name_and_line(void **state)
             struct urdf_robot robot;
             struct err e;
             char xml[1500];
-            snprintf(xml, sizeof xml, "<robot name='r'>\n%s<link name='odd'>\n<inertial><mass value='%s'/><inertia %s/></inertial></link>"
-                     "%s<joint name='k' type='%s'><parent link='b'/><child link='odd'/></joint></robot>",
-                     LINK("a") LINK("b"), bad[i].mass, bad[i].inertia, JOINT("j", "revolute", "a", "b"), fixed ? "fixed" : "planar");
+            snprintf(
+                xml, sizeof xml,
+                "<robot name='r'>\n%s<link name='odd'>\n<inertial><mass value='%s'/><inertia %s/></inertial></link>"
+                "%s<joint name='k' type='%s'><parent link='b'/><child link='odd'/></joint></robot>",
+                LINK("a") LINK("b"), bad[i].mass, bad[i].inertia, JOINT("j", "revolute", "a", "b"),
+                fixed ? "fixed" : "planar");
             assert_true(read_xml(xml, &robot, a, &e));
             struct urdf_options o = {.floating = true};
             assert_null(urdf_model(&robot, &o, a, &e));
@@ -239,8 +253,9 @@ static void a_moving_link_needs_mass(void **state)
     struct arena *a = arena_create();
     struct urdf_robot robot;
     struct err e;
-    assert_true(read_xml("<robot name='r'>\n" LINK("a") "<link name='frame'/>" JOINT("j", "revolute", "a", "frame") "</robot>",
-                         &robot, a, &e));
+    assert_true(
+        read_xml("<robot name='r'>\n" LINK("a") "<link name='frame'/>" JOINT("j", "revolute", "a", "frame") "</robot>",
+                 &robot, a, &e));
     struct urdf_options o = {.floating = false};
     assert_null(urdf_model(&robot, &o, a, &e));
     assert_non_null(strstr(e.text, "'frame'"));

@@ -141,7 +141,8 @@ static void a_case_is_read_with_its_answers_and_peers(void **state)
     assert_true(c.nbody == 3 && c.nq == 3 && c.nv == 3 && c.nloop == 1 && c.nrow == 2);
     assert_true(c.qdd_fd[1] == 60.823122796510845 && c.lambda[0] == -0.7350294203770859);
     assert_true(c.mass_matrix[1] == 0.39874504026046464 && c.mass_matrix[8] == 0.10856249999999998);
-    assert_true(c.loop[0].body_a == 1 && c.loop[0].body_b == 2 && c.loop[0].row[1][1] == 1 && c.loop[0].frame_a.p[0] == 0.8);
+    assert_true(c.loop[0].body_a == 1 && c.loop[0].body_b == 2 && c.loop[0].row[1][1] == 1 &&
+                c.loop[0].frame_a.p[0] == 0.8);
     assert_true(c.has_energy && c.potential == 7.7415029855993405);
     /* Simbody's 1.2e-16 is the best in double precision; the 113-bit entry is left out. */
     assert_true(c.peer_fd.error == 1.2e-16);

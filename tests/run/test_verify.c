@@ -20,9 +20,11 @@
 
 static const struct machine_spec crossbar = {
     .name = "crossbar",
-    .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {1024}, .nodes_per_router = 1, .processors_per_node = 1},
+    .topology =
+        {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {1024}, .nodes_per_router = 1, .processors_per_node = 1},
     .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
-    .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7, .virtual_channels = 1},
+    .network =
+        {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7, .virtual_channels = 1},
     .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
 };
 
@@ -200,7 +202,8 @@ static void json_has_every_row_and_sorted_keys(void **state)
     struct arena *a = arena_create();
     struct err e;
     const struct verify_options o = {.machine = NULL};
-    struct verify_report r[2] = {report_of(DATA("closed_fourbar.json"), &o, a), report_of(DATA("x_massless_n0014.json"), &o, a)};
+    struct verify_report r[2] = {report_of(DATA("closed_fourbar.json"), &o, a),
+                                 report_of(DATA("x_massless_n0014.json"), &o, a)};
     FILE *out = fdopen(mkstemp(path), "w");
     assert_non_null(out);
     verify_print_json(out, r, 2);
