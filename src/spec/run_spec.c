@@ -8,7 +8,8 @@
 bool run_spec_is_random(const struct run_spec *r)
 {
     const struct machine_spec *m = &r->machine;
-    bool valiant = m->topology.family == TOPOLOGY_DRAGONFLY && m->topology.routing == ROUTE_VALIANT;
+    bool chooses = m->topology.family == TOPOLOGY_DRAGONFLY || m->topology.family == TOPOLOGY_FAT_TREE;
+    bool valiant = chooses && m->topology.routing == ROUTE_VALIANT;
     return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant;
 }
 

@@ -308,7 +308,7 @@ static void settings_that_do_not_act_are_reported(void **state)
     assert_int_equal(p.nunused, 6);
     for (int i = 0; i < 6; i++) assert_ptr_equal(strstr(p.unused[i], expected[i]), p.unused[i]);
     plan_free(&p);
-    const char *const acting[] = {"kernel.solver=cr-pcr", "machine.noise.background.load=10 %", "level=packet"};
+    const char *const acting[] = {"kernel.solver=cr-pcr", "machine.noise.background.load=10 %", "level=link"};
     p = scratch_plan(path, acting, 3);
     assert_int_equal(p.nunused, 2); /* branch and mass_ratio */
     plan_free(&p);

@@ -169,7 +169,7 @@ static bool other_value(const struct field *f, const char *full, const void *bas
     }
     case FIELD_TEXT: return text_add(out, "%s", strcmp(full, "kernel.name") == 0 ? "forward" : "other"), true;
     case FIELD_INTS: return text_add(out, "[16, 16, 4]"), true;
-    case FIELD_INT_LIST: return text_add(out, "[3, 2, 1, 0]"), true;
+    case FIELD_INT_LIST: return text_add(out, "[4, 3, 2, 1]"), true;
     case FIELD_PAIR_LIST: return text_add(out, "[[0, 1]]"), true;
     case FIELD_REALS:
         units_print(3, f->unit, quantity, (int)sizeof quantity);

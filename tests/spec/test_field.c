@@ -104,7 +104,7 @@ static void random_value(const struct field *f, struct random *r, char *text, si
     }
     case FIELD_TEXT: snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000)); break;
     case FIELD_INTS: snprintf(text, size, "[%llu, 3]", (unsigned long long)random_below(r, 50) + 1); break;
-    case FIELD_INT_LIST: snprintf(text, size, "[5, %llu, 0]", (unsigned long long)random_below(r, 50)); break;
+    case FIELD_INT_LIST: snprintf(text, size, "[5, %llu, 1]", (unsigned long long)random_below(r, 50) + 1); break;
     case FIELD_PAIR_LIST: snprintf(text, size, "[[0, %llu], [2, 1]]", (unsigned long long)random_below(r, 50)); break;
     case FIELD_REALS: {
         size_t n = (size_t)snprintf(text, size, "[");
