@@ -130,13 +130,15 @@ static struct answer answer_of(struct sample *s, enum network_level level, bool 
 static void compare(uint64_t seed, const struct sample *s, const struct answer *p, const struct answer *q)
 {
     for (int i = 0; i < s->q.nmessage; i++)
-        if (p->arrival[i] != q->arrival[i] || p->injected[i] != q->injected[i] || p->uncontended[i] != q->uncontended[i])
+        if (p->arrival[i] != q->arrival[i] || p->injected[i] != q->injected[i] ||
+            p->uncontended[i] != q->uncontended[i])
             fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i, (long long)p->arrival[i],
                      (long long)q->arrival[i]);
     assert_true(p->r.deadlock == q->r.deadlock);
     for (int i = 0; i < p->r.nlink && !p->r.deadlock; i++) {
         const struct link_load *k = &p->r.link[i], *l = &q->r.link[i];
-        if (k->messages != l->messages || k->bytes != l->bytes || k->busy_ps != l->busy_ps || k->queue_ps != l->queue_ps)
+        if (k->messages != l->messages || k->bytes != l->bytes || k->busy_ps != l->busy_ps ||
+            k->queue_ps != l->queue_ps)
             fail_msg("seed %d: load of resource %d differs", (int)seed, i);
     }
 }
@@ -223,7 +225,8 @@ static double events_per_message(const char *topology, int vcs, double load)
     assert_true(netcheck_topology(topology, 0, &s.spec, &e));
     s.machine = netcheck_machine(&s.spec, vcs, 22, 0, 3);
     s.topology = topology_create(&s.machine.topology, s.arena, &e);
-    assert_true(netcheck_load("uniform", s.topology, 20, load, 400000 / s.topology->nnode + 100000, 3, s.arena, &s.q, &e));
+    assert_true(
+        netcheck_load("uniform", s.topology, 20, load, 400000 / s.topology->nnode + 100000, 3, s.arena, &s.q, &e));
     assert_true(s.q.nmessage > 200);
     struct answer p = answer_of(&s, LEVEL_PACKET, false), q = answer_of(&s, LEVEL_AUTO, false);
     compare(0, &s, &p, &q);

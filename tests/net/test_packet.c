@@ -33,7 +33,8 @@ static void hand_cases_are_exact(void **state)
     for (int i = 0; i < n.nrow; i++) {
         const struct netcheck_answer *x = &n.row[i].answer[LEVEL_PACKET];
         assert_true(x->ran && x->error == 0);
-        if (n.row[i].name[0] == 'L') { /* derived for one FIFO per link; with two dateline classes one arrives earlier */
+        if (n.row[i].name[0] ==
+            'L') { /* derived for one FIFO per link; with two dateline classes one arrives earlier */
             assert_int_equal(x->differing, 1);
             continue;
         }
