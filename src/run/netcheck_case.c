@@ -40,6 +40,23 @@ static int numbers_in(const char *text, int *number, int most)
     return n;
 }
 
+/* "8x8" anywhere in text: numbers joined by x; or "k8n2", "k8_n2": n times k */
+static int radices_in(const char *text, int *radix, int most)
+{
+    int n = 0;
+    bool by_power = false;
+    for (; *text && !isdigit((unsigned char)*text); text++) by_power = *text == 'k';
+    while (isdigit((unsigned char)*text) && n < most) {
+        char *end;
+        radix[n++] = (int)strtol(text, &end, 10);
+        text = end + (*end == 'x' && isdigit((unsigned char)end[1]));
+    }
+    int times = 1;
+    if (by_power && n == 1 && numbers_in(text, &times, 1) == 1)
+        for (n = 0; n < times && n < most; n++) radix[n] = radix[0];
+    return n;
+}
+
 bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struct err *e)
 {
     *s = (struct topology_spec){.nodes_per_router = 1, .processors_per_node = 1};
@@ -50,10 +67,12 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
         s->family = families[i].family;
     }
     if (!found) return err_set(e, ERR_DATA, "unknown topology '%s'", name);
-    s->ndim = numbers_in(found, s->dims, MACHINE_MAX_DIMS);
-    if (s->ndim == 0) s->ndim = numbers_in(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
+    bool grid = s->family == TOPOLOGY_TORUS || s->family == TOPOLOGY_MESH;
+    s->ndim = (grid ? radices_in : numbers_in)(found, s->dims, MACHINE_MAX_DIMS);
+    if (s->ndim == 0) s->ndim = (grid ? radices_in : numbers_in)(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
     if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s' lacks its numbers", name);
+    if (strstr(name, "valiant")) s->routing = ROUTE_VALIANT;
     if (s->family == TOPOLOGY_FAT_TREE) s->routing = ROUTE_VALIANT; /* the reference's way up is random */
     if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0;            /* what follows p, a and h is the number of nodes */
     return true;
