@@ -3,22 +3,34 @@
 
 #include <string.h>
 
+#include "kernel/contraction.h"
 #include "kernel/estimate.h"
 #include "kernel/forward.h"
 
 static const char *const stage_name[] = {"Pre-processing", "NE[1]", "NE[2]", "NE[3]", "CFA[1]", "CFA[2]", "CFA[3]"};
 enum { INVERSE_STAGES = 4, FORWARD_STAGES = 7 };
 
-/* inverse's workspace. */
-struct inverse {
+/* inverse's workspaces. */
+struct chain_inverse {
     struct chain chain;
     real *ud, *tau; /* own joints */
 };
+struct tree_inverse {
+    struct tree tree;
+    real *ud, *tau;
+};
+
+/* branches: the model is not a plain open chain, so the programs for trees run it. */
+static bool branches(const struct model *m) { return !m->is_chain || m->nloop > 0; }
 
 static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     if (spec->nrank > model->nbody)
         return err_set(e, ERR_CONFIG, "%d processors for %d bodies: each needs at least one", spec->nrank, model->nbody);
+    if (branches(model) && spec->kernel.operators == OPERATORS_DENSE)
+        return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
+    if (branches(model) && !spec->kernel.composites_incoming)
+        return err_set(e, ERR_CONFIG, "outgoing composites exist for open chains only");
     return true;
 }
 
@@ -28,7 +40,7 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
     if (!accepts_inverse(spec, model, e)) return false;
     if (!model->has_phi)
         return err_set(e, ERR_CONFIG, "a body has no invertible inertia: the constraint force algorithm needs one");
-    if (k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
+    if (!branches(model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
     return true;
 }
@@ -36,11 +48,11 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 {
     (void)e;
-    job->shared = chain_shared_make(job, a);
+    job->shared = branches(job->model) ? (const void *)tree_shared_make(job, a) : chain_shared_make(job, a);
     return true;
 }
 
-static void inverse_carve(struct inverse *v, struct carve *c, const struct kernel_job *job, int rank)
+static void chain_inverse_carve(struct chain_inverse *v, struct carve *c, const struct kernel_job *job, int rank)
 {
     chain_carve(&v->chain, c, job, rank, false, true);
     scan_carve(&v->chain.scan, c, v->chain.dense, job->spec->kernel.composites_incoming, rank, job->nrank);
@@ -49,18 +61,40 @@ static void inverse_carve(struct inverse *v, struct carve *c, const struct kerne
     v->tau = CARVE(c, nu, real);
 }
 
+static void tree_inverse_carve(struct tree_inverse *v, struct carve *c, const struct kernel_job *job, int rank)
+{
+    tree_carve(&v->tree, c, job, rank);
+    v->ud = CARVE(c, v->tree.nu, real);
+    v->tau = CARVE(c, v->tree.nu, real);
+}
+
+/* head: room for a workspace's struct, before what is carved. */
+static size_t head(size_t size) { return (size + 15) & ~(size_t)15; }
+
 static size_t inverse_bytes(const struct kernel_job *job, int rank)
 {
-    struct inverse measured;
-    struct carve c = {.used = sizeof measured};
-    inverse_carve(&measured, &c, job, rank);
+    if (branches(job->model)) {
+        struct tree_inverse measured;
+        struct carve c = {.used = head(sizeof measured)};
+        tree_inverse_carve(&measured, &c, job, rank);
+        return c.used;
+    }
+    struct chain_inverse measured;
+    struct carve c = {.used = head(sizeof measured)};
+    chain_inverse_carve(&measured, &c, job, rank);
     return c.used;
 }
 
 static size_t forward_bytes(const struct kernel_job *job, int rank)
 {
+    if (branches(job->model)) {
+        struct contraction measured;
+        struct carve c = {.used = head(sizeof measured)};
+        contraction_carve(&measured, &c, job, rank);
+        return c.used;
+    }
     struct forward measured;
-    struct carve c = {.used = sizeof measured};
+    struct carve c = {.used = head(sizeof measured)};
     forward_carve(&measured, &c, job, rank);
     return c.used;
 }
@@ -71,12 +105,11 @@ static size_t dynamics_bytes(const struct kernel_job *job, int rank)
     return inverse > forward ? inverse : forward;
 }
 
-static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void chain_inverse_run(struct comm *c, const struct kernel_job *job, struct chain_inverse *v)
 {
-    struct inverse *v = workspace;
     struct chain *ch = &v->chain;
-    struct carve room = {.base = workspace, .used = (sizeof *v + 15) & ~(size_t)15};
-    inverse_carve(v, &room, job, comm_rank(c));
+    struct carve room = {.base = (char *)v, .used = head(sizeof *v)};
+    chain_inverse_carve(v, &room, job, comm_rank(c));
     ch->comm = ch->scan.comm = c;
     comm_stage(c, STAGE_PLACE);
     chain_load(ch);
@@ -93,15 +126,59 @@ static void inverse_run(struct comm *c, const struct kernel_job *job, void *work
     for (int k = 0; k < nu && job->tau; k++) job->tau[first + k] = (double)v->tau[k];
 }
 
-static void forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struct tree_inverse *v)
 {
-    struct forward *f = workspace;
-    struct carve room = {.base = workspace, .used = (sizeof *f + 15) & ~(size_t)15};
+    struct tree *t = &v->tree;
+    struct carve room = {.base = (char *)v, .used = head(sizeof *v)};
+    tree_inverse_carve(v, &room, job, comm_rank(c));
+    t->comm = c;
+    comm_stage(c, STAGE_PLACE);
+    tree_load(t);
+    for (int l = 0; l < t->n; l++)
+        for (int k = 0; k < tree_body(t, l)->d; k++)
+            v->ud[t->u_at[l] + k] = (real)job->state->qdd[tree_body(t, l)->u_at + k];
+    tree_place(t);
+    comm_stage(c, STAGE_VELOCITY);
+    tree_velocity(t);
+    comm_stage(c, STAGE_ACCELERATION);
+    tree_bias(t);
+    tree_acceleration(t, v->ud);
+    comm_stage(c, STAGE_FORCE);
+    tree_force(t, v->tau, NULL);
+    for (int l = 0; l < t->n && job->tau; l++)
+        for (int k = 0; k < tree_body(t, l)->d; k++) job->tau[tree_body(t, l)->u_at + k] = (double)v->tau[t->u_at[l] + k];
+}
+
+static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    if (branches(job->model)) tree_inverse_run(c, job, workspace);
+    else chain_inverse_run(c, job, workspace);
+}
+
+static void chain_forward_run(struct comm *c, const struct kernel_job *job, struct forward *f)
+{
+    struct carve room = {.base = (char *)f, .used = head(sizeof *f)};
     forward_carve(f, &room, job, comm_rank(c));
     forward_set(f, c);
     chain_load(&f->chain);
     forward_evaluate(f);
     forward_store(f);
+}
+
+static void tree_forward_run(struct comm *c, const struct kernel_job *job, struct contraction *k)
+{
+    struct carve room = {.base = (char *)k, .used = head(sizeof *k)};
+    contraction_carve(k, &room, job, comm_rank(c));
+    contraction_set(k, c);
+    tree_load(&k->tree);
+    contraction_evaluate(k);
+    contraction_store(k);
+}
+
+static void forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    if (branches(job->model)) tree_forward_run(c, job, workspace);
+    else chain_forward_run(c, job, workspace);
 }
 
 static void dynamics_run(struct comm *c, const struct kernel_job *job, void *workspace)

@@ -1,0 +1,325 @@
+/* contraction.c - forward dynamics of a tree around the contraction: loads, accelerations, loops, refinements
+ * (contraction.h). */
+#include "kernel/contraction.h"
+
+#include <string.h>
+
+#include "kernel/chain.h"
+#include "kernel/compound.h"
+#include "kernel/tags.h"
+
+enum { TAG_ANCHOR = TAG_TREE + 2 };
+
+/* most_record: numbers of the records of rank `rank`'s operations; their places into `at` unless NULL. */
+static int records(const struct tree_plan *plan, int rank, int room, int *at)
+{
+    int n = 0;
+    for (int i = plan->ops.at[rank]; i < plan->ops.at[rank + 1]; i++) {
+        const struct tree_op *op = &plan->op[plan->ops.item[i]];
+        if (at) at[i - plan->ops.at[rank]] = n;
+        if (op->to == rank) n += contraction_record_size(op->kind, room);
+    }
+    return n;
+}
+
+void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job, int rank)
+{
+    const struct tree_shared *s = job->shared;
+    const struct tree_plan *plan = s->plan;
+    tree_carve(&k->tree, c, job, rank);
+    closure_carve(&k->closure, c, s->closure, rank);
+    const int n = k->tree.n, nu = k->tree.nu, room = k->room = k->closure.m;
+    k->direct = job->spec->kernel.formulation == FORMULATION_DIRECT;
+    k->tau = CARVE(c, nu, real);
+    k->active = CARVE(c, nu, real);
+    k->answer = CARVE(c, nu, real);
+    k->ud = CARVE(c, room * nu, real);
+    k->load = CARVE(c, 6 * room * n, real);
+    k->compound = CARVE(c, compound_size(room) * n, real);
+    k->f1 = CARVE(c, 6 * room * n, real);
+    k->f2 = CARVE(c, 6 * room * n, real);
+    k->acceleration = CARVE(c, 6 * room * n, real);
+    k->offset = CARVE(c, 6 * n, real);
+    k->residual_bias = CARVE(c, 6 * n, real);
+    k->joint = CARVE(c, (21 + 6 * room) * n, real);
+    k->record_at = CARVE(c, plan->ops.at[rank + 1] - plan->ops.at[rank], int);
+    k->record = CARVE(c, records(plan, rank, room, k->record_at), real);
+    k->message = CARVE(c, compound_size(room) + 7 + 6 + 6 + 12 * room, real);
+    k->anchor_acceleration = CARVE(c, 6 * room, real);
+    const int sides = s->closure ? 2 * s->closure->nloop : 0;
+    k->side = CARVE(c, sides, real *);
+    k->side_room = CARVE(c, k->closure.takes_part ? 6 * room * sides : 0, real);
+    k->lambda = CARVE(c, room - 1, real);
+}
+
+void contraction_set(struct contraction *k, struct comm *c) { k->tree.comm = k->closure.comm = c; }
+
+static real *columns(real *array, int room, int l) { return array + 6 * room * l; }
+static bool has_loops(const struct contraction *k) { return k->room > 1; }
+
+/* given_forces: tau of own joints, springs included. */
+static void given_forces(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        real *tau = k->tau + t->u_at[l];
+        for (int i = 0; i < b->d; i++) tau[i] = (real)t->job->state->tau[b->u_at + i];
+        if (!b->has_spring) continue;
+        body_spring(b, t->q + t->q_at[l], t->u + t->u_at[l], tau);
+        t->work.flop += BODY_SPRING_FLOP;
+    }
+}
+
+/* make_loads: external loads of all columns: Fext - P in column 0 if it has the velocity terms, loop forces behind. */
+static void make_loads(struct contraction *k, bool terms)
+{
+    struct tree *t = &k->tree;
+    memset(k->load, 0, (size_t)(6 * k->room * t->n) * sizeof(real));
+    for (int l = 0; l < t->n; l++) {
+        real *load = columns(k->load, k->room, l);
+        if (terms) {
+            tree_gyro(t, l, load);
+            for (int i = 0; i < 6; i++) load[i] = -load[i];
+        }
+        closure_loads(&k->closure, t->bodies[l], load, &t->work);
+    }
+}
+
+/* meet_loops: poses and velocities of the loops' own sides, then the exchange. */
+static void meet_loops(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    const struct closure_shared *s = t->shared->closure;
+    if (!s) return;
+    for (int side = 0; side < 2 * s->nloop && k->closure.takes_part; side++) {
+        if (s->owner[side] != comm_rank(t->comm)) continue;
+        const int l = t->shared->plan->local[closure_body(s, side)];
+        tree_base_pose(t, l, &k->closure.side_pose[side]);
+        six_copy(k->closure.side_velocity + 6 * side, tree_at(t->v, l));
+    }
+    closure_meet(&k->closure, &t->work);
+}
+
+/* accelerate: accelerations of own bodies in all columns of the present solution; column 0 adds up if `add`. */
+static void accelerate(struct contraction *k, bool add)
+{
+    struct tree *t = &k->tree;
+    const bool loads = k->given.load != NULL;
+    for (int l = 0; l < t->n; l++)
+        for (int j = 0; j < k->m; j++) {
+            real net[6], y[6], *a = columns(k->acceleration, k->room, l) + 6 * j;
+            const real *f1 = columns(k->f1, k->room, l) + 6 * j, *f2 = columns(k->f2, k->room, l) + 6 * j;
+            for (int i = 0; i < 6; i++) net[i] = f1[i] + f2[i] + (loads ? columns(k->load, k->room, l)[6 * j + i] : 0);
+            body_accelerate(tree_body(t, l), net, y);
+            for (int i = 0; i < 6; i++) a[i] = add ? a[i] + y[i] : y[i];
+            t->work.flop += (uint64_t)(SYM6_MUL_FLOP + SIX_ADD_FLOP * (1 + loads + add));
+            t->work.call++;
+        }
+    tree_report(t);
+}
+
+/* share_anchors: accelerations of anchor bodies to the pieces hanging there. */
+static void share_anchors(struct contraction *k, int m)
+{
+    struct tree *t = &k->tree;
+    const struct tree_plan *plan = t->shared->plan;
+    const int64_t bytes = 6 * m * (int64_t)sizeof(real);
+    int nkid;
+    const int *kid = tree_kids(t, &nkid);
+    for (int i = 0; i < nkid; i++)
+        comm_send(t->comm, kid[i], TAG_ANCHOR, columns(k->acceleration, k->room, plan->local[plan->anchor[kid[i]]]), bytes);
+    if (t->piece >= 0 && plan->parent[t->piece] >= 0)
+        comm_recv(t->comm, plan->parent[t->piece], TAG_ANCHOR, k->anchor_acceleration, bytes);
+}
+
+/* largest: the larger of `so_far` and the elements of x (n) by magnitude. */
+static real largest(real so_far, int n, const real *x)
+{
+    for (int i = 0; i < n; i++)
+        if (!(real_fabs(x[i]) <= so_far)) so_far = real_fabs(x[i]);
+    return so_far;
+}
+
+/* joint_accelerations: ud = H^T (a - X^T a_parent - bias - base) of columns 0 .. m-1; notes what the constraints of
+ * column 0 leave over, as a bias for the next refinement. */
+static void joint_accelerations(struct contraction *k, int m, const real *bias, const real *base)
+{
+    struct tree *t = &k->tree;
+    real residual = 0, scale = 0;
+    share_anchors(k, m);
+    for (int l = 0; l < t->n; l++) {
+        const int p = tree_parent(t, l), d = tree_body(t, l)->d;
+        const bool on_base = tree_body(t, l)->parent < 0;
+        const struct subspace *s = &t->pose[l].s;
+        for (int j = 0; j < m; j++) {
+            real z[6], moved[6], rest[6], *a = columns(k->acceleration, k->room, l) + 6 * j;
+            const real *below = on_base ? (j == 0 ? base : NULL)
+                                        : p >= 0 ? columns(k->acceleration, k->room, p) + 6 * j : k->anchor_acceleration + 6 * j;
+            six_copy(z, a);
+            if (below) {
+                xform_motion(moved, &t->pose[l].x, below);
+                six_sub(z, moved);
+                t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+            }
+            if (j == 0 && bias) {
+                six_sub(z, bias + 6 * l);
+                t->work.flop += SIX_ADD_FLOP;
+            }
+            subspace_h_transposed(s, z, k->ud + j * t->nu + t->u_at[l]);
+            t->work.flop += (uint64_t)joint_cost_of(tree_body(t, l)->joint)->h_transposed;
+            if (j > 0) continue;
+            subspace_w_transposed(s, z, rest);
+            residual = largest(residual, 6 - d, rest);
+            scale = largest(scale, 6, a);
+            real *left_over = k->residual_bias + 6 * l;
+            six_zero(left_over);
+            for (int i = 0; i < 6 - d; i++) rest[i] = -rest[i];
+            subspace_w(s, rest, left_over);
+        }
+    }
+    k->residual = scale > 0 ? residual / scale : residual;
+    tree_report(t);
+}
+
+/* refine_inside: contract again with the constraints' residual for a bias (physics 8.6, inner refinement). */
+static void refine_inside(struct contraction *k, const real *bias, const real *base)
+{
+    const int m = k->m, inner = k->tree.job->spec->kernel.inner_refinements;
+    const struct contraction_given given = k->given;
+    for (int pass = 0; pass < inner; pass++) {
+        k->m = 1;
+        k->given = (struct contraction_given){.bias = k->residual_bias};
+        comm_stage(k->tree.comm, STAGE_SOLVE);
+        contraction_solve(k);
+        comm_stage(k->tree.comm, STAGE_FINISH);
+        accelerate(k, true);
+        joint_accelerations(k, 1, bias, base);
+    }
+    k->m = m;
+    k->given = given;
+}
+
+/* close_loops: lambda from the accelerations of the loops' bodies; the answer's columns put together. */
+static void close_loops(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    const struct closure_shared *s = t->shared->closure;
+    for (int side = 0; s && side < 2 * s->nloop && k->closure.takes_part; side++) {
+        if (s->owner[side] != comm_rank(t->comm)) continue;
+        const int l = t->shared->plan->local[closure_body(s, side)];
+        k->side[side] = k->side_room + 6 * k->room * side;
+        memcpy(k->side[side], columns(k->acceleration, k->room, l), (size_t)(6 * k->room) * sizeof(real));
+        six_add(k->side[side], k->offset + 6 * l);
+        t->work.flop += SIX_ADD_FLOP;
+    }
+    if (s) closure_solve(&k->closure, k->side, &t->work);
+    for (int i = 0; i < t->nu; i++) {
+        real sum = k->ud[i];
+        for (int j = 1; j < k->room; j++) sum += k->closure.lambda[j - 1] * k->ud[j * t->nu + i];
+        k->answer[i] += sum;
+    }
+    for (int j = 1; j < k->room; j++) k->lambda[j - 1] += k->closure.lambda[j - 1];
+    t->work.flop += (uint64_t)(2 * (k->room - 1) * t->nu);
+    tree_report(t);
+}
+
+/* first_solution: u' for all columns. */
+static void first_solution(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    const real *bias = k->direct ? t->b : NULL, *base = k->direct ? t->shared->base : NULL;
+    k->m = k->room;
+    make_loads(k, k->direct);
+    k->given = (struct contraction_given){k->active, bias, k->direct || has_loops(k) ? k->load : NULL, base};
+    tree_report(t);
+    comm_stage(t->comm, STAGE_SOLVE);
+    contraction_solve(k);
+    comm_stage(t->comm, STAGE_FINISH);
+    accelerate(k, false);
+    joint_accelerations(k, k->m, bias, base);
+    refine_inside(k, bias, base);
+    close_loops(k);
+}
+
+/* loop_forces: f -= the loops' forces on own bodies, for inverse dynamics of the closed system. */
+static void loop_forces(struct contraction *k, real *f)
+{
+    struct tree *t = &k->tree;
+    for (int l = 0; l < t->n && has_loops(k); l++)
+        for (int j = 1; j < k->room; j++)
+            six_axpy(tree_at(f, l), -k->lambda[j - 1], columns(k->load, k->room, l) + 6 * j);
+}
+
+/* refine_outside: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6). */
+static void refine_outside(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    const real residual = k->residual;
+    comm_stage(t->comm, STAGE_ACCELERATION);
+    tree_acceleration(t, k->answer);
+    memcpy(k->offset, t->a, (size_t)(6 * t->n) * sizeof(real));
+    comm_stage(t->comm, STAGE_FORCE);
+    memset(k->residual_bias, 0, (size_t)(6 * t->n) * sizeof(real));
+    loop_forces(k, k->residual_bias);
+    tree_force(t, k->active, k->residual_bias);
+    for (int i = 0; i < t->nu; i++) k->active[i] = k->tau[i] - k->active[i];
+    t->work.flop += (uint64_t)t->nu;
+    tree_report(t);
+    k->m = 1;
+    k->given = (struct contraction_given){.active = k->active};
+    comm_stage(t->comm, STAGE_SOLVE);
+    contraction_solve(k);
+    comm_stage(t->comm, STAGE_FINISH);
+    accelerate(k, false);
+    joint_accelerations(k, 1, NULL, NULL);
+    refine_inside(k, NULL, NULL);
+    close_loops(k);
+    k->residual = residual;
+}
+
+void contraction_evaluate(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    comm_stage(t->comm, STAGE_PLACE);
+    given_forces(k);
+    tree_place(t);
+    comm_stage(t->comm, STAGE_VELOCITY);
+    tree_velocity(t);
+    comm_stage(t->comm, STAGE_ASSEMBLY);
+    meet_loops(k);
+    tree_bias(t);
+    memcpy(k->active, k->tau, (size_t)t->nu * sizeof(real));
+    memset(k->answer, 0, (size_t)t->nu * sizeof(real));
+    memset(k->offset, 0, (size_t)(6 * t->n) * sizeof(real));
+    memset(k->lambda, 0, (size_t)(k->room - 1) * sizeof(real));
+    if (!k->direct) {
+        tree_report(t);
+        comm_stage(t->comm, STAGE_ACCELERATION);
+        tree_acceleration(t, NULL);
+        memcpy(k->offset, t->a, (size_t)(6 * t->n) * sizeof(real));
+        comm_stage(t->comm, STAGE_FORCE);
+        tree_force(t, k->ud, NULL);
+        comm_stage(t->comm, STAGE_ASSEMBLY);
+        for (int i = 0; i < t->nu; i++) k->active[i] = k->tau[i] - k->ud[i];
+        t->work.flop += (uint64_t)t->nu;
+    }
+    first_solution(k);
+    for (int pass = 0; pass < t->job->spec->kernel.outer_refinements; pass++) refine_outside(k);
+}
+
+void contraction_store(const struct contraction *k)
+{
+    const struct tree *t = &k->tree;
+    const struct kernel_job *job = t->job;
+    const int rank = comm_rank(t->comm);
+    for (int l = 0; l < t->n && job->qdd; l++) {
+        const struct body *b = tree_body(t, l);
+        for (int i = 0; i < b->d; i++)
+            job->qdd[b->u_at + i] = k->broken ? __builtin_nan("") : (double)k->answer[t->u_at[l] + i];
+    }
+    if (job->residual) job->residual[rank] = (double)k->residual;
+    if (rank != 0) return;
+    for (int j = 0; j + 1 < k->room && job->lambda; j++) job->lambda[j] = (double)k->lambda[j];
+    if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;
+}

@@ -1,0 +1,79 @@
+/* contraction.h - parallel forward dynamics of a tree: the constraint force system eliminated in the order of a tree
+ * contraction, one rank's program (physics 6.2).
+ *
+ * A compound is a connected set of bodies with a top joint and one open bottom body:
+ *
+ *     a_1 = P11 f_1 + P12 f_2 + beta_1,   a_2 = P12^T f_1 + P22 f_2 + beta_2
+ *
+ * f_1 acts at the top joint, f_2 at the bottom body. Loads come in columns: the real ones first, then one for each
+ * loop constraint. The paper's formulation contracts what remains of tau after a bias inverse dynamics, without
+ * velocity terms; the direct one keeps those in beta and in the joints' biases. Refinements contract again, with the
+ * residual for a load. */
+#ifndef KERNEL_CONTRACTION_H
+#define KERNEL_CONTRACTION_H
+
+#include "kernel/tree.h"
+
+/* What is given for one solution: zero where a pointer is NULL. */
+struct contraction_given {
+    const real *active;  /* own joints: joint forces, column 0 */
+    const real *bias;    /* own bodies (6): joint bias accelerations, column 0 */
+    const real *load;    /* own bodies (6 x room): external loads of all columns */
+    const real *base;    /* (6) acceleration of the base, column 0 */
+};
+
+struct contraction {
+    struct tree tree;
+    struct closure closure;
+    bool direct;
+    int room;            /* columns that arrays are made for: 1 + loop constraints */
+    int m;               /* columns of the present solution */
+    struct contraction_given given;
+    real *tau;           /* own joints: given forces and springs */
+    real *active;        /* own joints: forces of the present solution */
+    real *ud;            /* (room x own joints) answers of all columns */
+    real *answer;        /* own joints */
+    real *load;          /* own bodies (6 x room) */
+    real *compound;      /* own bodies: P11 (21) P12 (36) P22 (21) beta_1 (6 room) beta_2 (6 room) */
+    real *f1, *f2;       /* own bodies (6 x room) */
+    real *acceleration;  /* own bodies (6 x room) */
+    real *offset;        /* own bodies (6): accelerations that column 0 does not contain */
+    real *residual_bias; /* own bodies (6) */
+    real *joint;         /* own bodies: N (21), h (6 room) of a raked joint */
+    real *record;        /* what undoing the operations into own compounds needs */
+    int *record_at;      /* (own operations) */
+    real *message, *anchor_acceleration;
+    real **side;         /* (2 nloop) accelerations of own loop sides */
+    real *side_room;
+    real *lambda;        /* (nrow) loop forces, summed over refinements */
+    real residual;
+    bool broken;
+};
+
+/* contraction_carve: room for rank `rank`. */
+#define contraction_carve REAL_NAME(contraction_carve)
+void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job, int rank);
+
+/* contraction_set: the communicator of this rank. */
+#define contraction_set REAL_NAME(contraction_set)
+void contraction_set(struct contraction *k, struct comm *c);
+
+/* contraction_evaluate: the answer from the coordinates and rates in the tree. Every rank must call. */
+#define contraction_evaluate REAL_NAME(contraction_evaluate)
+void contraction_evaluate(struct contraction *k);
+
+/* contraction_store: the answer and the loop forces into the job's arrays. */
+#define contraction_store REAL_NAME(contraction_store)
+void contraction_store(const struct contraction *k);
+
+/* contraction_solve: f1, f2 of all own bodies for what is given (k->given, k->m columns): contract, then undo. */
+#define contraction_solve REAL_NAME(contraction_solve)
+void contraction_solve(struct contraction *k);
+
+/* contraction_record_size: numbers that an operation leaves for its undoing at the rank of its `into`. */
+static inline int contraction_record_size(enum tree_kind kind, int room)
+{
+    return kind == TREE_RAKE ? 78 + 12 * room : 84 + 6 * room;
+}
+
+#endif

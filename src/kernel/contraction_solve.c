@@ -1,0 +1,237 @@
+/* contraction_solve.c - one solution of the tree's constraint forces: contract, solve the roots, undo (contraction.h). */
+#include <string.h>
+
+#include "kernel/compound.h"
+#include "kernel/contraction.h"
+#include "kernel/tags.h"
+#include "linalg/dense.h"
+
+enum { TAG_UP = TAG_TREE, TAG_DOWN = TAG_TREE + 1 };
+
+static const struct tree_plan *plan_of(const struct contraction *k) { return k->tree.shared->plan; }
+static int local_of(const struct contraction *k, int body) { return plan_of(k)->local[body]; }
+static real *columns(real *array, int room, int l) { return array + 6 * room * l; }
+
+static struct compound own_compound(const struct contraction *k, int body)
+{
+    return compound_at(k->compound + compound_size(k->room) * local_of(k, body), k->m);
+}
+
+/* own_joint: the view of an own body's joint. */
+static struct joint_view own_joint(const struct contraction *k, int body)
+{
+    const int l = local_of(k, body);
+    const struct tree *t = &k->tree;
+    struct joint_view v = {.x = &t->pose[l].x, .s = &t->pose[l].s};
+    if (k->given.active) v.active = k->given.active + t->u_at[l];
+    if (k->given.bias) v.bias = k->given.bias + 6 * l;
+    return v;
+}
+
+/* single_bodies: every own body as a compound. */
+static void single_bodies(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        struct compound c = own_compound(k, t->bodies[l]);
+        real full[36];
+        sym6_expand(full, &b->phi);
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j <= i; j++) c.p11[packed_index(i, j)] = c.p22[packed_index(i, j)] = full[6 * i + j];
+        memcpy(c.p12, full, sizeof full);
+        for (int j = 0; j < k->m; j++) {
+            real *beta = c.beta1 + 6 * j;
+            six_zero(beta);
+            if (k->given.load && (j == 0 || k->m > 1)) {
+                body_accelerate(b, columns((real *)k->given.load, k->room, l) + 6 * j, beta);
+                t->work.flop += SYM6_MUL_FLOP;
+            }
+            six_copy(c.beta2 + 6 * j, beta);
+        }
+    }
+}
+
+static void check(struct contraction *k, bool sound) { k->broken = k->broken || !sound; }
+
+/* rake: own leaves summed, sent to their parent's rank or absorbed there. */
+static void rake(struct contraction *k, const struct tree_op *op, real *record)
+{
+    struct tree *t = &k->tree;
+    const int me = comm_rank(t->comm), m = k->m;
+    real *dI = k->message, *dp = dI + 21;
+    const int64_t bytes = (21 + 6 * m) * (int64_t)sizeof(real);
+    if (op->from == me) {
+        memset(dI, 0, (size_t)bytes);
+        for (int i = 0; i < op->count; i++) {
+            const int v = plan_of(k)->absorbed[op->first + i];
+            const struct joint_view joint = own_joint(k, v);
+            const struct compound leaf = own_compound(k, v);
+            check(k, compound_rake(&joint, m, &leaf, k->joint + (21 + 6 * k->room) * local_of(k, v), dI, dp, &t->work));
+        }
+        if (op->to != me) {
+            tree_report(t);
+            comm_send(t->comm, op->to, TAG_UP, dI, bytes);
+            return;
+        }
+    } else {
+        comm_recv(t->comm, op->from, TAG_UP, dI, bytes);
+    }
+    struct compound u = own_compound(k, op->into);
+    check(k, compound_absorb(m, &u, dI, dp, record, &t->work));
+    tree_report(t);
+}
+
+/* merge: the compound below, here or by message with its joint's coordinates and what is given there. */
+static void merge(struct contraction *k, const struct tree_op *op, real *record)
+{
+    struct tree *t = &k->tree;
+    const int me = comm_rank(t->comm), m = k->m, size = compound_size(m), v = plan_of(k)->absorbed[op->first];
+    const struct body *b = &t->shared->body[v];
+    const int nactive = k->given.active ? b->d : 0, nbias = k->given.bias ? 6 : 0;
+    const int64_t bytes = (size + b->nq + nactive + nbias) * (int64_t)sizeof(real);
+    real *q = k->message + size, *active = q + b->nq, *bias = active + nactive;
+    struct joint_view joint;
+    struct body_pose pose;
+    struct compound below;
+    if (op->from == me) {
+        joint = own_joint(k, v);
+        below = own_compound(k, v);
+        if (op->to != me) {
+            memcpy(k->message, below.p11, (size_t)size * sizeof(real));
+            memcpy(q, t->q + t->q_at[local_of(k, v)], (size_t)b->nq * sizeof(real));
+            if (nactive) memcpy(active, joint.active, (size_t)nactive * sizeof(real));
+            if (nbias) six_copy(bias, joint.bias);
+            tree_report(t);
+            comm_send(t->comm, op->to, TAG_UP, k->message, bytes);
+            return;
+        }
+    } else {
+        comm_recv(t->comm, op->from, TAG_UP, k->message, bytes);
+        body_place(b, q, &pose);
+        t->work.flop += (uint64_t)joint_cost_of(b->joint)->place;
+        t->work.trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
+        joint = (struct joint_view){&pose.x, &pose.s, nactive ? active : NULL, nbias ? bias : NULL};
+        below = compound_at(k->message, m);
+    }
+    struct compound u = own_compound(k, op->into);
+    check(k, compound_merge(&joint, m, &u, &below, record, &t->work));
+    tree_report(t);
+}
+
+/* solve_roots: joint forces of the compounds that are left, against the base. */
+static void solve_roots(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    for (int i = 0; i < plan_of(k)->nroot; i++) {
+        const int v = plan_of(k)->root[i];
+        if (plan_of(k)->owner[v] != comm_rank(t->comm)) continue;
+        const struct compound c = own_compound(k, v);
+        const struct joint_view joint = own_joint(k, v);
+        real N[21], bias[6] = {0}, moved[6];
+        struct joint_view seen = joint;
+        if (joint.bias) six_copy(bias, joint.bias);
+        if (k->given.base) { /* the base's acceleration acts like a bias */
+            xform_motion(moved, joint.x, k->given.base);
+            six_add(bias, moved);
+            t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+        }
+        seen.bias = bias;
+        check(k, joint_compliance(joint.s, c.p11, N, &t->work));
+        joint_force(&seen, k->m, c.p11, N, c.beta1, NULL, columns(k->f1, k->room, local_of(k, v)), &t->work);
+        memset(columns(k->f2, k->room, local_of(k, v)), 0, (size_t)(6 * k->m) * sizeof(real));
+    }
+}
+
+/* unrake: acceleration of the parent's bottom body back to the leaves: f_v = h + N X_v^T a_2. */
+static void unrake(struct contraction *k, const struct tree_op *op, const real *record)
+{
+    struct tree *t = &k->tree;
+    const int me = comm_rank(t->comm), m = k->m;
+    real *a2 = k->message, part[6];
+    if (op->to == me) {
+        const real *dI = record, *n21 = record + 21, *n22 = record + 57, *dp = record + 78, *beta2 = dp + 6 * m;
+        for (int j = 0; j < m; j++) {
+            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + 6 * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + 6 * j, *a = a2 + 6 * j;
+            packed_multiply(n22, f2, a, &t->work);
+            for (int i = 0; i < 6; i++) a[i] += six_dot(n21 + 6 * i, f1) + beta2[6 * j + i];
+            packed_multiply(dI, a, part, &t->work);
+            for (int i = 0; i < 6; i++) f2[i] -= part[i] + dp[6 * j + i];
+            t->work.flop += 66 + 4 * SIX_ADD_FLOP;
+        }
+        if (op->from != me) {
+            tree_report(t);
+            comm_send(t->comm, op->from, TAG_DOWN, a2, 6 * m * (int64_t)sizeof(real));
+            return;
+        }
+    } else {
+        comm_recv(t->comm, op->to, TAG_DOWN, a2, 6 * m * (int64_t)sizeof(real));
+    }
+    for (int i = 0; i < op->count; i++) {
+        const int l = local_of(k, plan_of(k)->absorbed[op->first + i]);
+        const real *N = k->joint + (21 + 6 * k->room) * l, *h = N + 21;
+        for (int j = 0; j < m; j++) {
+            real *f1 = columns(k->f1, k->room, l) + 6 * j;
+            xform_motion(part, &t->pose[l].x, a2 + 6 * j);
+            packed_multiply(N, part, f1, &t->work);
+            six_add(f1, h + 6 * j);
+            six_zero(columns(k->f2, k->room, l) + 6 * j);
+            t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+        }
+    }
+    tree_report(t);
+}
+
+/* unmerge: f_v = h_0 + M_1 f_1 - M_3 f_2; v gets (f_v, f_2), u is left with -X f_v at its bottom. */
+static void unmerge(struct contraction *k, const struct tree_op *op, const real *record)
+{
+    struct tree *t = &k->tree;
+    const int me = comm_rank(t->comm), m = k->m, v = plan_of(k)->absorbed[op->first];
+    real *pair = k->message;
+    if (op->to == me) {
+        const real *h = record, *M1 = record + 6 * m, *M3 = M1 + 36;
+        const struct xform *x = (const struct xform *)(M3 + 36);
+        for (int j = 0; j < m; j++) {
+            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + 6 * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + 6 * j, *fv = pair + 12 * j;
+            for (int i = 0; i < 6; i++) fv[i] = h[6 * j + i] + six_dot(M1 + 6 * i, f1) - six_dot(M3 + 6 * i, f2);
+            six_copy(fv + 6, f2);
+            xform_force(f2, x, fv);
+            for (int i = 0; i < 6; i++) f2[i] = -f2[i];
+            t->work.flop += 2 * 66 + 2 * SIX_ADD_FLOP + XFORM_FORCE_FLOP;
+        }
+        if (op->from != me) {
+            tree_report(t);
+            comm_send(t->comm, op->from, TAG_DOWN, pair, 12 * m * (int64_t)sizeof(real));
+            return;
+        }
+    } else {
+        comm_recv(t->comm, op->to, TAG_DOWN, pair, 12 * m * (int64_t)sizeof(real));
+    }
+    for (int j = 0; j < m; j++) {
+        six_copy(columns(k->f1, k->room, local_of(k, v)) + 6 * j, pair + 12 * j);
+        six_copy(columns(k->f2, k->room, local_of(k, v)) + 6 * j, pair + 12 * j + 6);
+    }
+    tree_report(t);
+}
+
+void contraction_solve(struct contraction *k)
+{
+    const struct tree_plan *plan = plan_of(k);
+    const int me = comm_rank(k->tree.comm), first = plan->ops.at[me], count = plan->ops.at[me + 1] - first;
+    single_bodies(k);
+    tree_report(&k->tree);
+    for (int i = 0; i < count; i++) {
+        const struct tree_op *op = &plan->op[plan->ops.item[first + i]];
+        if (op->kind == TREE_RAKE) rake(k, op, k->record + k->record_at[i]);
+        else merge(k, op, k->record + k->record_at[i]);
+    }
+    solve_roots(k);
+    tree_report(&k->tree);
+    for (int i = count - 1; i >= 0; i--) {
+        const struct tree_op *op = &plan->op[plan->ops.item[first + i]];
+        if (op->kind == TREE_RAKE) unrake(k, op, k->record + k->record_at[i]);
+        else unmerge(k, op, k->record + k->record_at[i]);
+    }
+}

@@ -1,0 +1,316 @@
+/* tree.c - parallel Newton-Euler on pieces of a tree (tree.h). */
+#include "kernel/tree.h"
+
+#include <string.h>
+
+#include "kernel/tags.h"
+
+enum { VECTOR_BYTES = 6 * (int)sizeof(real), PAIR_BYTES = 18 * (int)sizeof(real) };
+
+/* side_owners: of the 2 nloop loop sides. */
+static const int *side_owners(const struct model *m, const struct tree_plan *plan, struct arena *a)
+{
+    int *owner = TAKE(a, 2 * m->nloop + 1, int);
+    for (int l = 0; l < m->nloop; l++) {
+        owner[2 * l] = m->loop[l].body_a < 0 ? -1 : plan->owner[m->loop[l].body_a];
+        owner[2 * l + 1] = m->loop[l].body_b < 0 ? -1 : plan->owner[m->loop[l].body_b];
+    }
+    return owner;
+}
+
+struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena *a)
+{
+    const struct model *m = job->model;
+    struct tree_shared *s = TAKE(a, 1, struct tree_shared);
+    s->plan = tree_plan_make(m, job->nrank, a);
+    s->body = bodies_make(m, a);
+    for (int i = 0; i < 6; i++)
+        s->base[i] = (real)job->state->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
+    s->closure = closure_shared_make(m, s->body, s->base, side_owners(m, s->plan, a), a);
+    return s;
+}
+
+void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank)
+{
+    const struct tree_shared *s = job->shared;
+    const struct tree_plan *plan = s->plan;
+    t->job = job;
+    t->shared = s;
+    t->piece = rank < plan->npiece ? rank : -1;
+    t->bodies = plan->bodies.item + plan->bodies.at[rank];
+    t->n = plan->bodies.at[rank + 1] - plan->bodies.at[rank];
+    t->poses = s->closure != NULL;
+    int *q_at = CARVE(c, t->n + 1, int), *u_at = CARVE(c, t->n + 1, int);
+    t->nq = t->nu = 0;
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        if (q_at) q_at[l] = t->nq, u_at[l] = t->nu;
+        t->nq += b->nq, t->nu += b->d;
+    }
+    if (q_at) q_at[t->n] = t->nq, u_at[t->n] = t->nu;
+    t->q_at = q_at, t->u_at = u_at;
+    t->q = CARVE(c, t->nq, real);
+    t->u = CARVE(c, t->nu, real);
+    t->pose = CARVE(c, t->n, struct body_pose);
+    t->h = CARVE(c, 6 * t->n, real);
+    t->v = CARVE(c, 6 * t->n, real);
+    t->a = CARVE(c, 6 * t->n, real);
+    t->f = CARVE(c, 6 * t->n, real);
+    t->b = CARVE(c, 6 * t->n, real);
+    t->level = CARVE(c, 12 * (plan->nlevel + 1), real);
+    t->base_pose = CARVE(c, 1, struct xform);
+    t->path = CARVE(c, 12 * t->n, real);
+    t->in = CARVE(c, 18, real);
+}
+
+void tree_load(struct tree *t)
+{
+    const struct state *s = t->job->state;
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        for (int k = 0; k < b->nq; k++) t->q[t->q_at[l] + k] = (real)s->q[b->q_at + k];
+        for (int k = 0; k < b->d; k++) t->u[t->u_at[l] + k] = (real)s->qd[b->u_at + k];
+    }
+}
+
+void tree_place(struct tree *t)
+{
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        const struct joint_cost *cost = joint_cost_of(b->joint);
+        body_place(b, t->q + t->q_at[l], &t->pose[l]);
+        body_rate(&t->pose[l], t->u + t->u_at[l], tree_at(t->h, l));
+        t->work.flop += (uint64_t)(cost->place + cost->rate);
+        t->work.trig += (uint64_t)cost->place_trig;
+        t->work.div += (uint64_t)cost->place_div;
+        t->work.call += 2;
+    }
+    tree_report(t);
+}
+
+/* add_motion: v += X^T u. */
+static void add_motion(struct tree *t, real *v, const struct xform *x, const real *u)
+{
+    real moved[6];
+    xform_motion(moved, x, u);
+    six_add(v, moved);
+    t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+    t->work.call++;
+}
+
+/* sweep_up: x_i = source_i + X_i^T x_parent over the piece; `entry` is the anchor's x, NULL: zero. x may be source. */
+static void sweep_up(struct tree *t, const real *source, const real *entry, real *x)
+{
+    for (int l = 0; l < t->n; l++) {
+        const int p = tree_parent(t, l);
+        if (x != source) six_copy(tree_at(x, l), source + 6 * l);
+        if (p >= 0) add_motion(t, tree_at(x, l), &t->pose[l].x, tree_at(x, p));
+        else if (entry) add_motion(t, tree_at(x, l), &t->pose[l].x, entry);
+    }
+}
+
+/* make_paths: transforms from own bodies to the piece's anchor. */
+static void make_paths(struct tree *t)
+{
+    for (int l = 0; l < t->n; l++) {
+        const int p = tree_parent(t, l);
+        if (p < 0) {
+            memcpy(t->path + 12 * l, &t->pose[l].x, 12 * sizeof(real));
+            continue;
+        }
+        xform_compose((struct xform *)(t->path + 12 * l), (struct xform *)(t->path + 12 * p), &t->pose[l].x);
+        t->work.flop += XFORM_COMPOSE_FLOP;
+        t->work.call++;
+    }
+}
+
+/* grounded: the piece hangs at the base, so that nothing enters it. */
+static bool grounded(const struct tree *t, int piece) { return t->shared->plan->parent[piece] < 0; }
+
+/* hand_down: x (and, first, the path) of the anchor bodies to the pieces hanging there. */
+static void hand_down(struct tree *t, const real *x, bool first, int tag)
+{
+    int nkid;
+    const int *kid = tree_kids(t, &nkid);
+    real message[18];
+    for (int k = 0; k < nkid; k++) {
+        const int l = t->shared->plan->local[t->shared->plan->anchor[kid[k]]];
+        six_copy(message, x + 6 * l);
+        if (first) memcpy(message + 6, t->path + 12 * l, 12 * sizeof(real));
+        comm_send(t->comm, kid[k], tag, message, first ? PAIR_BYTES : VECTOR_BYTES);
+    }
+}
+
+/* jump: one step of pointer jumping: E += T_j^T E of the 2^j-th ancestor; first: its composite joins ours. */
+static void jump(struct tree *t, int j, real *E, bool first, int tag)
+{
+    const struct tree_plan *plan = t->shared->plan;
+    const int k = t->piece, a = tree_plan_ancestor(plan, j, k);
+    const struct tree_lists *to = &plan->descendants[j];
+    real message[18], *T = t->level + 12 * j;
+    /* what leaves: E, and while composing the transform that goes on from the anchor's ancestor */
+    const bool onward = first && (a >= 0 || t->poses);
+    six_copy(message, E);
+    if (onward) memcpy(message + 6, a >= 0 ? T : (const real *)t->base_pose, 12 * sizeof(real));
+    for (int i = to->at[k]; i < to->at[k + 1]; i++)
+        comm_send(t->comm, to->item[i], tag + j, message, onward ? PAIR_BYTES : VECTOR_BYTES);
+    if (a < 0 || grounded(t, a)) {
+        if (first && a >= 0) memcpy(t->base_pose, T, 12 * sizeof(real));
+        return;
+    }
+    const bool further = tree_plan_ancestor(plan, j, a) >= 0, composes = first && (further || t->poses);
+    comm_recv(t->comm, a, tag + j, t->in, composes ? PAIR_BYTES : VECTOR_BYTES);
+    add_motion(t, E, (struct xform *)T, t->in);
+    if (composes) {
+        struct xform *next = further ? (struct xform *)(T + 12) : t->base_pose;
+        xform_compose(next, (struct xform *)(t->in + 6), (struct xform *)T);
+        t->work.flop += XFORM_COMPOSE_FLOP;
+        t->work.call++;
+    }
+    tree_report(t);
+}
+
+/* scan_up: x_i += X_i^T x_parent along the whole tree, in place. */
+static void scan_up(struct tree *t, real *x, bool first, int tag)
+{
+    const struct tree_plan *plan = t->shared->plan;
+    real E[6] = {0}, *inside = t->f; /* free until the forces */
+    if (t->piece < 0) return;
+    int nkid;
+    tree_kids(t, &nkid);
+    if (nkid > 0) sweep_up(t, x, NULL, inside);
+    if (first && (nkid > 0 || t->poses)) make_paths(t);
+    tree_report(t);
+    hand_down(t, inside, first, tag);
+    if (!grounded(t, t->piece)) {
+        comm_recv(t->comm, plan->parent[t->piece], tag, t->in, first ? PAIR_BYTES : VECTOR_BYTES);
+        six_copy(E, t->in);
+        if (first) memcpy(t->level, t->in + 6, 12 * sizeof(real));
+    } else if (first) {
+        xform_identity(t->base_pose);
+    }
+    for (int j = 0; j < plan->nlevel; j++) jump(t, j, E, first, tag + 1);
+    sweep_up(t, x, grounded(t, t->piece) ? NULL : E, x);
+    tree_report(t);
+}
+
+void tree_velocity(struct tree *t)
+{
+    memcpy(t->v, t->h, (size_t)(6 * t->n) * sizeof(real));
+    scan_up(t, t->v, true, TAG_VELOCITY);
+}
+
+void tree_bias(struct tree *t)
+{
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        body_bias(b, &t->pose[l], tree_at(t->v, l), tree_at(t->h, l), t->u + t->u_at[l], tree_at(t->b, l));
+        t->work.flop += (uint64_t)joint_cost_of(b->joint)->bias;
+        t->work.call++;
+    }
+}
+
+void tree_acceleration(struct tree *t, const real *ud)
+{
+    memcpy(t->a, t->b, (size_t)(6 * t->n) * sizeof(real));
+    for (int l = 0; l < t->n; l++) {
+        const struct body *b = tree_body(t, l);
+        if (ud) {
+            subspace_h(&t->pose[l].s, ud + t->u_at[l], tree_at(t->a, l));
+            t->work.flop += (uint64_t)joint_cost_of(b->joint)->h;
+        }
+        if (b->parent < 0) add_motion(t, tree_at(t->a, l), &t->pose[l].x, t->shared->base);
+    }
+    scan_up(t, t->a, false, TAG_ACCELERATION);
+}
+
+void tree_gyro(struct tree *t, int l, real *f)
+{
+    const struct body *b = tree_body(t, l);
+    const double *fext = t->job->state->fext;
+    body_gyro(b, tree_at(t->v, l), f);
+    t->work.flop += BODY_GYRO_FLOP;
+    t->work.call++;
+    if (!fext) return;
+    real load[6];
+    body_load(b, fext + 6 * t->bodies[l], load);
+    six_sub(f, load);
+    t->work.flop += BODY_LOAD_FLOP + SIX_ADD_FLOP;
+}
+
+/* sweep_down: f_parent += X f inside the piece, in place; `out` (6) gets what leaves at the anchor. */
+static void sweep_down(struct tree *t, real *f, real *out)
+{
+    six_zero(out);
+    for (int l = t->n - 1; l >= 0; l--) {
+        const int p = tree_parent(t, l);
+        real moved[6];
+        if (p < 0 && grounded(t, t->piece)) continue;
+        xform_force(moved, &t->pose[l].x, tree_at(f, l));
+        six_add(p >= 0 ? tree_at(f, p) : out, moved);
+        t->work.flop += XFORM_FORCE_FLOP + SIX_ADD_FLOP;
+        t->work.call++;
+    }
+}
+
+/* scan_down: what reaches each piece's anchor from the whole subtree above, then into the bodies. */
+static void scan_down(struct tree *t)
+{
+    const struct tree_plan *plan = t->shared->plan;
+    real *inside = t->a; /* the accelerations have been used */
+    real g[6], moved[6];
+    if (t->piece < 0) return;
+    memcpy(inside, t->f, (size_t)(6 * t->n) * sizeof(real));
+    if (!grounded(t, t->piece)) sweep_down(t, inside, g);
+    for (int j = 0; j < plan->nlevel; j++) {
+        const int a = tree_plan_ancestor(plan, j, t->piece);
+        const struct tree_lists *from = &plan->descendants[j];
+        if (a >= 0 && !grounded(t, a)) {
+            xform_force(moved, (struct xform *)(t->level + 12 * j), g);
+            t->work.flop += XFORM_FORCE_FLOP;
+            t->work.call++;
+            tree_report(t);
+            comm_send(t->comm, a, TAG_FORCE + 1 + j, moved, VECTOR_BYTES);
+        }
+        for (int i = from->at[t->piece]; i < from->at[t->piece + 1]; i++) {
+            comm_recv(t->comm, from->item[i], TAG_FORCE + 1 + j, moved, VECTOR_BYTES);
+            six_add(g, moved);
+            t->work.flop += SIX_ADD_FLOP;
+        }
+        tree_report(t);
+    }
+    if (!grounded(t, t->piece)) comm_send(t->comm, plan->parent[t->piece], TAG_FORCE, g, VECTOR_BYTES);
+    int nkid;
+    const int *kid = tree_kids(t, &nkid);
+    for (int k = 0; k < nkid; k++) {
+        comm_recv(t->comm, kid[k], TAG_FORCE, moved, VECTOR_BYTES);
+        six_add(tree_at(t->f, plan->local[plan->anchor[kid[k]]]), moved);
+        t->work.flop += SIX_ADD_FLOP;
+    }
+    sweep_down(t, t->f, g);
+}
+
+void tree_force(struct tree *t, real *tau, const real *more)
+{
+    for (int l = 0; l < t->n; l++) {
+        real inertial[6], *f = tree_at(t->f, l);
+        tree_gyro(t, l, f);
+        body_force(tree_body(t, l), tree_at(t->a, l), inertial);
+        six_add(f, inertial);
+        if (more) six_add(f, more + 6 * l);
+        t->work.flop += (uint64_t)(BODY_FORCE_FLOP + (more ? SIX_ADD_FLOP : 0));
+        t->work.call++;
+    }
+    scan_down(t);
+    for (int l = 0; l < t->n; l++) {
+        subspace_h_transposed(&t->pose[l].s, tree_at(t->f, l), tau + t->u_at[l]);
+        t->work.flop += (uint64_t)joint_cost_of(tree_body(t, l)->joint)->h_transposed;
+    }
+    tree_report(t);
+}
+
+void tree_base_pose(struct tree *t, int l, struct xform *x)
+{
+    xform_compose(x, t->base_pose, (struct xform *)(t->path + 12 * l));
+    t->work.flop += XFORM_COMPOSE_FLOP;
+}
