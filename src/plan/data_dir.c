@@ -45,10 +45,8 @@ const char *plan_data_dir(void)
     const char *given = getenv("MIMDSIM_DATA");
     if (given != NULL && given[0] != '\0') return given;
     const char *found = MIMDSIM_DATADIR;
-    if (beside_binary(dir))
-        found = dir;
-    else if (holds_data(MIMDSIM_SRCDIR))
-        found = MIMDSIM_SRCDIR;
+    if (beside_binary(dir)) found = dir;
+    else if (holds_data(MIMDSIM_SRCDIR)) found = MIMDSIM_SRCDIR;
     setenv("MIMDSIM_DATA", found, 1);
     const char *kept = getenv("MIMDSIM_DATA");
     return kept != NULL ? kept : MIMDSIM_DATADIR;
@@ -59,10 +57,8 @@ static void user_dir(char *dir, size_t size)
 {
     const char *xdg = getenv("XDG_DATA_HOME"), *home = getenv("HOME");
     dir[0] = '\0';
-    if (xdg != NULL && xdg[0] == '/')
-        snprintf(dir, size, "%s/mimdsim", xdg);
-    else if (home != NULL && home[0] == '/')
-        snprintf(dir, size, "%s/.local/share/mimdsim", home);
+    if (xdg != NULL && xdg[0] == '/') snprintf(dir, size, "%s/mimdsim", xdg);
+    else if (home != NULL && home[0] == '/') snprintf(dir, size, "%s/.local/share/mimdsim", home);
 }
 
 static bool is_path(const char *name)
@@ -114,8 +110,7 @@ static void not_found(const char *what, const char *name, struct arena *a, struc
     const char **names = data_dir_names(what, a, &n);
     const char *near = text_nearest(name, names, n);
     int singular = (int)strlen(what) - 1;
-    if (near != NULL)
-        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
+    if (near != NULL) err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
     else
         err_set(e, ERR_NO_INPUT, "no %.*s '%s' in %s/%s; `mimdsim %s` lists them", singular, what, name,
                 plan_data_dir(), what, what);

@@ -31,8 +31,8 @@ struct expansion {
     const struct scenario *scenario;
     struct err *err;
     struct start *starts;
-    int point[SCENARIO_MAX_AXES];    /* where each axis stands */
-    struct printed *printed;         /* one per table */
+    int point[SCENARIO_MAX_AXES]; /* where each axis stands */
+    struct printed *printed;      /* one per table */
 };
 
 /* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries. */
@@ -74,8 +74,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     if (!machine_file_read(&m, machine->text, in_file ? x->scenario->dir : NULL, a, &why)) {
         if (why.file[0] == '\0') /* not found: say where it was asked for */
             err_set_at(x->err, why.kind, machine->file, machine->line, "%s", why.text);
-        else
-            err_set_at(x->err, why.kind, why.file, why.line, "%s", why.text);
+        else err_set_at(x->err, why.kind, why.file, why.line, "%s", why.text);
         return NULL;
     }
     struct start *s = TAKE(a, 1, struct start);
@@ -111,16 +110,17 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
                           "ranks is missing; expected a number, a list, or 'n' for as many as bodies");
     if (ratio != NULL && bodies != NULL)
-        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p says n already; leave out '%s' (line %d)",
-                          bodies->key, bodies->line);
+        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line,
+                          "n_over_p says n already; leave out '%s' (line %d)", bodies->key, bodies->line);
     if (ratio != NULL && ranks->kind == SETTING_RANKS_ARE_N)
         return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as numbers, not 'n'");
     if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
     if (ratio == NULL) return true;
     int64_t n = (int64_t)ratio->number * run->nrank;
     if (n > MAX_BODIES)
-        return err_set_at(x->err, ERR_CONFIG, ratio->file, ratio->line, "n_over_p %d times %d ranks gives more than %d bodies",
-                          ratio->number, run->nrank, MAX_BODIES);
+        return err_set_at(x->err, ERR_CONFIG, ratio->file, ratio->line,
+                          "n_over_p %d times %d ranks gives more than %d bodies", ratio->number, run->nrank,
+                          MAX_BODIES);
     run->model.nbody = (int)n;
     return true;
 }
@@ -259,7 +259,8 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     int64_t n = s->repetitions;
     int ntable;
     for (int i = 0; i < s->naxis; i++) n = n > MAX_RUNS ? n : n * s->axis[i].npoint;
-    if (n > MAX_RUNS) return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller", MAX_RUNS);
+    if (n > MAX_RUNS)
+        return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller", MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
     x.printed = TAKE(p->arena, ntable, struct printed);
     for (int i = 0; i < ntable; i++) x.printed[i].bytes = arena_take(p->arena, table[i]->size);

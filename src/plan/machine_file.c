@@ -48,7 +48,8 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
     if (!is_evidence(v->evidence) && v->evidence[0] != '\0')
         return err_set_at(e, ERR_DATA, v->file, v->line,
                           "%s: class '%.20s'; expected P (published), PR (published, recalled), D (derived) or "
-                          "E (estimated)", key, v->evidence);
+                          "E (estimated)",
+                          key, v->evidence);
     return true;
 }
 
@@ -63,14 +64,10 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     const struct yaml_node *range = yaml_node_child(leaf, "min");
     if (range == NULL) range = yaml_node_child(leaf, "max");
     if (range == NULL) return true;
-    if (f->kind == FIELD_REAL)
-        value = *(const double *)place;
-    else if (f->kind == FIELD_INT64)
-        value = (double)*(const int64_t *)place;
-    else if (f->kind == FIELD_INT)
-        value = *(const int *)place;
-    else
-        return err_set_at(e, ERR_DATA, v->file, range->line, "%s: only numbers have a range", key);
+    if (f->kind == FIELD_REAL) value = *(const double *)place;
+    else if (f->kind == FIELD_INT64) value = (double)*(const int64_t *)place;
+    else if (f->kind == FIELD_INT) value = *(const int *)place;
+    else return err_set_at(e, ERR_DATA, v->file, range->line, "%s: only numbers have a range", key);
     v->min = v->max = value;
     for (int i = 0; i < 2; i++) {
         const struct yaml_node *n = yaml_node_child(leaf, names[i]);
@@ -140,7 +137,8 @@ static bool read_title(struct machine_file *m, const struct yaml_node *n, const 
     char why[256];
     if (n->text == NULL || !field_set(&machine_table.field[row], &m->spec, n->text, a, why, (int)sizeof why))
         return err_set_at(e, ERR_DATA, file, n->line, "title: %s", n->text == NULL ? "expected one line of text" : why);
-    m->value[row] = (struct machine_value){.text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
+    m->value[row] =
+        (struct machine_value){.text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
     return true;
 }
 
@@ -155,12 +153,9 @@ static bool read_tree(struct reader *r, struct yaml_node *root, struct arena *a,
         bool ok = true;
         if (strcmp(n->key, known[0]) == 0 || strcmp(n->key, known[1]) == 0)
             ;
-        else if (strcmp(n->key, "title") == 0)
-            ok = read_title(r->machine, n, r->path, a, e);
-        else if (strcmp(n->key, "published") == 0)
-            ok = read_published(r->machine, n, r->path, a, e);
-        else
-            *tail = n, tail = &n->next;
+        else if (strcmp(n->key, "title") == 0) ok = read_title(r->machine, n, r->path, a, e);
+        else if (strcmp(n->key, "published") == 0) ok = read_published(r->machine, n, r->path, a, e);
+        else *tail = n, tail = &n->next;
         if (!ok) return false;
     }
     *tail = NULL;
@@ -209,8 +204,8 @@ bool machine_file_read(struct machine_file *m, const char *name, const char *nea
     m->value = TAKE(a, machine_table.nfield, struct machine_value);
     m->published = TAKE(a, MAX_PUBLISHED, struct machine_published);
     for (int i = 0; i < machine_table.nfield; i++)
-        m->value[i] = (struct machine_value){.text = machine_table.field[i].fallback, .file = "default",
-                                             .evidence = "", .source = ""};
+        m->value[i] = (struct machine_value){
+            .text = machine_table.field[i].fallback, .file = "default", .evidence = "", .source = ""};
     if (!read_chain(m, m->path, chain, 0, a, e) || !check_complete(m, e)) return false;
     text_copy(m->spec.name, sizeof m->spec.name, data_dir_stem(m->path, a));
     int dims = field_find(&machine_table, "topology.dims");
@@ -222,10 +217,14 @@ static int family_dims(enum topology_family family)
 {
     switch (family) {
     case TOPOLOGY_TORUS:
-    case TOPOLOGY_MESH: return 0;
-    case TOPOLOGY_FAT_TREE: return 2;
-    case TOPOLOGY_DRAGONFLY: return 4;
-    default: return 1;
+    case TOPOLOGY_MESH:
+        return 0;
+    case TOPOLOGY_FAT_TREE:
+        return 2;
+    case TOPOLOGY_DRAGONFLY:
+        return 4;
+    default:
+        return 1;
     }
 }
 

@@ -16,13 +16,13 @@ struct machine_value {
 
 struct machine_file {
     struct machine_spec spec;
-    const char *path;                /* of the file named, not of its bases */
-    struct machine_value *value;     /* (machine_table.nfield) */
+    const char *path;            /* of the file named, not of its bases */
+    struct machine_value *value; /* (machine_table.nfield) */
     int npublished;
-    struct machine_published {       /* published figures that the simulator does not use */
+    struct machine_published { /* published figures that the simulator does not use */
         const char *name;
         struct machine_value value;
-    } *published;
+    } * published;
 };
 
 /* machine_file_read: machine `name` (see data_dir_find with `near`) complete: bases, defaults, checks.

@@ -91,8 +91,14 @@ static bool set_machine(struct machine_file *m, const char *set, struct arena *a
 
 static struct origin origin_make(const char *key, const char *value, const struct machine_value *v)
 {
-    return (struct origin){.key = key, .value = value, .file = v->file, .line = v->line, .evidence = v->evidence,
-                           .source = v->source, .min = v->min, .max = v->max};
+    return (struct origin){.key = key,
+                           .value = value,
+                           .file = v->file,
+                           .line = v->line,
+                           .evidence = v->evidence,
+                           .source = v->source,
+                           .min = v->min,
+                           .max = v->max};
 }
 
 static int list_origins(const struct machine_file *m, struct origin *list, struct arena *a)

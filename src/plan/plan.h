@@ -10,21 +10,21 @@
 #include "spec/run_spec.h"
 
 struct plan_options {
-    const char *machine;        /* --machine NAME or file, NULL: the scenario's */
+    const char *machine; /* --machine NAME or file, NULL: the scenario's */
     int nset;
-    const char *const *set;     /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
+    const char *const *set; /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
 };
 
 struct plan {
-    struct arena *arena;        /* owned; everything below lives in it */
-    char name[64];              /* stem of the scenario file */
-    const char *question;       /* the file's question, one line */
+    struct arena *arena;  /* owned; everything below lives in it */
+    char name[64];        /* stem of the scenario file */
+    const char *question; /* the file's question, one line */
     int nrun;
-    struct run_spec *run;       /* (nrun) in plan order */
+    struct run_spec *run; /* (nrun) in plan order */
     int nfigure;
-    const char **figure;        /* (nfigure) figures that the scenario asks for */
+    const char **figure; /* (nfigure) figures that the scenario asks for */
     int nunused;
-    const char **unused;        /* (nunused) "key: reason" of settings that act in no run of this plan */
+    const char **unused; /* (nunused) "key: reason" of settings that act in no run of this plan */
 };
 
 /* plan_read: read scenario `name` (a path, or the stem of a file in scenarios/). Returns false with ERR_NO_INPUT,
@@ -39,13 +39,13 @@ bool plan_check_file(const char *path, struct err *e);
 
 /* Where one value of a resolved machine comes from. */
 struct origin {
-    const char *key;            /* network.link.bandwidth */
-    const char *value;          /* as printed, with its unit */
-    const char *file;           /* path, "--set" or "default" */
+    const char *key;   /* network.link.bandwidth */
+    const char *value; /* as printed, with its unit */
+    const char *file;  /* path, "--set" or "default" */
     int line;
-    const char *evidence;       /* P, PR, D, E or "" */
-    const char *source;         /* citation or arithmetic, "" */
-    double min, max;            /* published range in SI, both 0 when there is none */
+    const char *evidence; /* P, PR, D, E or "" */
+    const char *source;   /* citation or arithmetic, "" */
+    double min, max;      /* published range in SI, both 0 when there is none */
 };
 
 /* plan_machine: read machine `name` (a path, or the stem of a file in machines/) with its bases resolved.

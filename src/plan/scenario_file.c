@@ -56,7 +56,8 @@ static bool read_point(struct setting_list *point, const char *key, const char *
         return setting_walk(node, group, file, add_leaf, point, a, e);
     }
     if (key == NULL)
-        return err_set_at(e, ERR_DATA, file, node->line, "sweep: each variant is a mapping such as {kernel.solver: cr}");
+        return err_set_at(e, ERR_DATA, file, node->line,
+                          "sweep: each variant is a mapping such as {kernel.solver: cr}");
     if (node->kind == YAML_SEQUENCE && !is_list_field(key))
         return err_set_at(e, ERR_DATA, file, node->line, "%s: a list within a list", key);
     return add_setting(point, key, yaml_node_flow(node, a), file, node->line, a, e);
@@ -121,7 +122,8 @@ static bool read_repetitions(struct top *t, const struct yaml_node *n)
 {
     static const struct field count = {.key = "repetitions", .kind = FIELD_INT, .min = 1, .max = 100000};
     char why[256] = "expected a whole number";
-    if (n->text != NULL && field_set(&count, &t->scenario->repetitions, n->text, NULL, why, (int)sizeof why)) return true;
+    if (n->text != NULL && field_set(&count, &t->scenario->repetitions, n->text, NULL, why, (int)sizeof why))
+        return true;
     return refuse(t, n, why);
 }
 
@@ -254,8 +256,8 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
 {
     const char *equals = strchr(set, '=');
     if (equals == NULL || equals == set)
-        return err_set(e, ERR_USAGE, "--set '%.80s': expected key=value, such as machine.network.link.bandwidth='1 GB/s'",
-                       set);
+        return err_set(e, ERR_USAGE,
+                       "--set '%.80s': expected key=value, such as machine.network.link.bandwidth='1 GB/s'", set);
     char *name = arena_text(a, set);
     name[equals - set] = '\0';
     const char *full = setting_key(name);

@@ -10,12 +10,12 @@ enum { SCENARIO_MAX_SETTINGS = 512, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS 
 
 struct setting_list {
     int n;
-    struct setting *at;         /* (n) in the order given */
+    struct setting *at; /* (n) in the order given */
 };
 
 /* One axis of the sweep: at each point several settings change together. */
 struct axis {
-    const char *key;            /* full key, or "variant" */
+    const char *key; /* full key, or "variant" */
     int line;
     int npoint;
     struct setting_list *point; /* (npoint) */
@@ -24,13 +24,13 @@ struct axis {
 struct scenario {
     const char *path, *stem, *dir;
     const char *question;
-    struct setting_list base;   /* of all runs */
-    struct setting_list set;    /* --set, after everything else */
+    struct setting_list base; /* of all runs */
+    struct setting_list set;  /* --set, after everything else */
     int naxis;
     struct axis axis[SCENARIO_MAX_AXES];
     int repetitions;
-    bool only_bodies_for_all;   /* leave out points with n < P */
-    bool only_fitting;          /* leave out points with P > processors */
+    bool only_bodies_for_all; /* leave out points with n < P */
+    bool only_fitting;        /* leave out points with P > processors */
     int nfigure;
     const char **figure;
 };

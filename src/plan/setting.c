@@ -141,14 +141,11 @@ bool setting_walk(const struct yaml_node *mapping, const char *prefix, const cha
         bool may_be_short = prefix[0] == '\0' && (n->kind != YAML_MAPPING || !setting_is_group(key));
         const char *full = may_be_short ? setting_key(key) : key;
         bool ok;
-        if (setting_is_key(full))
-            ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
-        else if (!setting_is_group(key))
-            ok = setting_unknown(prefix, n->key, file, n->line, e);
+        if (setting_is_key(full)) ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
+        else if (!setting_is_group(key)) ok = setting_unknown(prefix, n->key, file, n->line, e);
         else if (n->kind != YAML_MAPPING)
             ok = err_set_at(e, ERR_DATA, file, n->line, "'%s' is a group of settings; expected keys below it", key);
-        else
-            ok = setting_walk(n, key, file, leaf, context, a, e);
+        else ok = setting_walk(n, key, file, leaf, context, a, e);
         if (!ok) return false;
     }
     return true;

@@ -10,31 +10,33 @@
 #include "spec/field.h"
 
 enum setting_kind {
-    SETTING_FIELD,      /* a row of a field table */
-    SETTING_MACHINE,    /* which machine file */
-    SETTING_RANKS_ARE_N,/* ranks: n */
-    SETTING_N_OVER_P    /* bodies per rank */
+    SETTING_FIELD,       /* a row of a field table */
+    SETTING_MACHINE,     /* which machine file */
+    SETTING_RANKS_ARE_N, /* ranks: n */
+    SETTING_N_OVER_P     /* bodies per rank */
 };
 
 struct setting {
     enum setting_kind kind;
-    const char *key;                  /* in full, short names resolved */
-    const struct field *field;        /* SETTING_FIELD */
+    const char *key;           /* in full, short names resolved */
+    const struct field *field; /* SETTING_FIELD */
     const struct field_table *table;
     const char *text;
-    int number;                       /* SETTING_N_OVER_P */
-    const char *file;                 /* a path or "--set" */
-    int line;                         /* 0: none */
+    int number;       /* SETTING_N_OVER_P */
+    const char *file; /* a path or "--set" */
+    int line;         /* 0: none */
 };
 
 /* setting_key: the full key of a short one: n, level, kernel; others as they are. */
 const char *setting_key(const char *key);
 
-/* setting_is_key: whether `key` (full) can be set. setting_is_group: whether keys below it can be ("machine.network"). */
+/* setting_is_key: whether `key` (full) can be set. setting_is_group: whether keys below it can be ("machine.network").
+ */
 bool setting_is_key(const char *key);
 bool setting_is_group(const char *key);
 
-/* setting_make: check `text` as the value of `key`; strings are borrowed. Returns false with ERR_DATA, file and line. */
+/* setting_make: check `text` as the value of `key`; strings are borrowed. Returns false with ERR_DATA, file and line.
+ */
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,
                   struct err *e);
 
@@ -48,7 +50,8 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
 typedef bool setting_leaf_fn(void *context, const char *key, const struct yaml_node *leaf, const char *file,
                              struct arena *a, struct err *e);
 
-/* setting_walk: visit every value below `mapping`, whose keys continue `prefix` ("machine"); unknown keys are refused. */
+/* setting_walk: visit every value below `mapping`, whose keys continue `prefix` ("machine"); unknown keys are refused.
+ */
 bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,
                   void *context, struct arena *a, struct err *e);
 

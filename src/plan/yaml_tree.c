@@ -82,8 +82,7 @@ static bool take_key(struct builder *b, const struct yaml_node *mapping, const c
     if (!next_event(b, &event)) return false;
     *line = (int)event.start_mark.line + 1;
     fine = check_plain(b, &event);
-    if (fine && event.type == YAML_SCALAR_EVENT)
-        *key = arena_text(b->arena, (const char *)event.data.scalar.value);
+    if (fine && event.type == YAML_SCALAR_EVENT) *key = arena_text(b->arena, (const char *)event.data.scalar.value);
     else if (fine && event.type != YAML_MAPPING_END_EVENT)
         fine = refuse(b, event.start_mark.line, "a key has to be a name");
     yaml_event_delete(&event);
@@ -104,10 +103,8 @@ static struct yaml_node *take_child(struct builder *b, const struct yaml_node *p
     if (parent->kind == YAML_MAPPING && (!take_key(b, parent, &key, &key_line) || key == NULL)) return NULL;
     if (!next_event(b, &event)) return NULL;
     struct yaml_node *child = NULL;
-    if (event.type == YAML_SEQUENCE_END_EVENT)
-        yaml_event_delete(&event);
-    else
-        child = build(b, &event, depth + 1);
+    if (event.type == YAML_SEQUENCE_END_EVENT) yaml_event_delete(&event);
+    else child = build(b, &event, depth + 1);
     if (child == NULL || key == NULL) return child;
     child->key = key;
     child->line = key_line;
@@ -121,8 +118,9 @@ static struct yaml_node *build(struct builder *b, yaml_event_t *event, int depth
     size_t line = event->start_mark.line;
     yaml_event_type_t type = event->type;
     if (check_plain(b, event))
-        n = type == YAML_SCALAR_EVENT ? build_scalar(b, event)
-                                      : node_make(b, type == YAML_MAPPING_START_EVENT ? YAML_MAPPING : YAML_SEQUENCE, line);
+        n = type == YAML_SCALAR_EVENT
+                ? build_scalar(b, event)
+                : node_make(b, type == YAML_MAPPING_START_EVENT ? YAML_MAPPING : YAML_SEQUENCE, line);
     yaml_event_delete(event);
     if (n == NULL || type == YAML_SCALAR_EVENT) return n;
     if (depth > YAML_MAX_DEPTH) return refuse(b, line, "nested too deeply"), NULL;

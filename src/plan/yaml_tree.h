@@ -18,11 +18,11 @@ enum yaml_kind { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING };
 /* Children of a mapping or sequence are chained in the file's order. */
 struct yaml_node {
     enum yaml_kind kind;
-    int line;                 /* of the key in a mapping, else of the value; 1-based */
-    const char *key;          /* in a mapping, else NULL */
-    const char *text;         /* of a scalar; of others NULL */
+    int line;         /* of the key in a mapping, else of the value; 1-based */
+    const char *key;  /* in a mapping, else NULL */
+    const char *text; /* of a scalar; of others NULL */
     int nchild;
-    struct yaml_node *child;  /* first, NULL when empty */
+    struct yaml_node *child; /* first, NULL when empty */
     struct yaml_node *next;
 };
 

@@ -30,8 +30,7 @@ static void print_bound(const struct field *f, double value, char *buffer, int s
 {
     if (f->kind == FIELD_REAL || f->kind == FIELD_REALS || f->unit == UNIT_BYTES)
         units_print(value, f->unit, buffer, size);
-    else
-        snprintf(buffer, (size_t)size, "%.0f", value);
+    else snprintf(buffer, (size_t)size, "%.0f", value);
 }
 
 bool field_in_range(const struct field *f, double value, char *why, int size)
@@ -145,19 +144,30 @@ bool field_set(const struct field *f, void *base, const char *text, struct arena
 {
     void *place = (char *)base + f->offset;
     switch (f->kind) {
-    case FIELD_REAL: return set_real(f, place, text, why, size);
-    case FIELD_INT: return set_int(f, place, text, why, size);
-    case FIELD_INT64: return set_int64(f, place, text, why, size);
-    case FIELD_SEED: return set_seed(place, text, why, size);
-    case FIELD_BOOL: return set_bool(place, text, why, size);
-    case FIELD_CHOICE: return set_choice(f, place, text, why, size);
-    case FIELD_TEXT: return set_text(f, place, text, why, size);
-    case FIELD_INTS: return field_ints_set(f, base, text, why, size);
-    case FIELD_REALS: return field_reals_set(f, base, text, why, size);
-    case FIELD_INT_LIST: return field_int_list_set(f, base, text, a, why, size);
-    case FIELD_PAIR_LIST: return field_pair_list_set(f, base, text, a, why, size);
+    case FIELD_REAL:
+        return set_real(f, place, text, why, size);
+    case FIELD_INT:
+        return set_int(f, place, text, why, size);
+    case FIELD_INT64:
+        return set_int64(f, place, text, why, size);
+    case FIELD_SEED:
+        return set_seed(place, text, why, size);
+    case FIELD_BOOL:
+        return set_bool(place, text, why, size);
+    case FIELD_CHOICE:
+        return set_choice(f, place, text, why, size);
+    case FIELD_TEXT:
+        return set_text(f, place, text, why, size);
+    case FIELD_INTS:
+        return field_ints_set(f, base, text, why, size);
+    case FIELD_REALS:
+        return field_reals_set(f, base, text, why, size);
+    case FIELD_INT_LIST:
+        return field_int_list_set(f, base, text, a, why, size);
+    case FIELD_PAIR_LIST:
+        return field_pair_list_set(f, base, text, a, why, size);
     }
-    CHECK(!"a field kind without a reader");
+    CHECK(false); /* a kind without a reader */
     return false;
 }
 
@@ -179,12 +189,9 @@ static void print_real(double v, enum unit unit, struct text *out)
 
 static void print_int64(const struct field *f, int64_t v, struct text *out)
 {
-    if (f->unit == UNIT_NONE)
-        text_add(out, "%" PRId64, v);
-    else if (v < 0)
-        text_add(out, "unlimited");
-    else
-        print_real((double)v, f->unit, out);
+    if (f->unit == UNIT_NONE) text_add(out, "%" PRId64, v);
+    else if (v < 0) text_add(out, "unlimited");
+    else print_real((double)v, f->unit, out);
 }
 
 void field_print(const struct field *f, const void *base, struct text *out)
@@ -192,17 +199,33 @@ void field_print(const struct field *f, const void *base, struct text *out)
     const char *place = (const char *)base + f->offset;
     const int *ints = (const int *)(const void *)place;
     switch (f->kind) {
-    case FIELD_REAL: print_real(*(const double *)(const void *)place, f->unit, out); return;
-    case FIELD_INT: text_add(out, "%d", *ints); return;
-    case FIELD_INT64: print_int64(f, *(const int64_t *)(const void *)place, out); return;
-    case FIELD_SEED: text_add(out, "%" PRIu64, *(const uint64_t *)(const void *)place); return;
-    case FIELD_BOOL: text_add(out, "%s", *(const bool *)place ? "true" : "false"); return;
-    case FIELD_CHOICE: text_add(out, "%s", f->choice[*ints]); return;
-    case FIELD_TEXT: text_add(out, "%s", place); return;
+    case FIELD_REAL:
+        print_real(*(const double *)(const void *)place, f->unit, out);
+        return;
+    case FIELD_INT:
+        text_add(out, "%d", *ints);
+        return;
+    case FIELD_INT64:
+        print_int64(f, *(const int64_t *)(const void *)place, out);
+        return;
+    case FIELD_SEED:
+        text_add(out, "%" PRIu64, *(const uint64_t *)(const void *)place);
+        return;
+    case FIELD_BOOL:
+        text_add(out, "%s", *(const bool *)place ? "true" : "false");
+        return;
+    case FIELD_CHOICE:
+        text_add(out, "%s", f->choice[*ints]);
+        return;
+    case FIELD_TEXT:
+        text_add(out, "%s", place);
+        return;
     case FIELD_INTS:
     case FIELD_REALS:
     case FIELD_INT_LIST:
-    case FIELD_PAIR_LIST: field_list_print(f, base, out); return;
+    case FIELD_PAIR_LIST:
+        field_list_print(f, base, out);
+        return;
     }
-    CHECK(!"a field kind without a printer");
+    CHECK(false); /* a kind without a printer */
 }

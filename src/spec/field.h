@@ -34,27 +34,27 @@ enum field_kind {
 typedef const char *field_idle_fn(const struct run_spec *run);
 
 struct field {
-    const char *key;            /* within its table, dots separate levels */
+    const char *key; /* within its table, dots separate levels */
     enum field_kind kind;
-    enum unit unit;             /* of reals and sizes */
-    size_t offset;              /* in the table's struct */
-    size_t count;               /* offset of the number of entries of a list, 0: none */
-    int capacity;               /* of FIELD_TEXT (bytes), FIELD_INTS and FIELD_REALS (entries) */
-    int at_least;               /* FIELD_REALS: entries that have to be given; the others are 0 */
-    double min, max;            /* inclusive, of every entry, SI */
-    const char *const *choice;  /* NULL-terminated */
-    const char *fallback;       /* default as text; NULL: has to be given */
-    const char *doc;            /* one line for the manual */
-    field_idle_fn *idle;        /* NULL: acts in every run */
-    bool label;                 /* true: for people only, no part of a run's identity */
+    enum unit unit;            /* of reals and sizes */
+    size_t offset;             /* in the table's struct */
+    size_t count;              /* offset of the number of entries of a list, 0: none */
+    int capacity;              /* of FIELD_TEXT (bytes), FIELD_INTS and FIELD_REALS (entries) */
+    int at_least;              /* FIELD_REALS: entries that have to be given; the others are 0 */
+    double min, max;           /* inclusive, of every entry, SI */
+    const char *const *choice; /* NULL-terminated */
+    const char *fallback;      /* default as text; NULL: has to be given */
+    const char *doc;           /* one line for the manual */
+    field_idle_fn *idle;       /* NULL: acts in every run */
+    bool label;                /* true: for people only, no part of a run's identity */
 };
 
 /* One struct of run_spec with its fields. */
 struct field_table {
-    const char *prefix;         /* "machine", "" for the run's own settings */
+    const char *prefix; /* "machine", "" for the run's own settings */
     const char *doc;
-    size_t offset;              /* of the struct in run_spec */
-    size_t size;                /* of the struct; identical bytes print identically */
+    size_t offset; /* of the struct in run_spec */
+    size_t size;   /* of the struct; identical bytes print identically */
     int nfield;
     const struct field *field;
 };

@@ -35,7 +35,8 @@ static bool take_int(const struct field *f, const char **s, int *value, char *wh
 }
 
 /* Numbers up to the end or the closing bracket; `value` NULL only counts. */
-static bool scan_ints(const struct field *f, const char *text, int *value, int capacity, int *count, char *why, int size)
+static bool scan_ints(const struct field *f, const char *text, int *value, int capacity, int *count, char *why,
+                      int size)
 {
     const char *s = skip_blanks(text);
     bool bracket = *s == '[';
@@ -189,7 +190,7 @@ bool field_reals_set(const struct field *f, void *base, const char *text, char *
 
 static void print_pair_list(const struct field *f, const void *base, int n, struct text *out)
 {
-    int (*list)[2];
+    int(*list)[2];
     memcpy(&list, (const char *)base + f->offset, sizeof list);
     for (int i = 0; i < n; i++) text_add(out, "%s[%d, %d]", i > 0 ? ", " : "", list[i][0], list[i][1]);
 }

@@ -56,17 +56,27 @@ void fields_config(const struct run_spec *run, struct text *out)
 static const char *kind_name(const struct field *f)
 {
     switch (f->kind) {
-    case FIELD_REAL: return units_name(f->unit);
-    case FIELD_INT: return "a whole number";
-    case FIELD_INT64: return f->unit == UNIT_BYTES ? "a size" : "a whole number";
-    case FIELD_SEED: return "a whole number below 2^64";
-    case FIELD_BOOL: return "true or false";
-    case FIELD_CHOICE: return "one of";
-    case FIELD_TEXT: return "text";
+    case FIELD_REAL:
+        return units_name(f->unit);
+    case FIELD_INT:
+        return "a whole number";
+    case FIELD_INT64:
+        return f->unit == UNIT_BYTES ? "a size" : "a whole number";
+    case FIELD_SEED:
+        return "a whole number below 2^64";
+    case FIELD_BOOL:
+        return "true or false";
+    case FIELD_CHOICE:
+        return "one of";
+    case FIELD_TEXT:
+        return "text";
     case FIELD_INTS:
-    case FIELD_INT_LIST: return "a list of whole numbers";
-    case FIELD_REALS: return "a list, each";
-    case FIELD_PAIR_LIST: return "a list of pairs";
+    case FIELD_INT_LIST:
+        return "a list of whole numbers";
+    case FIELD_REALS:
+        return "a list, each";
+    case FIELD_PAIR_LIST:
+        return "a list of pairs";
     }
     return "";
 }
@@ -88,14 +98,12 @@ static void document_field(const struct field_table *t, const struct field *f, F
     fprintf(out, "- `%s%s%s`: %s.", t->prefix, t->prefix[0] != '\0' ? "." : "", f->key, f->doc);
     fprintf(out, " *%s%s", kind_name(f), f->kind == FIELD_REALS ? " " : "");
     if (f->kind == FIELD_REALS) fprintf(out, "%s", units_name(f->unit));
-    for (int i = 0; f->choice != NULL && f->choice[i] != NULL; i++) fprintf(out, "%s %s", i > 0 ? "," : "", f->choice[i]);
+    for (int i = 0; f->choice != NULL && f->choice[i] != NULL; i++)
+        fprintf(out, "%s %s", i > 0 ? "," : "", f->choice[i]);
     document_range(f, out);
-    if (f->fallback == NULL)
-        fprintf(out, "; has to be given*\n");
-    else if (f->fallback[0] == '\0')
-        fprintf(out, "*\n");
-    else
-        fprintf(out, "; default %s*\n", f->fallback);
+    if (f->fallback == NULL) fprintf(out, "; has to be given*\n");
+    else if (f->fallback[0] == '\0') fprintf(out, "*\n");
+    else fprintf(out, "; default %s*\n", f->fallback);
 }
 
 void fields_document(FILE *out)

@@ -49,7 +49,7 @@ static const char *idle_unless_hypercube(const struct run_spec *r)
 
 static const char *idle_unless_graph(const struct run_spec *r)
 {
-    return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only the family 'graph' takes its links from the file";
+    return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only family 'graph' takes its links from the file";
 }
 
 /* Packets, flits and buffers: what only the levels that know them can use. */
@@ -126,7 +126,8 @@ static const struct field fields[] = {
      .doc = "how routers are joined"},
     {.key = "topology.dims", .kind = FIELD_INTS, AT(topology.dims), COUNT(topology.ndim),
      .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
-     .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; fat-tree: [arity, levels]; "
+     .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; fat-tree: [arity, "
+            "levels]; "
             "dragonfly: [terminals per router, routers per group, global links per router, groups]; others: [routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH, AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
@@ -256,7 +257,8 @@ static const struct field fields[] = {
 };
 
 const struct field_table machine_table = {
-    .prefix = "machine", .doc = "the machine: nodes, network, message software, placement, noise", .offset = offsetof(struct run_spec, machine),
+    .prefix = "machine", .doc = "the machine: nodes, network, message software, placement, noise",
+    .offset = offsetof(struct run_spec, machine),
     .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
 };
 

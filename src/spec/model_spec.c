@@ -118,8 +118,8 @@ static const char *idle_unless_forward(const struct run_spec *r)
 static const struct field fields[] = {
     {.key = "generator", .kind = FIELD_CHOICE, AT(generator), .choice = generators, .fallback = "serial-chain",
      .idle = idle_without_model, .doc = "kind of system, or the kind of file that describes it"},
-    {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16", .idle = idle_unless_any_length,
-     .doc = "number of bodies"},
+    {.key = "n", .kind = FIELD_INT, AT(nbody), .min = 1, .max = 1 << 27, .fallback = "16",
+     .idle = idle_unless_any_length, .doc = "number of bodies"},
     {.key = "joint", .kind = FIELD_CHOICE, AT(joint), .choice = joints, .fallback = "revolute",
      .idle = idle_unless_general, .doc = "joint of every body"},
     {.key = "base", .kind = FIELD_CHOICE, AT(base), .choice = bases, .fallback = "fixed", .idle = idle_from_vector,

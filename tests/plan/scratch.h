@@ -22,7 +22,7 @@ struct scratch {
 
 static inline void scratch_open(struct scratch *s)
 {
-    snprintf(s->dir, sizeof s->dir, "%s", "/tmp/mimdsim-test-XXXXXX");
+    snprintf(s->dir, sizeof s->dir, "%s/mimdsim-test-XXXXXX", P_tmpdir);
     assert_non_null(mkdtemp(s->dir));
     setenv("MIMDSIM_DATA", MIMDSIM_SRCDIR, 1);
     setenv("XDG_DATA_HOME", s->dir, 1);

@@ -97,7 +97,8 @@ static double one_way_us(const struct machine_spec *m, int routers, double bytes
     t += (wire_flits(w, bytes) - 1) * (double)w->flit_bytes * per_byte;
     t += bytes * (s->send_copy + s->recv_copy + (is_short ? s->short_copy : rendezvous ? 0 : s->eager_copy));
     if (rendezvous) t += 2 * trip + s->rendezvous_latency;
-    if (s->kernel_server) assert_true(s->kernel_time + bytes * s->kernel_per_byte <= s->send_overhead + bytes * s->send_copy);
+    if (s->kernel_server)
+        assert_true(s->kernel_time + bytes * s->kernel_per_byte <= s->send_overhead + bytes * s->send_copy);
     return t * 1e6;
 }
 
@@ -107,30 +108,73 @@ static const struct point {
     int routers;
     double bytes, us, tolerance;
 } points[] = {
-    {"t3e-300", 2, 0, 16, 0.02},           {"t3e-300", 2, 288, 17.7, 0.1},        {"t3e-300", 2, 1008, 21.9, 0.1},
-    {"t3e-300", 2, 1e7, 1e7 / 170, 0.1},   {"t3e-300-mpt", 2, 0, 5, 0.02},        {"t3e-300-mpt", 2, 1e7, 1e7 / 298, 0.1},
-    {"t3e-300-mpich", 2, 0, 20, 0.02},     {"paragon", 2, 0, 29, 0.02},           {"paragon", 2, 1e6, 29 + 1e6 / 154, 0.1},
-    {"paragon-osf1-ad", 2, 0, 100, 0.02},  {"paragon-osf1-ad", 2, 1e6, 100 + 1e6 / 32, 0.1},
-    {"origin2000", 1, 0, 200, 0.02},       {"origin2000", 1, 1008, 229, 0.1},     {"origin2000", 1, 1e6, 1e6 / 35, 0.1},
-    {"origin2000-shm", 1, 0, 12, 0.02},    {"origin2000-shm", 1, 1e6, 1e4, 0.1},  {"quad-ppro", 2, 0, 210, 0.02},
-    {"quad-ppro", 2, 1008, 282, 0.1},      {"quad-ppro", 2, 1e6, 1e6 / 14, 0.1},  {"quad-ppro-shm", 2, 0, 30, 0.02},
-    {"quad-ppro-shm", 2, 1e6, 25000, 0.1}, {"fugaku", 2, 0, 1.05, 0.1},           {"fugaku", 2, 64, 1.31, 0.1},
-    {"fugaku", 2, 1024, 1.98, 0.1},        {"fugaku", 2, 8192, 3.9, 0.1},         {"fugaku", 2, 65536, 17.1, 0.1},
-    {"fugaku", 2, 1048576, 172, 0.1},      {"fugaku", 2, 4194304, 668, 0.1},      {"slingshot-11", 1, 1, 3, 0.1},
-    {"slingshot-11", 1, 1024, 4.47, 0.1},  {"slingshot-11", 1, 8192, 7.92, 0.1},  {"slingshot-11", 1, 65536, 10.92, 0.1},
-    {"slingshot-11", 1, 1048576, 51.73, 0.1}, {"slingshot-11", 1, 4194304, 181.46, 0.1},
-    {"aries", 1, 0, 1.11, 0.1},            {"aries", 1, 1024, 1.39, 0.1},         {"aries", 1, 8192, 4.21, 0.1},
-    {"aries", 1, 65536, 10.07, 0.1},       {"aries", 1, 1048576, 109.28, 0.1},    {"aries", 1, 4194304, 431.85, 0.1},
-    {"infiniband-hdr", 1, 0, 1.57, 0.1},   {"infiniband-hdr", 1, 1024, 2.52, 0.1}, {"infiniband-hdr", 1, 16384, 5.24, 0.1},
-    {"infiniband-hdr", 1, 1048576, 50, 0.1}, {"infiniband-hdr", 1, 4194304, 177.34, 0.1},
-    {"infiniband-ndr", 1, 0, 1.1, 0.02},   {"infiniband-ndr", 1, 4e6, 4e6 / 48e3, 0.1}, {"bluegene-q", 2, 0, 2.2, 0.02},
-    {"bluegene-q", 2, 1e6, 1e6 / 1770, 0.1}, {"smp-node", 1, 0, 0.51, 0.1},       {"smp-node", 1, 4096, 1.1, 0.1},
-    {"smp-node", 1, 65536, 10.81, 0.1},    {"smp-node", 1, 1048576, 130.65, 0.1}, {"ethernet-10g", 1, 0, 20, 0.02},
-    {"ethernet-10g", 1, 1e7, 1e7 / 1150, 0.1}, {"ethernet-1g", 1, 0, 24.5, 0.1},  {"ethernet-1g", 1, 1024, 48, 0.1},
-    {"ethernet-1g", 1, 65536, 741.72, 0.1}, {"ethernet-1g", 1, 1048576, 9184.2, 0.1},
-    {"ipsc-860", 2, 0, 65, 0.02},          {"ipsc-860", 2, 1e6, 113 + 1e6 / 3, 0.1}, {"ncube-2", 2, 0, 154, 0.02},
-    {"ncube-2", 2, 1e6, 154 + 1e6 / 1.7, 0.1}, {"cm-5", 1, 0, 95, 0.02},          {"cm-5", 1, 1e6, 95 + 1e6 / 9, 0.1},
-    {"meiko-cs-2", 1, 0, 83, 0.02},        {"meiko-cs-2", 1, 1e6, 83 + 1e6 / 43, 0.1},
+    {"t3e-300", 2, 0, 16, 0.02},
+    {"t3e-300", 2, 288, 17.7, 0.1},
+    {"t3e-300", 2, 1008, 21.9, 0.1},
+    {"t3e-300", 2, 1e7, 1e7 / 170, 0.1},
+    {"t3e-300-mpt", 2, 0, 5, 0.02},
+    {"t3e-300-mpt", 2, 1e7, 1e7 / 298, 0.1},
+    {"t3e-300-mpich", 2, 0, 20, 0.02},
+    {"paragon", 2, 0, 29, 0.02},
+    {"paragon", 2, 1e6, 29 + 1e6 / 154, 0.1},
+    {"paragon-osf1-ad", 2, 0, 100, 0.02},
+    {"paragon-osf1-ad", 2, 1e6, 100 + 1e6 / 32, 0.1},
+    {"origin2000", 1, 0, 200, 0.02},
+    {"origin2000", 1, 1008, 229, 0.1},
+    {"origin2000", 1, 1e6, 1e6 / 35, 0.1},
+    {"origin2000-shm", 1, 0, 12, 0.02},
+    {"origin2000-shm", 1, 1e6, 1e4, 0.1},
+    {"quad-ppro", 2, 0, 210, 0.02},
+    {"quad-ppro", 2, 1008, 282, 0.1},
+    {"quad-ppro", 2, 1e6, 1e6 / 14, 0.1},
+    {"quad-ppro-shm", 2, 0, 30, 0.02},
+    {"quad-ppro-shm", 2, 1e6, 25000, 0.1},
+    {"fugaku", 2, 0, 1.05, 0.1},
+    {"fugaku", 2, 64, 1.31, 0.1},
+    {"fugaku", 2, 1024, 1.98, 0.1},
+    {"fugaku", 2, 8192, 3.9, 0.1},
+    {"fugaku", 2, 65536, 17.1, 0.1},
+    {"fugaku", 2, 1048576, 172, 0.1},
+    {"fugaku", 2, 4194304, 668, 0.1},
+    {"slingshot-11", 1, 1, 3, 0.1},
+    {"slingshot-11", 1, 1024, 4.47, 0.1},
+    {"slingshot-11", 1, 8192, 7.92, 0.1},
+    {"slingshot-11", 1, 65536, 10.92, 0.1},
+    {"slingshot-11", 1, 1048576, 51.73, 0.1},
+    {"slingshot-11", 1, 4194304, 181.46, 0.1},
+    {"aries", 1, 0, 1.11, 0.1},
+    {"aries", 1, 1024, 1.39, 0.1},
+    {"aries", 1, 8192, 4.21, 0.1},
+    {"aries", 1, 65536, 10.07, 0.1},
+    {"aries", 1, 1048576, 109.28, 0.1},
+    {"aries", 1, 4194304, 431.85, 0.1},
+    {"infiniband-hdr", 1, 0, 1.57, 0.1},
+    {"infiniband-hdr", 1, 1024, 2.52, 0.1},
+    {"infiniband-hdr", 1, 16384, 5.24, 0.1},
+    {"infiniband-hdr", 1, 1048576, 50, 0.1},
+    {"infiniband-hdr", 1, 4194304, 177.34, 0.1},
+    {"infiniband-ndr", 1, 0, 1.1, 0.02},
+    {"infiniband-ndr", 1, 4e6, 4e6 / 48e3, 0.1},
+    {"bluegene-q", 2, 0, 2.2, 0.02},
+    {"bluegene-q", 2, 1e6, 1e6 / 1770, 0.1},
+    {"smp-node", 1, 0, 0.51, 0.1},
+    {"smp-node", 1, 4096, 1.1, 0.1},
+    {"smp-node", 1, 65536, 10.81, 0.1},
+    {"smp-node", 1, 1048576, 130.65, 0.1},
+    {"ethernet-10g", 1, 0, 20, 0.02},
+    {"ethernet-10g", 1, 1e7, 1e7 / 1150, 0.1},
+    {"ethernet-1g", 1, 0, 24.5, 0.1},
+    {"ethernet-1g", 1, 1024, 48, 0.1},
+    {"ethernet-1g", 1, 65536, 741.72, 0.1},
+    {"ethernet-1g", 1, 1048576, 9184.2, 0.1},
+    {"ipsc-860", 2, 0, 65, 0.02},
+    {"ipsc-860", 2, 1e6, 113 + 1e6 / 3, 0.1},
+    {"ncube-2", 2, 0, 154, 0.02},
+    {"ncube-2", 2, 1e6, 154 + 1e6 / 1.7, 0.1},
+    {"cm-5", 1, 0, 95, 0.02},
+    {"cm-5", 1, 1e6, 95 + 1e6 / 9, 0.1},
+    {"meiko-cs-2", 1, 0, 83, 0.02},
+    {"meiko-cs-2", 1, 1e6, 83 + 1e6 / 43, 0.1},
     {"loggp-example", 1, 101, 10, 1e-9},
 };
 
@@ -152,9 +196,12 @@ static void machines_meet_the_points_that_they_were_made_from(void **state)
 static void the_paper_s_machines_have_their_sizes(void **state)
 {
     (void)state;
-    static const struct { const char *name; int processors; } sizes[] = {
-        {"t3e-300", 128}, {"t3e-300-mpich", 128}, {"paragon", 256}, {"origin2000", 16}, {"origin2000-shm", 16},
-        {"quad-ppro", 4}, {"quad-ppro-shm", 4}, {"fugaku", 158976}, {"slingshot-11", 37888}, {"cm-5", 256}};
+    static const struct {
+        const char *name;
+        int processors;
+    } sizes[] = {{"t3e-300", 128},        {"t3e-300-mpich", 128}, {"paragon", 256},     {"origin2000", 16},
+                 {"origin2000-shm", 16},  {"quad-ppro", 4},       {"quad-ppro-shm", 4}, {"fugaku", 158976},
+                 {"slingshot-11", 37888}, {"cm-5", 256}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         struct machine_spec m = machine(sizes[i].name, NULL, NULL);
         assert_int_equal(machine_spec_processors(&m), sizes[i].processors);
@@ -200,7 +247,8 @@ static void a_machine_beside_its_base_finds_it(void **state)
     struct origin *o;
     int n;
     scratch_write(&scratch, "small.yaml", SMALL "{value: 2 GB/s, class: P, min: 1 GB/s, max: 3 GB/s}\n");
-    const char *path = scratch_write(&scratch, "mine.yaml", "schema_version: 1\nbase: small\nnetwork.link.bandwidth: 5 GB/s\n");
+    const char *path =
+        scratch_write(&scratch, "mine.yaml", "schema_version: 1\nbase: small\nnetwork.link.bandwidth: 5 GB/s\n");
     struct machine_spec m = machine(path, &o, &n);
     assert_true(m.network.link_bandwidth == 5e9);
     assert_string_equal(m.name, "mine");
@@ -255,10 +303,12 @@ static void wrong_machines_are_refused_with_line_and_reason(void **state)
         {SMALL "1 GB/s\nbase: nowhere\n", "base: no machine 'nowhere'", 8, ERR_NO_INPUT},
         {SMALL "1 GB/s\npublished: [a]\n", "published: expected", 8, ERR_DATA},
         {SMALL "1 GB/s\ntopology.family: fat-tree\n", "duplicate key 'topology.family'", 8, ERR_DATA},
-        {"schema_version: 1\nbase: t3e-300\ntopology: {family: dragonfly}\n", "topology.dims has 3 numbers", 0, ERR_CONFIG},
+        {"schema_version: 1\nbase: t3e-300\ntopology: {family: dragonfly}\n", "topology.dims has 3 numbers", 0,
+         ERR_CONFIG},
         {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3], links: [[0, 3]]}\n",
          "names router 3; there are 3", 3, ERR_CONFIG},
-        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3]}\n", "needs topology.links", 3, ERR_CONFIG},
+        {"schema_version: 1\nbase: t3e-300\ntopology: {family: graph, dims: [3]}\n", "needs topology.links", 3,
+         ERR_CONFIG},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct machine_spec m;

@@ -4,13 +4,22 @@
 #include "base/digest.h"
 #include "plan/yaml_tree.h"
 
-
 enum { YAML_LARGE = YAML_MAX_BYTES + 2 };
 
 static struct scratch scratch;
 
-static int open_scratch(void **state) { (void)state; scratch_open(&scratch); return 0; }
-static int close_scratch(void **state) { (void)state; scratch_close(&scratch); return 0; }
+static int open_scratch(void **state)
+{
+    (void)state;
+    scratch_open(&scratch);
+    return 0;
+}
+static int close_scratch(void **state)
+{
+    (void)state;
+    scratch_close(&scratch);
+    return 0;
+}
 
 static void the_speedup_scenario_has_its_points_in_order(void **state)
 {
@@ -58,7 +67,8 @@ static void layout_does_not_change_the_identity(void **state)
         "schema_version: 1\nmachine: t3e-300\nkernel: {name: forward, solver: cr}\nranks: 4\nmodel: {n: 8}\nseed: 3\n",
         "# other order\nschema_version: 1\nseed: 3\nn: 8\nranks: 4\nkernel:\n  solver: cr\n  name: 'forward'\n"
         "machine:\n  name: t3e-300\n",
-        "{\"schema_version\": 1, \"kernel.solver\": \"cr\", \"kernel.name\": \"forward\",\n\t\"machine.name\": \"t3e-300\","
+        "{\"schema_version\": 1, \"kernel.solver\": \"cr\", \"kernel.name\": \"forward\",\n\t\"machine.name\": "
+        "\"t3e-300\","
         " \"ranks\": 4, \"model.n\": 8, \"seed\": 3}",
         "schema_version: 1\nmachine: {name: t3e-300, network: {link: {bandwidth: 0.48 GB/s}}}\nkernel: forward\n"
         "kernel.solver: cr\nranks: [4]\nsweep: {n: [8]}\nseed: 3\n",
@@ -76,7 +86,8 @@ static void layout_does_not_change_the_identity(void **state)
 static void sweeps_are_cross_products_in_stated_order(void **state)
 {
     (void)state;
-    const char *path = scratch_write(&scratch, "cross.yaml",
+    const char *path = scratch_write(
+        &scratch, "cross.yaml",
         "schema_version: 1\nmachine: t3e-300\nranks: [2, 4, 8]\nkernel: dynamics\nrepetitions: 2\n"
         "sweep:\n  n_over_p: [1, 16]\n  variant:\n    - {kernel.solver: pcr, kernel.formulation: direct}\n"
         "    - {kernel: {solver: cr}}\n");
@@ -100,9 +111,10 @@ static void sweeps_are_cross_products_in_stated_order(void **state)
 static void only_leaves_points_out(void **state)
 {
     (void)state;
-    const char *path = scratch_write(&scratch, "only.yaml",
-        "schema_version: 1\nmachine: [t3e-300]\nkernel: dynamics\nranks: [2, 8, 128, 256]\n"
-        "only: [n >= ranks, ranks <= processors]\nsweep: {n: [4, 300]}\n");
+    const char *path =
+        scratch_write(&scratch, "only.yaml",
+                      "schema_version: 1\nmachine: [t3e-300]\nkernel: dynamics\nranks: [2, 8, 128, 256]\n"
+                      "only: [n >= ranks, ranks <= processors]\nsweep: {n: [4, 300]}\n");
     struct plan p = scratch_plan(path, NULL, 0);
     assert_int_equal(p.nrun, 4); /* (2,4) (2,300) (8,300) (128,300) */
     assert_int_equal(p.run[1].model.nbody, 300);
@@ -113,8 +125,12 @@ static void only_leaves_points_out(void **state)
 static void the_command_line_is_applied_last(void **state)
 {
     (void)state;
-    const char *const set[] = {"n=[4,8]", "level=loggp", "machine.network.link.bandwidth=960 MB/s",
-                               "machine.topology.dims=[16,8,8]", "repetitions=3", "kernel.operators=dense"};
+    const char *const set[] = {"n=[4,8]",
+                               "level=loggp",
+                               "machine.network.link.bandwidth=960 MB/s",
+                               "machine.topology.dims=[16,8,8]",
+                               "repetitions=3",
+                               "kernel.operators=dense"};
     struct plan p = scratch_plan("speedup-t3e", set, 6);
     assert_int_equal(p.nrun, 6);
     assert_int_equal(p.run[5].nrank, 8);
@@ -261,8 +277,11 @@ static void missing_and_strange_files_are_refused(void **state)
     static const struct {
         const char *name;
         enum err_kind kind;
-    } files[] = {{"speedup-t3", ERR_NO_INPUT}, {"/nowhere/x.yaml", ERR_NO_INPUT}, {"", ERR_NO_INPUT},
-                 {"/tmp/", ERR_DATA},          {"/dev/zero", ERR_DATA}};
+    } files[] = {{"speedup-t3", ERR_NO_INPUT},
+                 {"/nowhere/x.yaml", ERR_NO_INPUT},
+                 {"", ERR_NO_INPUT},
+                 {"/", ERR_DATA},
+                 {"/dev/zero", ERR_DATA}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         struct plan p;
         struct err e;
@@ -297,12 +316,14 @@ static void deep_and_large_files_are_refused(void **state)
 static void settings_that_do_not_act_are_reported(void **state)
 {
     (void)state;
-    const char *path = scratch_write(&scratch, "idle.yaml",
-        HEAD "model: {n: 8, branch: 3, mass_ratio: 10}\nmachine.noise.background.message: 64 B\n"
-             "sweep: {kernel.solver: [cr, pcr], kernel.hybrid_levels: [2, 3]}\n");
+    const char *path =
+        scratch_write(&scratch, "idle.yaml",
+                      HEAD "model: {n: 8, branch: 3, mass_ratio: 10}\nmachine.noise.background.message: 64 B\n"
+                           "sweep: {kernel.solver: [cr, pcr], kernel.hybrid_levels: [2, 3]}\n");
     const char *const set[] = {"kernel.repeat=4", "machine.network.buffer=20", "level=loggp"};
-    static const char *const expected[] = {"model.branch: ", "model.mass_ratio: ", "machine.noise.background.message: ",
-                                           "kernel.hybrid_levels: ", "kernel.repeat: ", "machine.network.buffer: "};
+    static const char *const expected[] = {
+        "model.branch: ",         "model.mass_ratio: ", "machine.noise.background.message: ",
+        "kernel.hybrid_levels: ", "kernel.repeat: ",    "machine.network.buffer: "};
     struct plan p = scratch_plan(path, set, 3);
     assert_int_equal(p.nrun, 4);
     assert_int_equal(p.nunused, 6);

@@ -1,4 +1,5 @@
-/* test_plan_fuzz.c - seeded: damaged files never do worse than be refused, and no setting is silently without effect. */
+/* test_plan_fuzz.c - seeded: damaged files never do worse than be refused; no setting is silently without effect.
+ */
 #include "scratch.h"
 
 #include <math.h>
@@ -9,15 +10,62 @@
 
 static struct scratch scratch;
 
-static int open_scratch(void **state) { (void)state; scratch_open(&scratch); return 0; }
-static int close_scratch(void **state) { (void)state; scratch_close(&scratch); return 0; }
+static int open_scratch(void **state)
+{
+    (void)state;
+    scratch_open(&scratch);
+    return 0;
+}
+static int close_scratch(void **state)
+{
+    (void)state;
+    scratch_close(&scratch);
+    return 0;
+}
 
 /* ---- damaged files */
 
 static const char *const tokens[] = {
-    "[", "]", "{", "}", ": ", "- ", "\n", "  ", "\t", "'", "\"", "#", "&a ", "*a", "!!str ", "? ", "|\n", ">\n", "---\n",
-    "...\n", "%YAML 1.1\n", "\xff", "\xe2\x82\xac", ", ", "~", "-1", "1e999", ".nan", "0x10", "99999999999999999999",
-    "480 MB/s", "n", "ranks", "value", "base: t3e-300\n", "sweep", "variant", "n_over_p: 3\n", "kernel", "machine.",
+    "[",
+    "]",
+    "{",
+    "}",
+    ": ",
+    "- ",
+    "\n",
+    "  ",
+    "\t",
+    "'",
+    "\"",
+    "#",
+    "&a ",
+    "*a",
+    "!!str ",
+    "? ",
+    "|\n",
+    ">\n",
+    "---\n",
+    "...\n",
+    "%YAML 1.1\n",
+    "\xff",
+    "\xe2\x82\xac",
+    ", ",
+    "~",
+    "-1",
+    "1e999",
+    ".nan",
+    "0x10",
+    "99999999999999999999",
+    "480 MB/s",
+    "n",
+    "ranks",
+    "value",
+    "base: t3e-300\n",
+    "sweep",
+    "variant",
+    "n_over_p: 3\n",
+    "kernel",
+    "machine.",
 };
 enum { NTOKEN = sizeof tokens / sizeof *tokens };
 
@@ -30,12 +78,12 @@ static void damage(struct text *t, struct random *r)
     const char *token = tokens[random_below(r, NTOKEN)];
     uint64_t how = random_below(r, 6);
     text_add_bytes(&out, t->s, at);
-    if (how == 0) text_add_bytes(&out, token, strlen(token));               /* insert */
-    if (how == 1) text_add_bytes(&out, token, strlen(token)), at += n;      /* replace */
-    if (how == 2) at += n;                                                  /* delete */
-    if (how == 3) text_add_bytes(&out, t->s + at, n);                       /* repeat */
+    if (how == 0) text_add_bytes(&out, token, strlen(token));          /* insert */
+    if (how == 1) text_add_bytes(&out, token, strlen(token)), at += n; /* replace */
+    if (how == 2) at += n;                                             /* delete */
+    if (how == 3) text_add_bytes(&out, t->s + at, n);                  /* repeat */
     if (how == 4 && rest > 0) text_add(&out, "%c", (char)(t->s[at] ^ (1 << random_below(r, 7)))), at++;
-    if (how == 5) at = random_below(r, 20) == 0 ? t->length : at;           /* cut off, seldom */
+    if (how == 5) at = random_below(r, 20) == 0 ? t->length : at; /* cut off, seldom */
     text_add_bytes(&out, t->s + at, t->length - at);
     text_free(t);
     *t = out;
@@ -87,12 +135,9 @@ static void survive(const char *source, bool machine, uint64_t stream, int round
         struct machine_spec m;
         err_clear(&e);
         bool fine = machine ? plan_machine(&m, path, NULL, a, NULL, NULL, &e) : plan_read(&p, path, NULL, &e);
-        if (!fine)
-            check_refusal(&e);
-        else if (!machine)
-            check_plan(&p);
-        else
-            assert_true(machine_spec_processors(&m) >= 1);
+        if (!fine) check_refusal(&e);
+        else if (!machine) check_plan(&p);
+        else assert_true(machine_spec_processors(&m) >= 1);
         accepted += fine;
         plan_free(&p);
         arena_destroy(a);
@@ -128,10 +173,8 @@ static void damaged_options_are_refused_or_valid(void **state)
         const char *set = t.s;
         struct plan_options o = {.nset = 1, .set = &set};
         err_clear(&e);
-        if (plan_read(&p, "speedup-t3e", &o, &e))
-            check_plan(&p);
-        else if (e.kind != ERR_USAGE)
-            check_refusal(&e);
+        if (plan_read(&p, "speedup-t3e", &o, &e)) check_plan(&p);
+        else if (e.kind != ERR_USAGE) check_refusal(&e);
         plan_free(&p);
         text_free(&t);
     }
@@ -158,19 +201,27 @@ static bool other_value(const struct field *f, const char *full, const void *bas
         v = v * 1.25 + (v == 0 ? fmin(1, f->max / 2) : 0);
         units_print(v > f->max ? f->max / 3 : v, f->unit, quantity, (int)sizeof quantity);
         return text_add(out, "%s", quantity), true;
-    case FIELD_INT: return text_add(out, "%d", *(const int *)(const void *)((const char *)base + f->offset) + 1), true;
-    case FIELD_INT64: return text_add(out, "%d B", 24), true;
-    case FIELD_SEED: return text_add(out, "77"), true;
-    case FIELD_BOOL: return text_add(out, *((const char *)base + f->offset) ? "false" : "true"), true;
+    case FIELD_INT:
+        return text_add(out, "%d", *(const int *)(const void *)((const char *)base + f->offset) + 1), true;
+    case FIELD_INT64:
+        return text_add(out, "%d B", 24), true;
+    case FIELD_SEED:
+        return text_add(out, "77"), true;
+    case FIELD_BOOL:
+        return text_add(out, *((const char *)base + f->offset) ? "false" : "true"), true;
     case FIELD_CHOICE: {
         int now = *(const int *)(const void *)((const char *)base + f->offset);
         text_add(out, "%s", f->choice[now + 1] != NULL ? f->choice[now + 1] : f->choice[0]);
         return strcmp(full, "machine.placement.kind") != 0 || strcmp(out->s, "list") != 0;
     }
-    case FIELD_TEXT: return text_add(out, "%s", strcmp(full, "kernel.name") == 0 ? "forward" : "other"), true;
-    case FIELD_INTS: return text_add(out, "[16, 16, 4]"), true;
-    case FIELD_INT_LIST: return text_add(out, "[4, 3, 2, 1]"), true;
-    case FIELD_PAIR_LIST: return text_add(out, "[[0, 1]]"), true;
+    case FIELD_TEXT:
+        return text_add(out, "%s", strcmp(full, "kernel.name") == 0 ? "forward" : "other"), true;
+    case FIELD_INTS:
+        return text_add(out, "[16, 16, 4]"), true;
+    case FIELD_INT_LIST:
+        return text_add(out, "[4, 3, 2, 1]"), true;
+    case FIELD_PAIR_LIST:
+        return text_add(out, "[[0, 1]]"), true;
     case FIELD_REALS:
         units_print(3, f->unit, quantity, (int)sizeof quantity);
         for (int i = 0; i < f->capacity; i++) text_add(out, "%s%s", i > 0 ? ", " : "", quantity);

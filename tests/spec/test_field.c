@@ -16,23 +16,41 @@
 
 static struct arena *arena;
 
-static int make_arena(void **state) { (void)state; arena = arena_create(); return 0; }
-static int drop_arena(void **state) { (void)state; arena_destroy(arena); return 0; }
+static int make_arena(void **state)
+{
+    (void)state;
+    arena = arena_create();
+    return 0;
+}
+static int drop_arena(void **state)
+{
+    (void)state;
+    arena_destroy(arena);
+    return 0;
+}
 
 static size_t entry_size(const struct field *f)
 {
     switch (f->kind) {
-    case FIELD_REAL: return sizeof(double);
+    case FIELD_REAL:
+        return sizeof(double);
     case FIELD_INT:
-    case FIELD_CHOICE: return sizeof(int);
+    case FIELD_CHOICE:
+        return sizeof(int);
     case FIELD_INT64:
-    case FIELD_SEED: return sizeof(int64_t);
-    case FIELD_BOOL: return sizeof(bool);
-    case FIELD_TEXT: return (size_t)f->capacity;
-    case FIELD_INTS: return (size_t)f->capacity * sizeof(int);
-    case FIELD_REALS: return (size_t)f->capacity * sizeof(double);
+    case FIELD_SEED:
+        return sizeof(int64_t);
+    case FIELD_BOOL:
+        return sizeof(bool);
+    case FIELD_TEXT:
+        return (size_t)f->capacity;
+    case FIELD_INTS:
+        return (size_t)f->capacity * sizeof(int);
+    case FIELD_REALS:
+        return (size_t)f->capacity * sizeof(double);
     case FIELD_INT_LIST:
-    case FIELD_PAIR_LIST: return sizeof(void *);
+    case FIELD_PAIR_LIST:
+        return sizeof(void *);
     }
     return 0;
 }
@@ -91,21 +109,39 @@ static void random_value(const struct field *f, struct random *r, char *text, si
     double top = f->max < 1e6 ? f->max : 1e6, low = f->min > -1e6 ? f->min : -1e6;
     char unit[64];
     switch (f->kind) {
-    case FIELD_REAL: units_print(random_uniform(r, low, top), f->unit, text, (int)size); break;
-    case FIELD_INT: snprintf(text, size, "%.0f", floor(random_uniform(r, low, top))); break;
-    case FIELD_INT64: snprintf(text, size, "%.0f B", floor(random_uniform(r, low < 0 ? 0 : low, top))); break;
-    case FIELD_SEED: snprintf(text, size, "%llu", (unsigned long long)random_u64(r)); break;
-    case FIELD_BOOL: snprintf(text, size, "%s", random_below(r, 2) ? "true" : "false"); break;
+    case FIELD_REAL:
+        units_print(random_uniform(r, low, top), f->unit, text, (int)size);
+        break;
+    case FIELD_INT:
+        snprintf(text, size, "%.0f", floor(random_uniform(r, low, top)));
+        break;
+    case FIELD_INT64:
+        snprintf(text, size, "%.0f B", floor(random_uniform(r, low < 0 ? 0 : low, top)));
+        break;
+    case FIELD_SEED:
+        snprintf(text, size, "%llu", (unsigned long long)random_u64(r));
+        break;
+    case FIELD_BOOL:
+        snprintf(text, size, "%s", random_below(r, 2) ? "true" : "false");
+        break;
     case FIELD_CHOICE: {
         int n = 0;
         while (f->choice[n] != NULL) n++;
         snprintf(text, size, "%s", f->choice[random_below(r, (uint64_t)n)]);
         break;
     }
-    case FIELD_TEXT: snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000)); break;
-    case FIELD_INTS: snprintf(text, size, "[%llu, 3]", (unsigned long long)random_below(r, 50) + 1); break;
-    case FIELD_INT_LIST: snprintf(text, size, "[5, %llu, 1]", (unsigned long long)random_below(r, 50) + 1); break;
-    case FIELD_PAIR_LIST: snprintf(text, size, "[[0, %llu], [2, 1]]", (unsigned long long)random_below(r, 50)); break;
+    case FIELD_TEXT:
+        snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000));
+        break;
+    case FIELD_INTS:
+        snprintf(text, size, "[%llu, 3]", (unsigned long long)random_below(r, 50) + 1);
+        break;
+    case FIELD_INT_LIST:
+        snprintf(text, size, "[5, %llu, 1]", (unsigned long long)random_below(r, 50) + 1);
+        break;
+    case FIELD_PAIR_LIST:
+        snprintf(text, size, "[[0, %llu], [2, 1]]", (unsigned long long)random_below(r, 50));
+        break;
     case FIELD_REALS: {
         size_t n = (size_t)snprintf(text, size, "[");
         for (int i = 0; i < f->capacity; i++) {
@@ -286,9 +322,9 @@ static void processors_follow_from_the_topology(void **state)
     static const struct {
         const char *family, *dims;
         int nodes_per_router, processors_per_node, expected;
-    } cases[] = {{"torus", "8x4x4", 1, 1, 128},       {"mesh", "16x16", 1, 1, 256},  {"hypercube", "2", 2, 2, 16},
-                 {"hypercube", "7", 1, 1, 128},       {"bus", "4", 1, 1, 4},         {"crossbar", "8", 1, 2, 16},
-                 {"full-mesh", "5", 2, 1, 10},        {"fat-tree", "4 3", 1, 1, 64}, {"fat-tree", "32 2", 1, 4, 4096},
+    } cases[] = {{"torus", "8x4x4", 1, 1, 128},        {"mesh", "16x16", 1, 1, 256},  {"hypercube", "2", 2, 2, 16},
+                 {"hypercube", "7", 1, 1, 128},        {"bus", "4", 1, 1, 4},         {"crossbar", "8", 1, 2, 16},
+                 {"full-mesh", "5", 2, 1, 10},         {"fat-tree", "4 3", 1, 1, 64}, {"fat-tree", "32 2", 1, 4, 4096},
                  {"dragonfly", "4 16 8 9", 1, 1, 576}, {"graph", "6", 1, 2, 12}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct run_spec run = {0};
