@@ -199,7 +199,9 @@ static void print_reals(const struct field *f, const void *base, struct text *ou
 {
     const double *value = (const double *)(const void *)((const char *)base + f->offset);
     char buffer[64];
-    for (int i = 0; i < f->capacity; i++) {
+    int n = f->capacity;
+    while (n > f->at_least && value[n - 1] == 0) n--; /* what is not given is 0 */
+    for (int i = 0; i < n; i++) {
         units_print(value[i], f->unit, buffer, (int)sizeof buffer);
         text_add(out, "%s%s", i > 0 ? ", " : "", buffer);
     }
