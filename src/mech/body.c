@@ -70,8 +70,9 @@ static bool same_constants(const struct model *m, int i, int j)
            a->pitch == b->pitch && a->stiffness == b->stiffness && a->rest == b->rest && a->damping == b->damping;
 }
 
-struct body *bodies_make(const struct model *m, struct arena *a)
+const struct body *bodies_make(const struct model *m, struct arena *a)
 {
+    if (REAL_BITS == 64 && m->constants) return m->constants;
     struct body *b = TAKE(a, m->nbody, struct body);
     for (int i = 0; i < m->nbody; i++) {
         if (i > 0 && same_constants(m, i - 1, i))

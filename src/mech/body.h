@@ -52,12 +52,13 @@ struct joint_cost {
     int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
 };
 
-/* body_make: the constants of body i of m, in *b. bodies_make: of all of them, (nbody) in `a`; bodies equal to their
- * predecessor cost nothing. */
+/* body_make: the constants of body i of m, in *b. bodies_make: of all of them, (nbody): in double the
+ * model's own, which model_finish made; in another precision made in `a`. Bodies equal to their predecessor cost
+ * nothing. */
 #define body_make REAL_NAME(body_make)
 void body_make(const struct model *m, int i, struct body *b);
 #define bodies_make REAL_NAME(bodies_make)
-struct body *bodies_make(const struct model *m, struct arena *a);
+const struct body *bodies_make(const struct model *m, struct arena *a);
 
 /* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
 #define body_place REAL_NAME(body_place)

@@ -19,6 +19,7 @@ struct cfa_run {
     real *y;          /* (nbody x 6) accelerations of the bodies under f and lambda */
     real *z;          /* (nbody x 6) W^T Z in the first c of each body */
     real *gyro;       /* (nbody x 6) velocity forces minus loads */
+    real *bias;       /* (nu) paper's scheme: joint forces of inverse dynamics at u' = 0 */
     bool full;        /* with velocity terms, loads and the base's acceleration; false: the response to forces alone */
     /* loops */
     real *response;   /* (nrow x nbody x 6) joint constraint forces answering each unit lambda */
@@ -209,27 +210,39 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
     arena_release(d->arena, mark);
 }
 
-/* Memory, poses, velocities, factors. */
-static bool prepare(struct cfa_run *r, struct dynamics *d, const real *q, const real *u)
+/* The velocity terms of all bodies. */
+static void velocity_terms(struct cfa_run *r, const real *u)
 {
-    int n = d->nbody;
-    r->d = d;
-    dynamics_place(d, q);
+    struct dynamics *d = r->d;
     dynamics_velocities(d, u);
-    work_count_place(d, &r->work);
     work_count_velocities(d, &r->work);
+    for (int i = 0; i < d->nbody; i++) {
+        body_gyro(&d->body[i], d->v + 6 * i, r->gyro + 6 * i);
+        if (d->load) six_sub(r->gyro + 6 * i, d->load + 6 * i);
+    }
+    r->work.flop += (uint64_t)d->nbody * (BODY_GYRO_FLOP + (d->load ? 6 : 0));
+}
+
+/* Memory, poses, velocities, factors. The paper's scheme has its velocity terms from inverse dynamics: bias forces in
+ * r->bias (nu). */
+static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const real *q, const real *u)
+{
+    int n = d->nbody, m = d->model->nrow;
+    r->d = d;
     r->f = TAKE(d->arena, 6 * n, real);
     r->y = TAKE(d->arena, 6 * n, real);
     r->z = TAKE(d->arena, 6 * n, real);
     r->gyro = TAKE(d->arena, 6 * n, real);
-    for (int i = 0; i < n; i++) {
-        body_gyro(&d->body[i], d->v + 6 * i, r->gyro + 6 * i);
-        if (d->load) six_sub(r->gyro + 6 * i, d->load + 6 * i);
+    r->bias = TAKE(d->arena, d->nu, real);
+    if (direct) {
+        dynamics_place(d, q);
+        work_count_place(d, &r->work);
+    } else {
+        rnea_full(d, q, u, d->zero, r->bias, &r->work);
     }
-    r->work.flop += (uint64_t)n * (BODY_GYRO_FLOP + (d->load ? 6 : 0));
+    if (direct || m > 0) velocity_terms(r, u);
     if (!cfa_factor(d, &r->system, &r->work)) return false;
     loops_take(d, &r->loops);
-    int m = r->loops.nrow;
     r->lambda = TAKE(d->arena, m, real);
     if (m == 0) return true;
     r->response = TAKE(d->arena, (size_t)m * 6 * (size_t)n, real);
@@ -239,18 +252,17 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, const real *q, const 
     return true;
 }
 
-/* The paper's scheme: bias forces by inverse dynamics, then the response of the system at rest to what remains. */
-static void solve_paper(struct cfa_run *r, const real *q, const real *u, const real *tau, int inner, real *ud)
+/* The paper's scheme: the response of the system at rest to what the bias forces leave of tau. */
+static void solve_paper(struct cfa_run *r, const real *tau, int inner, real *ud)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
-    real *rest = TAKE(d->arena, d->nu, real), *lack = TAKE(d->arena, r->loops.nrow, real);
-    rnea_full(d, q, u, d->zero, rest, &r->work);
-    for (int k = 0; k < d->nu; k++) rest[k] = tau[k] - rest[k];
+    real *lack = TAKE(d->arena, r->loops.nrow, real);
+    for (int k = 0; k < d->nu; k++) r->bias[k] = tau[k] - r->bias[k];
     loops_residual(&r->loops, d->a, d->base, false, lack);
     for (int k = 0; k < r->loops.nrow; k++) lack[k] = -lack[k];
     r->full = false;
-    solve(r, rest, lack, inner, ud);
+    solve(r, r->bias, lack, inner, ud);
     arena_release(d->arena, mark);
 }
 
@@ -274,12 +286,12 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
     struct arena_mark mark = arena_mark(d->arena);
     struct cfa_run r = {.full = true};
     struct cfa_report own = {.nrow = d->model->nrow};
-    bool good = d->model->has_phi && prepare(&r, d, q, u);
+    bool good = d->model->has_phi && prepare(&r, d, options->direct, q, u);
     if (good) {
         if (options->direct)
             solve(&r, tau, NULL, options->inner, ud);
         else
-            solve_paper(&r, q, u, tau, options->inner, ud);
+            solve_paper(&r, tau, options->inner, ud);
         own.residual = residual_of(&r);
         real *sum = TAKE(d->arena, r.loops.nrow, real);
         for (int k = 0; k < r.loops.nrow; k++) sum[k] = r.lambda[k];

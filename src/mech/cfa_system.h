@@ -3,20 +3,22 @@
  * (P F)_i = F_i - sum X_k F_k over children k is the net joint force on body i. Joints that meet in a body are coupled
  * pairwise by the body's Phi. Eliminating one of them only lowers that Phi,
  *     S_i = W^T (Phi_i + X^T Phi_p X) W,    Phi_p -= U S_i^-1 U^T,  U = Phi_p X W,
- * so siblings need no blocks of their own: cost is linear in n for every tree. A chain's is block Thomas. */
+ * so siblings need no blocks of their own: cost is linear in n for every tree. Where the parent p has no other child,
+ * only W_p^T Phi_p W_p matters and is lowered alone: on a chain this is block Thomas, physics 5.1. */
 #ifndef MECH_CFA_SYSTEM_H
 #define MECH_CFA_SYSTEM_H
 
 #include "mech/dynamics.h"
 
 struct cfa_row {
-    real g[21];         /* factor of S (c x c), packed */
-    real u[36];         /* (6 x c) U, column k at u + 6 k; absent for bodies on the base */
+    real g[21];         /* S (c x c) packed, then its factor L D L^T */
+    real y[36];         /* (c x width) L^-1 U^T, or L^-1 U^T W_p where the parent has no other child */
+    int width;          /* 6, or the parent's c; 0 on the base */
 };
 
 struct cfa_system {
     struct cfa_row *row;  /* (nbody) */
-    struct sym6 *phi;     /* (nbody) lowered inverse inertias; used while factoring */
+    struct sym6 *phi;     /* (nbody) lowered inverse inertias of bodies with several children; NULL for chains */
 };
 
 /* cfa_factor: at d's poses; memory from d->arena. Returns false when a block is not positive definite. */

@@ -23,7 +23,7 @@ struct revolute;              /* compact constants of a body on a revolute joint
 struct dynamics {
     const struct model *model;
     int nbody, nu;
-    struct body *body;        /* (nbody) constants */
+    const struct body *body;  /* (nbody) constants */
     struct revolute *revolute;/* (nbody) the same, compact, when all joints are revolute; else NULL */
     struct body_pose *pose;   /* (nbody) of the last dynamics_place */
     real *v, *a, *f;          /* (nbody x 6) velocity, acceleration, joint force on the body by its parent */

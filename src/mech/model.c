@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "linalg/eigen.h"
+#include "mech/body.h"
 
 static const struct {
     const char *name;
@@ -236,5 +237,7 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
         if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
     index_children(m);
     index_coordinates(m);
+    m->constants = NULL;
+    m->constants = bodies_make(m, m->arena);
     return true;
 }
