@@ -61,6 +61,60 @@ void verify_print_summary(FILE *out, const struct verify_report *r, int n)
             count[VERIFY_NOT_APPLICABLE]);
 }
 
+/* A column of the matrix: rows whose algorithm begins with `algorithm`, in the quantity. */
+struct column {
+    const char *title, *algorithm, *quantity;
+};
+
+static const struct column column_table[] = {
+    {"RNEA", "rnea", "tau_id"},
+    {"parallel", "parallel inverse", "tau_id"},
+    {"ABA", "aba", "qdd_fd"},
+    {"CRBA", "crba", "qdd_fd"},
+    {"CFA paper", "cfa-paper", "qdd_fd"},
+    {"CFA direct", "cfa-direct", "qdd_fd"},
+    {"CFA robust", "cfa-robust", "qdd_fd"},
+    {"parallel paper", "parallel forward paper", "qdd_fd"},
+    {"parallel direct", "parallel forward direct", "qdd_fd"},
+    {"parallel refined", "parallel forward refined", "qdd_fd"},
+    {"parallel robust", "parallel forward robust", "qdd_fd"},
+};
+enum { COLUMNS = sizeof column_table / sizeof *column_table };
+
+/* The largest error in the column, "-" when nothing there applies. */
+static void print_cell(FILE *out, const struct verify_report *r, const struct column *column)
+{
+    double largest = -1;
+    for (int i = 0; i < r->nrow; i++) {
+        const struct verify_row *row = &r->row[i];
+        bool here = strncmp(row->algorithm, column->algorithm, strlen(column->algorithm)) == 0 &&
+                    strcmp(row->quantity, column->quantity) == 0 && row->verdict != VERIFY_NOT_APPLICABLE;
+        if (here) largest = fmax(largest, row->error);
+    }
+    if (largest < 0)
+        fprintf(out, " - |");
+    else
+        fprintf(out, " %.0e |", largest);
+}
+
+void verify_print_matrix(FILE *out, const struct verify_report *r, int n)
+{
+    fprintf(out, "| case | bodies |");
+    for (int k = 0; k < COLUMNS; k++) fprintf(out, " %s |", column_table[k].title);
+    fprintf(out, " best library | verdict |\n|---|--:|");
+    for (int k = 0; k < COLUMNS; k++) fprintf(out, "--:|");
+    fprintf(out, "--:|---|\n");
+    for (int i = 0; i < n; i++) {
+        fprintf(out, "| %s | %d |", r[i].name, r[i].nbody);
+        for (int k = 0; k < COLUMNS; k++) print_cell(out, &r[i], &column_table[k]);
+        if (isfinite(r[i].peer_fd))
+            fprintf(out, " %.0e |", r[i].peer_fd);
+        else
+            fprintf(out, " - |");
+        fprintf(out, " %s |\n", r[i].passed ? "pass" : "FAIL");
+    }
+}
+
 static void key_text(struct json *j, const char *key, const char *s)
 {
     json_key(j, key);
