@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/check.h"
 
@@ -40,6 +41,16 @@ static int edit_distance(const char *a, size_t na, const char *b, size_t nb)
     return row[na % 3][nb];
 }
 
+/* text_abbreviated: the shortest name that `word` (three letters or more) begins, NULL when there is none. */
+static const char *text_abbreviated(const char *word, size_t length, const char *const *names, int n)
+{
+    const char *shortest = NULL;
+    for (int k = 0; k < n && length >= 3; k++)
+        if (strncasecmp(word, names[k], length) == 0 && (!shortest || strlen(names[k]) < strlen(shortest)))
+            shortest = names[k];
+    return shortest;
+}
+
 const char *text_nearest(const char *word, const char *const *names, int n)
 {
     size_t length = strlen(word);
@@ -55,7 +66,7 @@ const char *text_nearest(const char *word, const char *const *names, int n)
             nearest = names[k];
         }
     }
-    return nearest;
+    return nearest ? nearest : text_abbreviated(word, length, names, n);
 }
 
 /* text_reserve: room for n more bytes and a NUL. */

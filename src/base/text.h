@@ -8,8 +8,8 @@
 #include "base/err.h"
 
 /* text_nearest: the name among `names` (n of them) with the smallest edit distance to `word` (a swap of two
- * neighbours counts one), ignoring case, the first of equals; NULL when none is close enough to be a likely
- * misspelling (distance > 1 + length/3). */
+ * neighbours counts one), ignoring case, the first of equals. When none is close enough to be a likely
+ * misspelling (distance > 1 + length/3): the shortest name that `word` abbreviates, or NULL. */
 const char *text_nearest(const char *word, const char *const *names, int n);
 
 /* A growing text on the heap; start from {0}, end with text_free. */

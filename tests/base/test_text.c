@@ -41,6 +41,15 @@ static void what_is_far_from_all_has_no_nearest_name(void **state)
     assert_null(text_nearest(endless, KEYS, NKEY));
 }
 
+static void an_abbreviation_is_understood(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"paragon-osf1-ad", "paragon-osf1", "quad-ppro"};
+    assert_string_equal(text_nearest("Paragon", names, 3), "paragon-osf1");
+    assert_null(text_nearest("pa", names, 3));
+    assert_null(text_nearest("ppro", names, 3));
+}
+
 static void the_first_of_equally_near_names_wins(void **state)
 {
     (void)state;
@@ -137,6 +146,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_nearest_name_is_found),
         cmocka_unit_test(what_is_far_from_all_has_no_nearest_name),
+        cmocka_unit_test(an_abbreviation_is_understood),
         cmocka_unit_test(the_first_of_equally_near_names_wins),
         cmocka_unit_test(a_text_grows_and_is_given_back),
         cmocka_unit_test(files_of_every_size_are_read_whole),
