@@ -1,0 +1,96 @@
+#!/usr/bin/env bats
+# run.bats - a scenario answered through the real program: rows, resume, determinism, overrides, figures.
+
+load helper
+
+scenario() {
+    printf '%s\n' 'schema_version: 1' 'question: Small?' 'machine: t3e-300' \
+        'model: {generator: serial-chain}' 'kernel: dynamics' 'ranks: n' 'sweep:' '  level: [link, loggp]' \
+        '  n: [2, 3, 8]' "$@" >small.yaml
+}
+
+digests() { sql "$1" 'SELECT level, n, digest FROM run ORDER BY level, n'; }
+
+@test "every point is stored, verified, and printed" {
+    scenario
+    works mimdsim run small.yaml
+    [ "${#lines[@]}" -eq 7 ]
+    sql_is mimdsim.db "SELECT count(*) FROM run WHERE status = 'ok'" 6
+    sql_is mimdsim.db 'SELECT count(*) > 0, max(relative_error) < 1e-9, min(relative_error) >= 0 FROM error_check' '1|1|1'
+    works mimdsim run small.yaml --json
+    json_is_valid
+    json_is '$[#-1].status' ok
+}
+
+@test "what is stored is not run again unless forced" {
+    scenario
+    works mimdsim run small.yaml --quiet
+    stderr_is_empty
+    first=$(sql mimdsim.db 'SELECT * FROM run ORDER BY config_hash' | sha256sum)
+    works mimdsim run small.yaml
+    [ "$(sql mimdsim.db 'SELECT * FROM run ORDER BY config_hash' | sha256sum)" = "$first" ]
+    before=$(digests mimdsim.db)
+    works mimdsim run small.yaml --force
+    [ "$(digests mimdsim.db)" = "$before" ]
+    sql_is mimdsim.db 'SELECT count(*) FROM run' 6
+}
+
+@test "the same scenario gives the same digests twice, on one worker and on several" {
+    scenario
+    works mimdsim run small.yaml -o a.db --jobs 1
+    works mimdsim run small.yaml -o b.db --jobs 3
+    [ -n "$(digests a.db)" ]
+    [ "$(digests a.db)" = "$(digests b.db)" ]
+    [ "$(sql a.db 'SELECT makespan_ps FROM run ORDER BY config_hash')" = \
+        "$(sql b.db 'SELECT makespan_ps FROM run ORDER BY config_hash')" ]
+}
+
+@test "a campaign that was killed goes on where it was and ends as if nothing had happened" {
+    scenario
+    works mimdsim run small.yaml -o whole.db --quiet
+    for delay in 0.01 0.02 0.03 0.05 0.08; do
+        timeout -s KILL "$delay" "$MIMDSIM" run small.yaml -o torn.db --quiet >/dev/null 2>&1 || true
+    done
+    works mimdsim run small.yaml -o torn.db --quiet
+    [ "$(digests torn.db)" = "$(digests whole.db)" ]
+    sql_is torn.db 'PRAGMA integrity_check' ok
+}
+
+@test "an override acts, and its run is another one" {
+    scenario
+    works mimdsim run small.yaml
+    works mimdsim run small.yaml --set 'machine.network.link.bandwidth=4 MB/s'
+    sql_is mimdsim.db 'SELECT count(*) FROM run' 12
+    sql_is mimdsim.db "SELECT count(DISTINCT makespan_ps) FROM run WHERE n = 8 AND level = 'loggp'" 2
+}
+
+@test "another machine answers the same scenario" {
+    scenario
+    works mimdsim run small.yaml --machine paragon
+    sql_is mimdsim.db "SELECT count(*) FROM run WHERE status = 'ok'" 6
+    sql_is mimdsim.db 'SELECT count(DISTINCT machine) || min(machine) FROM run' 1paragon
+}
+
+@test "explain tells what will run and runs nothing" {
+    scenario
+    works mimdsim explain small.yaml
+    stdout_says "6 runs"
+    works mimdsim explain small.yaml --json
+    json_is_valid
+    rm small.yaml
+    nothing_left_behind
+}
+
+@test "figures come from the database alone" {
+    works mimdsim run speedup-t3e --quiet
+    mkdir elsewhere
+    mv mimdsim.db elsewhere/moved.db
+    works mimdsim plot elsewhere/moved.db fig5 fig6 --dir pictures
+    for figure in fig5 fig6; do
+        for kind in png svg csv gp; do [ -s "pictures/$figure.$kind" ]; done
+        [ "$(wc -l <"pictures/$figure.csv")" -gt 5 ]
+    done
+    first=$(sha256sum <pictures/fig6.svg)
+    works mimdsim plot elsewhere/moved.db fig6 --dir again
+    [ "$(sha256sum <again/fig6.svg)" = "$first" ]
+}
