@@ -33,6 +33,7 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
     k->tau = CARVE(c, nu, real);
     k->active = CARVE(c, nu, real);
     k->answer = CARVE(c, nu, real);
+    motion_carve(&k->motion, c, job, k->tree.nq, nu);
     k->ud = CARVE(c, room * nu, real);
     k->load = CARVE(c, 6 * room * n, real);
     k->compound = CARVE(c, compound_size(room) * n, real);
@@ -278,7 +279,8 @@ static void refine_outside(struct contraction *k)
     k->residual = residual;
 }
 
-void contraction_evaluate(struct contraction *k)
+/* evaluate: the answer from the coordinates and rates in the tree. */
+static void evaluate(struct contraction *k)
 {
     struct tree *t = &k->tree;
     comm_stage(t->comm, STAGE_PLACE);
@@ -308,7 +310,8 @@ void contraction_evaluate(struct contraction *k)
     for (int pass = 0; pass < t->job->spec->kernel.outer_refinements; pass++) refine_outside(k);
 }
 
-void contraction_store(const struct contraction *k)
+/* store: the answer and the loop forces into the job's arrays. */
+static void store(const struct contraction *k)
 {
     const struct tree *t = &k->tree;
     const struct kernel_job *job = t->job;
@@ -322,4 +325,28 @@ void contraction_store(const struct contraction *k)
     if (rank != 0) return;
     for (int j = 0; j + 1 < k->room && job->lambda; j++) job->lambda[j] = (double)k->lambda[j];
     if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;
+}
+
+/* evaluate_once: for the time steps; only the first answer is kept. */
+static void evaluate_once(void *program)
+{
+    struct contraction *k = program;
+    evaluate(k);
+    if (!k->stored) store(k);
+    k->stored = true;
+}
+
+void contraction_run(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    struct motion *m = &k->motion;
+    tree_load(t);
+    m->body = t->shared->body;
+    m->bodies = t->bodies, m->n = t->n;
+    m->q = t->q, m->u = t->u, m->ud = k->answer;
+    m->evaluate = evaluate_once;
+    m->program = k;
+    m->work = &t->work;
+    motion_run(m);
+    tree_report(t);
 }

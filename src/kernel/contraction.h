@@ -12,6 +12,7 @@
 #ifndef KERNEL_CONTRACTION_H
 #define KERNEL_CONTRACTION_H
 
+#include "kernel/motion.h"
 #include "kernel/tree.h"
 
 /* What is given for one solution: zero where a pointer is NULL. */
@@ -46,6 +47,8 @@ struct contraction {
     real **side;         /* (2 nloop) accelerations of own loop sides */
     real *side_room;
     real *lambda;        /* (nrow) loop forces, summed over refinements */
+    struct motion motion;
+    bool stored;         /* the first evaluation's answer is in the job's arrays */
     real residual;
     bool broken;
 };
@@ -58,13 +61,9 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
 #define contraction_set REAL_NAME(contraction_set)
 void contraction_set(struct contraction *k, struct comm *c);
 
-/* contraction_evaluate: the answer from the coordinates and rates in the tree. Every rank must call. */
-#define contraction_evaluate REAL_NAME(contraction_evaluate)
-void contraction_evaluate(struct contraction *k);
-
-/* contraction_store: the answer and the loop forces into the job's arrays. */
-#define contraction_store REAL_NAME(contraction_store)
-void contraction_store(const struct contraction *k);
+/* contraction_run: the job's evaluation or time steps; the first evaluation's answer into the job's arrays. */
+#define contraction_run REAL_NAME(contraction_run)
+void contraction_run(struct contraction *k);
 
 /* contraction_solve: f1, f2 of all own bodies for what is given (k->given, k->m columns): contract, then undo. */
 #define contraction_solve REAL_NAME(contraction_solve)

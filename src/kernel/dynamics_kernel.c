@@ -160,9 +160,7 @@ static void chain_forward_run(struct comm *c, const struct kernel_job *job, stru
     struct carve room = {.base = (char *)f, .used = head(sizeof *f)};
     forward_carve(f, &room, job, comm_rank(c));
     forward_set(f, c);
-    chain_load(&f->chain);
-    forward_evaluate(f);
-    forward_store(f);
+    forward_run(f);
 }
 
 static void tree_forward_run(struct comm *c, const struct kernel_job *job, struct contraction *k)
@@ -170,12 +168,10 @@ static void tree_forward_run(struct comm *c, const struct kernel_job *job, struc
     struct carve room = {.base = (char *)k, .used = head(sizeof *k)};
     contraction_carve(k, &room, job, comm_rank(c));
     contraction_set(k, c);
-    tree_load(&k->tree);
-    contraction_evaluate(k);
-    contraction_store(k);
+    contraction_run(k);
 }
 
-static void forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void either_forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
 {
     if (branches(job->model)) tree_forward_run(c, job, workspace);
     else chain_forward_run(c, job, workspace);
@@ -186,7 +182,7 @@ static void dynamics_run(struct comm *c, const struct kernel_job *job, void *wor
     inverse_run(c, job, workspace);
     comm_barrier(c);
     memset(workspace, 0, dynamics_bytes(job, comm_rank(c)));
-    forward_run(c, job, workspace);
+    either_forward_run(c, job, workspace);
 }
 
 const struct kernel_type inverse_kernel = {
@@ -213,7 +209,7 @@ const struct kernel_type forward_kernel = {
     .accepts = accepts_forward,
     .prepare = prepare,
     .workspace_bytes = forward_bytes,
-    .run = forward_run,
+    .run = either_forward_run,
     .estimate = estimate_forward,
 };
 

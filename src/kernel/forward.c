@@ -17,6 +17,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
     f->tau = CARVE(c, nu, real);
     f->ud = CARVE(c, nu, real);
+    motion_carve(&f->motion, c, job, chain_nq(s, ch->lo, ch->hi), nu);
     f->force = CARVE(c, 6 * m, real);
     f->force_left = CARVE(c, 6, real);
     f->force_right = CARVE(c, 6, real);
@@ -424,7 +425,8 @@ static void refine(struct forward *f)
     joint_accelerations(f, true);
 }
 
-void forward_evaluate(struct forward *f)
+/* evaluate: ud from the coordinates and rates in the chain. */
+static void evaluate(struct forward *f)
 {
     struct chain *ch = &f->chain;
     comm_stage(ch->comm, STAGE_PLACE);
@@ -438,7 +440,8 @@ void forward_evaluate(struct forward *f)
     f->residual = first_residual;
 }
 
-void forward_store(const struct forward *f)
+/* store: the answer, residual and condition into the job's arrays. */
+static void store(const struct forward *f)
 {
     const struct chain *ch = &f->chain;
     const struct kernel_job *job = ch->job;
@@ -446,4 +449,28 @@ void forward_store(const struct forward *f)
     for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
     if (job->residual) job->residual[k] = (double)f->residual;
     if (job->condition) job->condition[k] = (double)f->blocks.reduction.condition;
+}
+
+/* evaluate_once: for the time steps; only the first answer is kept. */
+static void evaluate_once(void *program)
+{
+    struct forward *f = program;
+    evaluate(f);
+    if (!f->stored) store(f);
+    f->stored = true;
+}
+
+void forward_run(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    struct motion *m = &f->motion;
+    chain_load(ch);
+    m->body = ch->shared->body;
+    m->first = ch->lo, m->n = ch->hi - ch->lo;
+    m->q = ch->q, m->u = ch->u, m->ud = f->ud;
+    m->evaluate = evaluate_once;
+    m->program = f;
+    m->work = &ch->work;
+    motion_run(m);
+    chain_report(ch);
 }

@@ -10,6 +10,7 @@
 
 #include "kernel/blocks.h"
 #include "kernel/chain.h"
+#include "kernel/motion.h"
 
 struct forward {
     struct chain chain;
@@ -25,6 +26,8 @@ struct forward {
     real *z;                   /* own bodies (6): acceleration of the joint, H^T z = u', W^T z = 0 */
     real *D, *E;               /* paper: Q^T D Q of own joints, Q^T E Q of own joints and of joint hi (36 each) */
     real *message;             /* coordinates or forces of an edge joint */
+    struct motion motion;
+    bool stored;               /* the first evaluation's answer is in the job's arrays */
     real residual;             /* largest |W^T z| over the largest term in it */
 };
 
@@ -36,12 +39,8 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
 #define forward_set REAL_NAME(forward_set)
 void forward_set(struct forward *f, struct comm *c);
 
-/* forward_evaluate: ud from the coordinates and rates in the chain. Every rank must call. */
-#define forward_evaluate REAL_NAME(forward_evaluate)
-void forward_evaluate(struct forward *f);
-
-/* forward_store: the answer, residual and condition into the job's arrays. */
-#define forward_store REAL_NAME(forward_store)
-void forward_store(const struct forward *f);
+/* forward_run: the job's evaluation or time steps; the first evaluation's answer into the job's arrays. */
+#define forward_run REAL_NAME(forward_run)
+void forward_run(struct forward *f);
 
 #endif

@@ -1,0 +1,132 @@
+/* motion.c - time steps of one rank's joints (motion.h). */
+#include "kernel/motion.h"
+
+#include <string.h>
+
+#include "mech/model.h"
+
+void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu)
+{
+    const struct kernel_spec *spec = &job->spec->kernel;
+    const bool rk4 = spec->steps > 0 && spec->step == STEP_RK4, kdk = spec->steps > 0 && spec->step == STEP_KDK;
+    m->job = job;
+    m->nq = nq, m->nu = nu;
+    m->q0 = CARVE(c, rk4 ? nq : 0, real);
+    m->dq = CARVE(c, rk4 ? nq : 0, real);
+    m->qsum = CARVE(c, rk4 ? nq : 0, real);
+    m->u0 = CARVE(c, rk4 || kdk ? nu : 0, real);
+    m->usum = CARVE(c, rk4 ? nu : 0, real);
+    m->a = CARVE(c, kdk ? nu : 0, real);
+}
+
+static const struct body *body_of(const struct motion *m, int l)
+{
+    return &m->body[m->bodies ? m->bodies[l] : m->first + l];
+}
+
+/* kick: u += h x. */
+static void kick(struct motion *m, const real *x, real h)
+{
+    for (int i = 0; i < m->nu; i++) m->u[i] += h * x[i];
+    m->work->flop += (uint64_t)(2 * m->nu);
+}
+
+/* drift: q moves for the time h at constant u; h = 0 normalises. */
+static void drift(struct motion *m, real h)
+{
+    int q = 0, u = 0;
+    for (int l = 0; l < m->n; l++) {
+        const struct body *b = body_of(m, l);
+        body_step(b, m->q + q, m->u + u, h);
+        q += b->nq, u += b->d;
+        m->work->flop += (uint64_t)(b->nq > b->d ? 40 + 4 * b->nq : 2 * b->nq);
+        m->work->trig += b->nq > b->d ? 2 : 0;
+    }
+}
+
+/* slope: dq = N(q) u. */
+static void slope(struct motion *m)
+{
+    int q = 0, u = 0;
+    for (int l = 0; l < m->n; l++) {
+        const struct body *b = body_of(m, l);
+        body_qdot(b, m->q + q, m->u + u, m->dq + q);
+        q += b->nq, u += b->d;
+        m->work->flop += (uint64_t)(b->nq > b->d ? 28 : 0);
+    }
+}
+
+static void semi_implicit(struct motion *m, real h)
+{
+    m->evaluate(m->program);
+    kick(m, m->ud, h);
+    drift(m, h);
+}
+
+/* kick_drift_kick: one evaluation a step, at rates predicted with the accelerations before. */
+static void kick_drift_kick(struct motion *m, real h, bool first)
+{
+    if (first) {
+        m->evaluate(m->program);
+        memcpy(m->a, m->ud, (size_t)m->nu * sizeof(real));
+    }
+    kick(m, m->a, h / 2);
+    drift(m, h);
+    memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
+    kick(m, m->a, h / 2);
+    m->evaluate(m->program);
+    memcpy(m->a, m->ud, (size_t)m->nu * sizeof(real));
+    memcpy(m->u, m->u0, (size_t)m->nu * sizeof(real));
+    kick(m, m->a, h / 2);
+}
+
+/* runge_kutta: the classical method of order four; y = y0 + h (k1 + 2 k2 + 2 k3 + k4) / 6. */
+static void runge_kutta(struct motion *m, real h)
+{
+    static const int weight[4] = {1, 2, 2, 1};
+    const real part[4] = {h / 2, h / 2, h, h / 6};
+    memcpy(m->q0, m->q, (size_t)m->nq * sizeof(real));
+    memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
+    memset(m->qsum, 0, (size_t)m->nq * sizeof(real));
+    memset(m->usum, 0, (size_t)m->nu * sizeof(real));
+    for (int stage = 0; stage < 4; stage++) {
+        m->evaluate(m->program);
+        slope(m);
+        for (int i = 0; i < m->nq; i++) m->qsum[i] += (real)weight[stage] * m->dq[i];
+        for (int i = 0; i < m->nu; i++) m->usum[i] += (real)weight[stage] * m->ud[i];
+        const real *dq = stage < 3 ? m->dq : m->qsum, *du = stage < 3 ? m->ud : m->usum;
+        for (int i = 0; i < m->nq; i++) m->q[i] = m->q0[i] + part[stage] * dq[i];
+        for (int i = 0; i < m->nu; i++) m->u[i] = m->u0[i] + part[stage] * du[i];
+        m->work->flop += (uint64_t)(4 * (m->nq + m->nu));
+    }
+    drift(m, 0);
+}
+
+/* store: own parts of model-ordered arrays. */
+static void store(const struct motion *m, bool coordinates, const real *from, double *to)
+{
+    int at = 0;
+    for (int l = 0; l < m->n && to; l++) {
+        const struct body *b = body_of(m, l);
+        const int n = coordinates ? b->nq : b->d, first = coordinates ? b->q_at : b->u_at;
+        for (int i = 0; i < n; i++) to[first + i] = (double)from[at + i];
+        at += n;
+    }
+}
+
+void motion_run(struct motion *m)
+{
+    const struct kernel_spec *spec = &m->job->spec->kernel;
+    const real h = (real)(spec->step_size / m->job->model->second);
+    for (int k = 0; k < spec->steps; k++) {
+        if (spec->step == STEP_RK4) runge_kutta(m, h);
+        else if (spec->step == STEP_KDK) kick_drift_kick(m, h, k == 0);
+        else semi_implicit(m, h);
+    }
+    if (spec->steps == 0) {
+        m->evaluate(m->program);
+        return;
+    }
+    store(m, true, m->q, m->job->q_end);
+    store(m, false, m->u, m->job->qd_end);
+}

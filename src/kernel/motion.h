@@ -1,0 +1,34 @@
+/* motion.h - a rank integrates its own joints in time (physics 9): semi-implicit Euler, kick-drift-kick, Runge-Kutta 4.
+ *
+ * The accelerations come from a forward dynamics program on the coordinates and rates that are advanced here; ranks
+ * meet only in there. Coordinates move along their group; in Runge-Kutta stages quaternions are plain numbers,
+ * normalised at the end of the step. */
+#ifndef KERNEL_MOTION_H
+#define KERNEL_MOTION_H
+
+#include "kernel/carve.h"
+#include "kernel/kernel.h"
+#include "mech/body.h"
+
+struct motion {
+    const struct kernel_job *job;
+    const struct body *body;         /* of all bodies */
+    const int *bodies;               /* (n) own bodies; NULL: first, first + 1, .. */
+    int first, n, nq, nu;
+    real *q, *u;                     /* own coordinates and rates, body after body: advanced */
+    const real *ud;                  /* own accelerations, made by evaluate */
+    void (*evaluate)(void *program); /* ud from q and u; every rank must call it */
+    void *program;
+    struct work *work;
+    real *q0, *u0, *dq, *qsum, *usum, *a; /* q, u at the beginning of the step; sums of slopes; last accelerations */
+};
+
+/* motion_carve: room for stepping nq coordinates and nu rates. */
+#define motion_carve REAL_NAME(motion_carve)
+void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu);
+
+/* motion_run: all time steps of the job, the last state into job->q_end, qd_end; without time steps one evaluation. */
+#define motion_run REAL_NAME(motion_run)
+void motion_run(struct motion *m);
+
+#endif
