@@ -89,10 +89,15 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
         rate_make(w, w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth, m->software.gap_per_byte);
     n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
     link_rates_make(n, w);
-    /* a processor that runs ahead is in order with itself, but not with others, nor with the data of a rendezvous */
-    n->port_private = t->spec->processors_per_node == 1 && m->software.eager_bytes < 0 && m->noise.background_load <= 0;
+    n->port_private = m->software.eager_bytes < 0 && t->spec->processors_per_node == 1;
     if (want_links) loads_make(n);
     return n->type->create(n, e) ? n : NULL;
+}
+
+void net_set_in_order(struct net *n, bool in_order)
+{
+    if (n->type != &net_loggp && n->type != &net_link) return; /* the others need an event anyway */
+    n->port_private = in_order && n->topology->spec->processors_per_node == 1;
 }
 
 void net_send(struct net *n, struct net_message *m)

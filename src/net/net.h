@@ -60,6 +60,13 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
 /* net_send: hand over a message; see the contract above. m is borrowed until deliver. */
 void net_send(struct net *n, struct net_message *m);
 
+/* net_set_in_order: whether the messages of each node are handed over in the order of their ready times, so that a
+ * start needs no event. At first true if all messages are eager; never true where processors share a port. A processor
+ * that runs ahead is in order with itself, but not with the data and answers of a rendezvous: the caller who expects
+ * none may say true, and says false before its first, which then is late at ports that were promised ahead of its time.
+ */
+void net_set_in_order(struct net *n, bool in_order);
+
 /* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
 

@@ -282,6 +282,38 @@ static void processors_of_a_node_share_its_port(void **state)
     }
 }
 
+static void starts_in_order_need_no_events(void **state)
+{
+    (void)state;
+    for (int level = LEVEL_LOGGP; level <= LEVEL_LINK; level++)
+        for (int in_order = 0; in_order < 2; in_order++) {
+            struct loggp p = {.o = 1000, .g = 500, .G = 10, .L = 3000};
+            struct machine_spec m = crossbar(&p, 4);
+            m.network.level = (enum network_level)level;
+            m.software.eager_bytes = 4096;
+            struct arena *a = arena_create();
+            struct sim *s = sim_create();
+            struct err e;
+            struct arrivals seen = {0};
+            err_clear(&e);
+            struct topology *t = topology_create(&m.topology, a, &e);
+            struct net *n = net_create(&m, t, s, a, count_arrival, &seen, false, &e);
+            assert_non_null(n);
+            net_set_in_order(n, in_order);
+            struct net_message x[] = {{.src = 0, .dst = 1, .bytes = 51, .id = 0, .ready = 2000},
+                                      {.src = 0, .dst = 2, .bytes = 51, .id = 1, .ready = 2100}};
+            for (int i = 0; i < 2; i++) net_send(n, &x[i]);
+            assert_int_equal(seen.n, in_order && level == LEVEL_LOGGP ? 2 : 0);
+            while (sim_step(s)) continue;
+            assert_int_equal(seen.n, 2);
+            assert_int_equal(x[0].arrival, 2000 + 500 + 3000);
+            assert_int_equal(x[1].arrival, 2000 + 500 + 500 + 500 + 3000);
+            assert_int_equal(sim_events(s), (in_order ? 0 : 2) + (level == LEVEL_LINK ? 2 : 0));
+            sim_destroy(s);
+            arena_destroy(a);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -290,6 +322,7 @@ int main(void)
         cmocka_unit_test(random_programs_follow_the_recursion_on_a_torus),
         cmocka_unit_test(only_the_own_port_delays),
         cmocka_unit_test(processors_of_a_node_share_its_port),
+        cmocka_unit_test(starts_in_order_need_no_events),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
