@@ -16,8 +16,11 @@ void event_queue_done(struct event_queue *q)
     free(q->heap.event);
     free(q->key);
     free(q->scratch);
-    for (int l = 0; l < WHEEL_LEVELS; l++)
-        for (int s = 0; s < WHEEL_SLOTS; s++) free(q->wheel[l][s].event);
+    while (q->slab) {
+        void *next = *(void **)q->slab;
+        free(q->slab);
+        q->slab = next;
+    }
     memset(q, 0, sizeof *q);
 }
 
@@ -70,13 +73,61 @@ static void heap_take(struct event_bucket *h, struct event *first)
 
 /* --- the wheels --- */
 
+enum { SLAB_CHUNKS = 16 };
+
+static void pool_refill(struct event_queue *q)
+{
+    char *slab = malloc(sizeof(void *) + SLAB_CHUNKS * sizeof(struct event_chunk));
+    CHECK(slab);
+    *(void **)slab = q->slab;
+    q->slab = slab;
+    struct event_chunk *c = (struct event_chunk *)(slab + sizeof(void *));
+    for (int i = 0; i < SLAB_CHUNKS; i++) {
+        c[i].next = q->pool;
+        q->pool = &c[i];
+    }
+}
+
+static void chain_grow(struct event_queue *q, struct event_chain *chain)
+{
+    if (!q->pool) pool_refill(q);
+    struct event_chunk *c = q->pool;
+    q->pool = c->next;
+    c->next = NULL;
+    c->count = 0;
+    if (chain->last) chain->last->next = c;
+    else chain->first = c;
+    chain->last = c;
+}
+
+static inline void chain_add(struct event_queue *q, struct event_chain *chain, const struct event *e)
+{
+    if (!chain->last || chain->last->count == CHUNK_EVENTS) chain_grow(q, chain);
+    chain->last->event[chain->last->count++] = *e;
+}
+
+static inline void chunk_give(struct event_queue *q, struct event_chunk *c)
+{
+    c->next = q->pool;
+    q->pool = c;
+}
+
+/* The chain of a bucket, which is empty afterwards. */
+static struct event_chain wheel_cut(struct event_queue *q, int level, int slot)
+{
+    struct event_chain chain = q->wheel[level][slot];
+    q->wheel[level][slot] = (struct event_chain){0};
+    q->full[level] &= ~(UINT64_C(1) << slot);
+    return chain;
+}
+
 static inline void wheel_add(struct event_queue *q, const struct event *e)
 {
     uint64_t differs = (uint64_t)e->time ^ (uint64_t)q->now;
     int level = differs ? (63 - __builtin_clzll(differs)) / WHEEL_BITS : 0;
     unsigned slot = (unsigned)(e->time >> (level * WHEEL_BITS)) & (WHEEL_SLOTS - 1);
     q->full[level] |= UINT64_C(1) << slot;
-    bucket_add(&q->wheel[level][slot], e);
+    chain_add(q, &q->wheel[level][slot], e);
 }
 
 /* The first bucket: lowest level that has any, lowest value there. */
@@ -94,15 +145,15 @@ static inline bool wheel_first(const struct event_queue *q, int *level, int *slo
 /* Spread a bucket over the levels below, from the first moment that it covers. */
 static void wheel_spread(struct event_queue *q, int level, int slot)
 {
-    struct event_bucket b = q->wheel[level][slot];
-    q->wheel[level][slot] = (struct event_bucket){0};
-    q->full[level] &= ~(UINT64_C(1) << slot);
+    struct event_chain chain = wheel_cut(q, level, slot);
     int shift = level * WHEEL_BITS;
     uint64_t above = shift + WHEEL_BITS > 62 ? 0 : ~UINT64_C(0) << (shift + WHEEL_BITS);
     q->now = (sim_ps)(((uint64_t)q->now & above) | (uint64_t)slot << shift);
-    for (uint32_t i = 0; i < b.count; i++) wheel_add(q, &b.event[i]);
-    b.count = 0;
-    q->wheel[level][slot] = b; /* keeps its memory for the next time round */
+    for (struct event_chunk *c = chain.first, *next; c; c = next) {
+        next = c->next;
+        for (uint32_t i = 0; i < c->count; i++) wheel_add(q, &c->event[i]);
+        chunk_give(q, c);
+    }
 }
 
 /* --- the sorted events of one instant --- */
@@ -146,13 +197,14 @@ static void keys_room(struct event_queue *q, uint32_t n)
 /* Make the bucket of the next instant the run. */
 static void run_begin(struct event_queue *q, int slot)
 {
-    struct event_bucket empty = q->run;
-    q->run = q->wheel[0][slot];
-    empty.count = 0;
-    q->wheel[0][slot] = empty;
-    q->full[0] &= ~(UINT64_C(1) << slot);
+    struct event_chain chain = wheel_cut(q, 0, slot);
+    q->run.count = q->run_at = 0;
+    for (struct event_chunk *c = chain.first, *next; c; c = next) {
+        next = c->next;
+        for (uint32_t i = 0; i < c->count; i++) bucket_add(&q->run, &c->event[i]);
+        chunk_give(q, c);
+    }
     q->now = q->run.event[0].time;
-    q->run_at = 0;
     keys_room(q, q->run.count);
     for (uint32_t i = 0; i < q->run.count; i++)
         q->key[i] = (struct event_key){q->run.event[i].order, q->run.event[i].age, i};
@@ -195,9 +247,9 @@ sim_ps event_queue_next_time(const struct event_queue *q)
     if (q->run_at < q->run.count || q->heap.count) return q->now;
     int level, slot;
     CHECK(wheel_first(q, &level, &slot));
-    const struct event_bucket *b = &q->wheel[level][slot];
-    sim_ps first = b->event[0].time;
-    for (uint32_t i = 1; i < b->count; i++)
-        if (b->event[i].time < first) first = b->event[i].time;
+    sim_ps first = SIM_NEVER;
+    for (const struct event_chunk *c = q->wheel[level][slot].first; c; c = c->next)
+        for (uint32_t i = 0; i < c->count; i++)
+            if (c->event[i].time < first) first = c->event[i].time;
     return first;
 }

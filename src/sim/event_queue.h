@@ -22,9 +22,23 @@ struct event {
     uint64_t argument;
 };
 
+/* A growing array, for the events of the present instant. */
 struct event_bucket {
     struct event *event; /* owned, (capacity) */
     uint32_t count, capacity;
+};
+
+enum { CHUNK_EVENTS = 31 };
+
+/* Buckets of the future are chains of chunks from one pool, so that memory follows the number pending. */
+struct event_chunk {
+    struct event_chunk *next;
+    uint32_t count;
+    struct event event[CHUNK_EVENTS];
+};
+
+struct event_chain {
+    struct event_chunk *first, *last;
 };
 
 enum { WHEEL_BITS = 6, WHEEL_SLOTS = 1 << WHEEL_BITS, WHEEL_LEVELS = (63 + WHEEL_BITS - 1) / WHEEL_BITS };
@@ -45,7 +59,9 @@ struct event_queue {
     uint32_t run_at, key_capacity;
     struct event_bucket heap;  /* posted at this instant since it began */
     uint64_t full[WHEEL_LEVELS]; /* bit per bucket that is not empty */
-    struct event_bucket wheel[WHEEL_LEVELS][WHEEL_SLOTS];
+    struct event_chain wheel[WHEEL_LEVELS][WHEEL_SLOTS];
+    struct event_chunk *pool;  /* chunks not in use */
+    void *slab;                /* owned: memory of the chunks, a list */
 };
 
 /* event_queue_init, event_queue_done: an empty queue at time 0; give its memory back. */
