@@ -23,10 +23,19 @@ struct tree_inverse {
 /* branches: the model is not a plain open chain, so the programs for trees run it. */
 static bool branches(const struct model *m) { return !m->is_chain || m->nloop > 0; }
 
+/* One body a rank: a textbook row of three 6x6 blocks and a right-hand side is the largest message there is. */
+static int64_t largest_message(const struct kernel_job *job)
+{
+    bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
+    if (branches(job->model) || gathers || job->model->nbody != job->nrank) return -1;
+    return (3 * 36 + 6) * (int64_t)sizeof(real);
+}
+
 static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     if (spec->nrank > model->nbody)
-        return err_set(e, ERR_CONFIG, "%d processors for %d bodies: each needs at least one", spec->nrank, model->nbody);
+        return err_set(e, ERR_CONFIG, "%d processors for %d bodies: each needs at least one", spec->nrank,
+                       model->nbody);
     if (branches(model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
     if (branches(model) && !spec->kernel.composites_incoming)
@@ -146,7 +155,8 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
     comm_stage(c, STAGE_FORCE);
     tree_force(t, v->tau, NULL);
     for (int l = 0; l < t->n && job->tau; l++)
-        for (int k = 0; k < tree_body(t, l)->d; k++) job->tau[tree_body(t, l)->u_at + k] = (double)v->tau[t->u_at[l] + k];
+        for (int k = 0; k < tree_body(t, l)->d; k++)
+            job->tau[tree_body(t, l)->u_at + k] = (double)v->tau[t->u_at[l] + k];
 }
 
 static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -195,6 +205,7 @@ const struct kernel_type inverse_kernel = {
     .accepts = accepts_inverse,
     .prepare = prepare,
     .workspace_bytes = inverse_bytes,
+    .largest_message = largest_message,
     .run = inverse_run,
     .estimate = estimate_inverse,
 };
@@ -209,6 +220,7 @@ const struct kernel_type forward_kernel = {
     .accepts = accepts_forward,
     .prepare = prepare,
     .workspace_bytes = forward_bytes,
+    .largest_message = largest_message,
     .run = either_forward_run,
     .estimate = estimate_forward,
 };
@@ -224,6 +236,7 @@ const struct kernel_type dynamics_kernel = {
     .accepts = accepts_forward,
     .prepare = prepare,
     .workspace_bytes = dynamics_bytes,
+    .largest_message = largest_message,
     .run = dynamics_run,
     .estimate = estimate_dynamics,
 };

@@ -20,35 +20,35 @@ struct state;
 
 struct kernel_job {
     const struct run_spec *spec;
-    const struct model *model;   /* NULL for kernels that need none (micro-benchmarks) */
-    const struct state *state;   /* q, qd, qdd, tau, external forces */
+    const struct model *model; /* NULL for kernels that need none (micro-benchmarks) */
+    const struct state *state; /* q, qd, qdd, tau, external forces */
     int nrank;
-    const void *shared;          /* what prepare made: partition tables, constant inertias; read-only */
-    double *tau;                 /* out (nu): inverse dynamics, model order; NULL if the task has none */
-    double *qdd;                 /* out (nu): forward dynamics; NULL if the task has none */
-    double *q_end, *qd_end;      /* out: state after the last time step; NULL when steps = 0 */
-    double *lambda;              /* out: loop forces; NULL without loops */
-    double *measured;            /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
-    double *residual;            /* out (nrank): largest constraint residual seen by each rank, relative; may be NULL */
-    double *condition;           /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
-                                    condition of the block-scaled system; may be NULL */
-    int *loop_rank;              /* out (1): rank of the loops' constraint matrix; may be NULL */
+    const void *shared;     /* what prepare made: partition tables, constant inertias; read-only */
+    double *tau;            /* out (nu): inverse dynamics, model order; NULL if the task has none */
+    double *qdd;            /* out (nu): forward dynamics; NULL if the task has none */
+    double *q_end, *qd_end; /* out: state after the last time step; NULL when steps = 0 */
+    double *lambda;         /* out: loop forces; NULL without loops */
+    double *measured;       /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
+    double *residual;       /* out (nrank): largest constraint residual seen by each rank, relative; may be NULL */
+    double *condition;      /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
+                               condition of the block-scaled system; may be NULL */
+    int *loop_rank;         /* out (1): rank of the loops' constraint matrix; may be NULL */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
 struct kernel_estimate {
-    double messages, bytes;      /* sent, all ranks */
-    double flops;                /* all ranks */
-    double rank_bytes;           /* host memory per rank, workspace and messages in flight */
+    double messages, bytes; /* sent, all ranks */
+    double flops;           /* all ranks */
+    double rank_bytes;      /* host memory per rank, workspace and messages in flight */
 };
 
 struct kernel_type {
     const char *name;
-    const char *title;                    /* one line for people */
+    const char *title; /* one line for people */
     bool needs_model;
     bool does_inverse, does_forward;
     int nstage;
-    const char *const *stage_name;        /* (nstage) */
+    const char *const *stage_name; /* (nstage) */
 
     /* accepts: false with ERR_CONFIG when this kernel cannot run the spec (n < P, wrong model). */
     bool (*accepts)(const struct run_spec *spec, const struct model *model, struct err *e);
@@ -58,6 +58,9 @@ struct kernel_type {
 
     /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
     size_t (*workspace_bytes)(const struct kernel_job *job, int rank);
+
+    /* largest_message: no message of this job is larger [B]; -1: not known. May be NULL: not known. */
+    int64_t (*largest_message)(const struct kernel_job *job);
 
     /* run: the program of one rank. */
     void (*run)(struct comm *c, const struct kernel_job *job, void *workspace);

@@ -90,6 +90,21 @@ static bool job_make(struct verify_case *v, const struct kernel_type *kernel, co
     return kernel->accepts(spec, m, e) && kernel->prepare(job, v->arena, e);
 }
 
+/* Answers do not depend on the machine; this one is simple, and as large as it must be. */
+static struct machine_spec machine_make(const struct verify_options *o, int nrank)
+{
+    struct machine_spec crossbar = {
+        .name = "crossbar",
+        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+                     .processors_per_node = 1},
+        .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
+        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
+                    .virtual_channels = 1},
+        .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
+    };
+    return o->machine ? *o->machine : crossbar;
+}
+
 /* Run a kernel on nrank virtual processors. */
 static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_spec, int nrank, struct outcome *out,
                        struct err *e)
@@ -101,7 +116,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
     struct err refused;
     err_clear(&refused);
     *out = (struct outcome){.kind = REFUSED};
-    *spec = (struct run_spec){.machine = *v->options->machine, .kernel = *kernel_spec, .nrank = nrank};
+    *spec = (struct run_spec){.machine = machine_make(v->options, nrank), .kernel = *kernel_spec, .nrank = nrank};
     if (!kernel) err_set(&refused, ERR_CONFIG, "there is no such kernel");
     if (!kernel || !job_make(v, kernel, spec, kernel->does_forward, &job, &refused)) {
         text_copy(out->text, sizeof out->text, refused.text);
@@ -109,9 +124,9 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
     }
     struct launch l = {kernel, &job, TAKE(v->arena, nrank, char *)};
     for (int i = 0; i < nrank; i++) l.workspace[i] = arena_take(v->arena, kernel->workspace_bytes(&job, i) + 64);
-    if (!world_run(&spec->machine, nrank, &spec->record, 0, kernel->nstage, kernel->stage_name, program, &l, v->arena,
-                   result, e))
-        return false;
+    struct world_load load = {nrank, program, &l, kernel->nstage, kernel->stage_name,
+                              kernel->largest_message ? kernel->largest_message(&job) : -1};
+    if (!world_run(&spec->machine, &load, &spec->record, 0, v->arena, result, e)) return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
                             .x = kernel->does_forward ? job.qdd : job.tau,
                             .lambda = job.lambda,

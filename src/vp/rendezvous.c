@@ -5,12 +5,9 @@
 
 static void travel(struct message *m, struct vp *from, struct vp *to, int64_t bytes, sim_ps ready)
 {
-    m->net.src = from->node;
-    m->net.dst = to->node;
-    m->net.processor = from->processor;
     m->net.bytes = bytes;
     m->net.ready = ready;
-    net_send(from->world->net, &m->net);
+    vp_launch(from->world, m, from, to);
 }
 
 void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)

@@ -72,8 +72,9 @@ enum { MESSAGE_CLASSES = 65 };
 
 /* Durations of the message software [ps], from software_spec. */
 struct software_cost {
-    sim_ps send_overhead, recv_overhead, rendezvous, kernel_time, barrier, shared_latency;
-    double send_byte, recv_byte, kernel_byte, shared_byte; /* [ps/B] */
+    sim_ps send_overhead, short_saving, recv_overhead, rendezvous, kernel_time, barrier, shared_latency;
+    double send_byte, recv_byte, eager_byte, short_byte, kernel_byte, shared_byte; /* [ps/B] */
+    int64_t short_bytes;           /* largest short message, -1: none is */
 };
 
 struct world {
@@ -104,8 +105,7 @@ struct world {
     sim_ps server_free;            /* kernel server */
     int64_t span_capacity;
 
-    world_program *program;
-    void *context;
+    const struct world_load *load;
 };
 
 /* --- world.c --- */
@@ -123,6 +123,13 @@ extern const struct comm_type vp_comm_type;
 
 /* vp_block: leave the fiber until somebody wakes `v`. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);
+
+/* vp_launch: hand m over to the network, or to the channel that both processors of one node share; m->net holds nodes,
+ * bytes and ready time. `from` and `to` are the ranks at the ends of this trip. */
+void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to);
+
+/* vp_arrived: what a trip's end means: world.c's delivery. */
+void vp_arrived(struct message *m);
 
 /* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
  * stage's wait and contention. No effect when the clock is later. */

@@ -39,7 +39,9 @@ void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
-    sim_ps begin = v->clock, cost = byte_cost(w->software.send_overhead, w->software.send_byte, m->bytes);
+    const struct software_cost *s = &w->software;
+    sim_ps fixed = s->send_overhead - (m->bytes <= s->short_bytes ? s->short_saving : 0);
+    sim_ps begin = v->clock, cost = byte_cost(fixed, s->send_byte, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -52,7 +54,9 @@ static void charge_send(struct vp *v, const struct message *m)
 static void charge_receive(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
-    sim_ps begin = v->clock, cost = byte_cost(w->software.recv_overhead, w->software.recv_byte, m->bytes);
+    const struct software_cost *s = &w->software;
+    double more = m->kind == MESSAGE_DATA ? 0 : m->bytes <= s->short_bytes ? s->short_byte : s->eager_byte;
+    sim_ps begin = v->clock, cost = byte_cost(s->recv_overhead, s->recv_byte + more, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -62,18 +66,19 @@ static void charge_receive(struct vp *v, const struct message *m)
     if (w->record->spans) world_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
 }
 
-/* Within a node and with a channel in shared memory the network is not touched. */
-static void launch(struct vp *v, struct message *m)
+void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
 {
-    struct world *w = v->world;
-    if (w->shared_channel && v->node == m->to->node) {
-        m->net.injected = m->net.ready;
-        m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->bytes);
-        m->net.uncontended = m->net.arrival;
-        mailbox_deliver(m->to, m);
+    m->net.src = from->node;
+    m->net.dst = to->node;
+    m->net.processor = from->processor;
+    if (!w->shared_channel || from->node != to->node) {
+        net_send(w->net, &m->net);
         return;
     }
-    net_send(w->net, &m->net);
+    m->net.injected = m->net.ready;
+    m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
+    m->net.uncontended = m->net.arrival;
+    vp_arrived(m);
 }
 
 static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r)
@@ -81,15 +86,13 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     struct vp *v = (struct vp *)c;
     struct world *w = v->world;
     CHECK(dst >= 0 && dst < w->nrank && tag >= 0 && bytes >= 0);
+    CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
     struct message *m = message_take(w, bytes);
     if (bytes) memcpy(m->data, data, (size_t)bytes);
     m->from = v;
     m->to = &w->vp[dst];
     m->tag = tag;
     m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
-    m->net.src = v->node;
-    m->net.dst = m->to->node;
-    m->net.processor = v->processor;
     m->sent = v->clock;
     stage_of(v)->messages++;
     stage_of(v)->bytes += bytes;
@@ -102,7 +105,7 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     }
     if (r) r->active = REQUEST_DONE;
     m->kind = MESSAGE_EAGER;
-    launch(v, m);
+    vp_launch(w, m, v, m->to);
 }
 
 static void vp_irecv(struct comm *c, int src, int tag, void *buffer, int64_t bytes, struct comm_request *r)

@@ -35,10 +35,8 @@ void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int
                                         .end_ps = end, .peer = peer, .bytes = bytes, .message = message};
 }
 
-static void deliver(void *context, struct net_message *nm)
+void vp_arrived(struct message *m)
 {
-    (void)context;
-    struct message *m = (struct message *)nm;
     switch ((enum message_kind)m->kind) {
     case MESSAGE_EAGER:
     case MESSAGE_REQUEST_TO_SEND: mailbox_deliver(m->to, m); break;
@@ -47,10 +45,17 @@ static void deliver(void *context, struct net_message *nm)
     }
 }
 
+static void deliver(void *context, struct net_message *m)
+{
+    (void)context;
+    vp_arrived((struct message *)m);
+}
+
 static struct software_cost software_cost_make(const struct software_spec *s)
 {
     return (struct software_cost){
         .send_overhead = sim_from_seconds(s->send_overhead),
+        .short_saving = sim_from_seconds(s->short_saving < s->send_overhead ? s->short_saving : s->send_overhead),
         .recv_overhead = sim_from_seconds(s->recv_overhead),
         .rendezvous = sim_from_seconds(s->rendezvous_latency),
         .kernel_time = sim_from_seconds(s->kernel_time),
@@ -58,6 +63,9 @@ static struct software_cost software_cost_make(const struct software_spec *s)
         .shared_latency = sim_from_seconds(s->shared_latency),
         .send_byte = s->send_copy * SIM_PS_PER_S,
         .recv_byte = s->recv_copy * SIM_PS_PER_S,
+        .eager_byte = s->eager_copy * SIM_PS_PER_S,
+        .short_byte = s->short_copy * SIM_PS_PER_S,
+        .short_bytes = s->short_bytes > 0 ? s->short_bytes : -1,
         .kernel_byte = s->kernel_per_byte * SIM_PS_PER_S,
         .shared_byte = s->shared_bandwidth > 0 ? SIM_PS_PER_S / s->shared_bandwidth : 0,
     };
@@ -67,7 +75,7 @@ static void rank_main(void *argument)
 {
     struct vp *v = argument;
     struct world *w = v->world;
-    w->program(&v->comm, w->context);
+    w->load->program(&v->comm, w->load->context);
     v->finish = v->clock;
     w->nfinished++;
 }
@@ -190,6 +198,7 @@ static bool build(struct world *w, struct err *e)
     if (!placement_create(&w->placement, m, w->topology, w->nrank, w->scratch, e)) return false;
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
+    net_set_in_order(w->net, w->eager_only);
     w->fibers = fiber_pool_create(w->nrank, STACK_BYTES, e);
     return w->fibers != NULL;
 }
@@ -211,19 +220,22 @@ static void run(struct world *w, uint64_t seed)
     stuck_explain(w);
 }
 
-bool world_run(const struct machine_spec *m, int nrank, const struct record_spec *record, uint64_t seed, int nstage,
-               const char *const *stage_name, world_program *program, void *context, struct arena *a,
-               struct run_result *out, struct err *e)
+static bool all_eager(const struct software_spec *s, int64_t largest)
+{
+    return s->eager_bytes < 0 || (largest >= 0 && largest <= s->eager_bytes);
+}
+
+bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
+               uint64_t seed, struct arena *a, struct run_result *out, struct err *e)
 {
     struct world w = {
         .machine = m, .record = record, .result = out, .arena = a, .scratch = arena_create(), .sim = sim_create(),
-        .nrank = nrank, .nstage = nstage, .software = software_cost_make(&m->software),
+        .nrank = load->nrank, .nstage = load->nstage, .load = load, .software = software_cost_make(&m->software),
         .node_cost = node_cost_make(&m->node), .shared_channel = m->software.shared_bandwidth > 0,
-        .eager_only = m->software.eager_bytes < 0, .noisy = m->noise.compute_cv > 0,
-        .program = program, .context = context,
+        .eager_only = all_eager(&m->software, load->largest_message), .noisy = m->noise.compute_cv > 0,
     };
-    out->nrank = nrank;
-    name_stages(out, nstage, stage_name);
+    out->nrank = load->nrank;
+    name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);
     if (ok) run(&w, seed);
     fiber_pool_destroy(w.fibers);

@@ -14,18 +14,27 @@
 
 typedef void world_program(struct comm *c, void *context);
 
-/* world_run: run `program(comm, context)` on `nrank` virtual processors of machine `m` to the end.
+/* What the virtual processors are to do. */
+struct world_load {
+    int nrank;
+    world_program *program;        /* of every rank */
+    void *context;                 /* handed to it; borrowed */
+    int nstage;
+    const char *const *stage_name; /* (nstage); one more, "end", is added for idling until the makespan */
+    int64_t largest_message;       /* bytes; a promise (CHECK), -1: none. When every message is eager, sends of a node
+                                      come in order and some levels need fewer events, with the same times */
+};
+
+/* world_run: run a load on machine `m` to the end.
  *
  *   m            in   the machine; level, placement, software, noise as given
  *   record, seed in   what to record; seed of the noise
- *   nstage, stage_name  in  the program's stages; one more, "end", is added for idling until the makespan
  *   a            in   memory of the result's arrays
  *   out          out  makespan, stages, counts, digest, spans, links, host_s, stack peak; `status` RUN_OK or
  *                     RUN_DEADLOCK with the wait-for cycle in `text`
  *
  *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no memory). */
-bool world_run(const struct machine_spec *m, int nrank, const struct record_spec *record, uint64_t seed, int nstage,
-               const char *const *stage_name, world_program *program, void *context, struct arena *a,
-               struct run_result *out, struct err *e);
+bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
+               uint64_t seed, struct arena *a, struct run_result *out, struct err *e);
 
 #endif

@@ -36,7 +36,8 @@ static struct outcome go(const struct machine_spec *m, int nrank, world_program 
     struct record_spec record = {.spans = true, .links = false};
     struct err e;
     err_clear(&e);
-    if (!world_run(m, nrank, &record, 1, 2, stage_name, program, context, o.arena, &o.r, &e)) fail_msg("%s", e.text);
+    struct world_load load = {nrank, program, context, 2, stage_name, -1};
+    if (!world_run(m, &load, &record, 1, o.arena, &o.r, &e)) fail_msg("%s", e.text);
     return o;
 }
 
