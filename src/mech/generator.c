@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "linalg/angle.h"
 #include "mech/pose.h"
 
 #define PI 3.14159265358979323846
@@ -71,9 +72,7 @@ static void placement_of(const struct model_spec *spec, struct body_def *b, stru
     b->placement.p[0] = b->parent >= 0 ? spec->length : 0;
     if (spec->axes != AXES_TWISTED) return;
     if (spec->generator == MODEL_SERIAL_CHAIN) {
-        double half = random_uniform(r, -0.5 * PI, 0.5 * PI);
-        b->placement.quat[0] = sin(half);
-        b->placement.quat[3] = cos(half);
+        angle_sincos(random_uniform(r, -0.5 * PI, 0.5 * PI), &b->placement.quat[0], &b->placement.quat[3]);
     } else {
         pose_quaternion(r, b->placement.quat);
     }
@@ -114,8 +113,7 @@ static bool add_rods(struct model *m, const struct model_spec *spec, struct err 
 static void turn_z(double *quat, double angle)
 {
     quat[0] = quat[1] = 0;
-    quat[2] = sin(0.5 * angle);
-    quat[3] = cos(0.5 * angle);
+    angle_sincos(0.5 * angle, &quat[2], &quat[3]);
 }
 
 /* The joint that closes rings: as the others, revolute where those would leave nothing to close. */
@@ -196,8 +194,10 @@ static bool add_polymer(struct model *m, const struct model_spec *spec, struct e
         if (i == 0 && spec->base == BASE_FLOATING) b.joint = JOINT_FLOATING;
         name_body(&b, i);
         axes_of(&b);
-        b.placement.quat[0] = sin(0.5 * tilt), b.placement.quat[3] = cos(0.5 * tilt);
-        b.placement.p[1] = -bond * sin(tilt), b.placement.p[2] = bond * cos(tilt);
+        double sine, cosine;
+        angle_sincos(0.5 * tilt, &b.placement.quat[0], &b.placement.quat[3]);
+        angle_sincos(tilt, &sine, &cosine);
+        b.placement.p[1] = -bond * sine, b.placement.p[2] = bond * cosine;
         methylene(&b);
         springs_of(m, spec, i, bond, &b);
         if (model_add_body(m, &b, e) < 0) return false;
