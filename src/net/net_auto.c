@@ -267,8 +267,10 @@ static void start_event(void *subject, uint64_t argument, sim_ps now)
 
 static bool auto_create(struct net *n, struct err *e)
 {
-    n->state = packet_fabric(n, packet_look, e);
-    return n->state != NULL;
+    struct fabric *f = packet_fabric(n, packet_look, e);
+    if (f) f->occupied = auto_occupied;
+    n->state = f;
+    return f != NULL;
 }
 
 static void auto_send(struct net *n, struct net_message *m)
@@ -283,4 +285,4 @@ static void auto_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), start_event, f, (uintptr_t)w);
 }
 
-const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, NULL, packet_stuck};
+const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, packet_occupy, packet_stuck};

@@ -64,4 +64,7 @@ sim_ps auto_earliest(const struct fabric *f, const struct pass *s, sim_ps now);
  * meet. */
 void auto_simulate(struct fabric *f, struct flight *w, sim_ps now);
 
+/* auto_occupied: as packet_occupied; whoever would have crossed the resource in that time is simulated from now on. */
+void auto_occupied(void *subject, uint64_t argument, sim_ps now);
+
 #endif

@@ -188,3 +188,37 @@ void auto_simulate(struct fabric *f, struct flight *w, sim_ps now)
     mark_all(f, now);
     place_all(f, 1, now);
 }
+
+/* how long resource o is taken by what was granted before `until`, and *delayed: a message that would go on in the
+ * `busy` after that */
+static sim_ps taken_until(const struct resource *o, sim_ps until, sim_ps busy, struct flight **delayed)
+{
+    sim_ps taken = later(o->free, until - 1);
+    *delayed = NULL;
+    for (const struct pass *c = o->claim; c && c->begin < taken + busy; c = c->next) {
+        const struct flight *w = c->flight;
+        if (!w->m || auto_begin(w, w->npacket - 1, c->hop) < until)
+            taken = later(taken, c->end);
+        else
+            *delayed = c->flight;
+    }
+    return taken;
+}
+
+void auto_occupied(void *subject, uint64_t argument, sim_ps now)
+{
+    struct fabric *f = subject;
+    struct resource *o = &f->resource[argument];
+    struct flight *delayed;
+    f->late = now; /* what begins now has been granted */
+    f->nmarked = 0;
+    sim_ps taken = taken_until(o, auto_until(f), f->debt[argument], &delayed);
+    while (delayed) {
+        mark(f, delayed);
+        taken = taken_until(o, auto_until(f), f->debt[argument], &delayed);
+    }
+    mark_all(f, now);
+    place_all(f, 0, now);
+    o->free = taken + f->debt[argument];
+    f->debt[argument] = 0;
+}

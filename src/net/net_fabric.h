@@ -96,6 +96,8 @@ struct fabric {
     struct net *net;
     struct resource *resource;    /* (nresource) */
     sim_action *look;             /* what an event of a resource does: subject the fabric, argument its number */
+    sim_action *occupied;         /* resource `argument` begins to serve somebody else's traffic, debt[argument] of it */
+    sim_ps *debt;                 /* (nresource) NULL until used */
     bool cuts;                    /* messages larger than a buffer travel in pieces of its size */
     struct source *source;        /* (nnode) */
     struct hop *way;              /* (max_hops + 2) scratch: the route of the message being made */

@@ -52,6 +52,7 @@ struct line {
     struct stage *front, *back; /* worms in the FIFO behind */
     sim_ps left;                /* when the tail of the one that left last has left the FIFO behind */
     int64_t position;           /* flits that were ever sent over it */
+    sim_ps debt;                /* time for others' traffic after the owner */
     struct runs credit;         /* departures from the FIFO behind, not yet used by flits a buffer's size later */
 };
 
@@ -225,6 +226,8 @@ static void tail_known(struct train *g, struct stage *s)
     sim_ps free = s->last + s->flit;
     bool ends_message = w->index == w->flight->npacket - 1;
     o->free = s->hop == 0 && ends_message ? later(free, s->last + f->net->gap) : free;
+    o->free += l->debt;
+    l->debt = 0;
     l->owner = NULL;
     net_account(f->net, s->resource, w->index == 0, w->index == 0 ? w->flight->m->bytes : 0, free - s->grant,
                 s->grant - s->ask);
@@ -365,10 +368,24 @@ static void train_look(void *subject, uint64_t argument, sim_ps now)
 
 /* ---- the way ---- */
 
+/* others' traffic waits for the tail of the owner */
+static void train_occupied(void *subject, uint64_t argument, sim_ps now)
+{
+    struct train *g = subject;
+    struct line *l = &g->line[argument];
+    if (!l->owner) {
+        packet_occupied(&g->fabric, argument, now);
+        return;
+    }
+    l->debt += g->fabric.debt[argument];
+    g->fabric.debt[argument] = 0;
+}
+
 static struct fabric *train_create(struct net *n, struct err *e)
 {
     struct train *g = (struct train *)(void *)fabric_create(n, sizeof *g, train_look, e);
     if (!g) return NULL;
+    g->fabric.occupied = train_occupied;
     g->line = TAKE(n->arena, n->nresource, struct line);
     g->free_worm = TAKE(n->arena, (n->topology->max_hops + 2) / WORM_STEP + 1, struct worm *);
     return &g->fabric;

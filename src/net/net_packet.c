@@ -6,8 +6,8 @@
 #include "net/net_packet.h"
 
 /* Second look of a resource at the same time: for packets that go where another has just made room. Deliveries where
- * a tail is delivered in the very moment in which the ejection port is granted. */
-enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1, LANE_LATE };
+ * a tail is delivered in the very moment in which the ejection port is granted. Others' traffic comes last. */
+enum { LANE_AGAIN = NET_LANE_ARBITRATE + 1, LANE_LATE, LANE_OCCUPY };
 
 static void wake_in(struct fabric *f, int r, sim_ps at, unsigned lane)
 {
@@ -372,6 +372,23 @@ static bool packet_create(struct net *n, struct err *e)
     return n->state != NULL;
 }
 
+void packet_occupied(void *subject, uint64_t argument, sim_ps now)
+{
+    struct fabric *f = subject;
+    struct resource *o = &f->resource[argument];
+    o->free = later(o->free, now) + f->debt[argument];
+    f->debt[argument] = 0;
+}
+
+void packet_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
+{
+    struct fabric *f = n->state;
+    int r = net_resource(n, link);
+    if (!f->debt) f->debt = TAKE(n->arena, n->nresource, sim_ps);
+    if (f->debt[r] == 0) sim_at(n->sim, now, LANE_OCCUPY, (uint64_t)r, f->occupied, f, (uint64_t)r);
+    f->debt[r] += busy;
+}
+
 static void packet_start(void *subject, uint64_t argument, sim_ps now)
 {
     struct fabric *f = subject;
@@ -391,4 +408,4 @@ void packet_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), packet_start, f, (uintptr_t)w);
 }
 
-const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, NULL, packet_stuck};
+const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_occupy, packet_stuck};

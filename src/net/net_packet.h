@@ -14,7 +14,7 @@
 /* fabric_create: routes, messages and sources for a level with buffers, memory from the arena of n.
  *
  *   size  of the level's state, which begins with the fabric; zeroed
- *   look  what events of resources do
+ *   look  what events of resources do; `occupied` may be set afterwards, see packet_occupied
  *
  *   Returns NULL with ERR_CONFIG when flits, channels or buffers of the machine make no sense. */
 struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e);
@@ -25,6 +25,9 @@ struct fabric *packet_fabric(struct net *n, sim_action *look, struct err *e);
 
 /* packet_send: net_type.send of levels packet and flit. */
 void packet_send(struct net *n, struct net_message *m);
+
+/* packet_occupy: net_type.occupy of all levels with buffers: posts f->occupied. */
+void packet_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
 
 /* packet_look: an event of a resource on levels packet and auto. */
 void packet_look(void *subject, uint64_t argument, sim_ps now);
@@ -53,6 +56,9 @@ void flight_measure(struct fabric *f, struct flight *w);
 
 /* packet_wake: see that resource r is looked at, at time `at` or earlier. */
 void packet_wake(struct fabric *f, int r, sim_ps at);
+
+/* packet_occupied: event, resource `argument` is taken by others for debt[argument], from when it is free. */
+void packet_occupied(void *subject, uint64_t argument, sim_ps now);
 
 /* packet_enter: packet p, granted its pass p->hop, stands in the FIFO behind it. */
 void packet_enter(struct fabric *f, struct packet *p);

@@ -201,6 +201,83 @@ static void auto_equals_packet_on_the_reference_cases(void **state)
     }
 }
 
+/* ---- others' traffic on the links ---- */
+
+struct shared {
+    struct net *net;
+    struct sim *sim;
+    struct random random;
+    int left, nlink;
+    sim_ps gap, busy;
+};
+
+static void others_pass(void *subject, uint64_t argument, sim_ps now)
+{
+    struct shared *h = subject;
+    (void)argument;
+    if (h->left == 0) return;
+    int link = (int)random_below(&h->random, (uint64_t)h->nlink);
+    assert_true(net_occupy(h->net, link, now, 1 + (sim_ps)random_below(&h->random, (uint64_t)h->busy)));
+    sim_at(h->sim, now + 1 + (sim_ps)random_below(&h->random, (uint64_t)h->gap), 1000, 0, others_pass, h, 0);
+}
+
+static void count_down(void *context, struct net_message *m)
+{
+    struct shared *h = context;
+    h->left--;
+    assert_true(m->arrival >= m->uncontended);
+}
+
+static void start(void *subject, uint64_t argument, sim_ps now)
+{
+    (void)now;
+    net_send(subject, (struct net_message *)(uintptr_t)argument);
+}
+
+static int64_t shared_replay(struct sample *s, enum network_level level, uint64_t seed, sim_ps *arrival)
+{
+    struct shared h = {.sim = sim_create(), .random = random_make(seed, 31, 0), .left = s->q.nmessage};
+    struct arena *a = arena_create();
+    struct net_message *m = TAKE(a, s->q.nmessage, struct net_message);
+    struct err e;
+    err_clear(&e);
+    s->machine.network.level = level;
+    h.net = net_create(&s->machine, s->topology, h.sim, a, count_down, &h, false, &e);
+    if (!h.net) fail_msg("%s", e.text);
+    h.nlink = s->topology->nlink;
+    h.busy = 1 + (sim_ps)random_below(&h.random, 60000);
+    h.gap = (1 + 4 * h.busy / (h.nlink + 1)) * (1 + (sim_ps)random_below(&h.random, 20)); /* a fourth or less of its time */
+    for (int i = 0; i < s->q.nmessage; i++) {
+        m[i] = (struct net_message){.id = i, .src = s->q.src[i], .dst = s->q.dst[i], .bytes = s->q.bytes[i],
+                                    .ready = s->q.time[i]};
+        sim_at(h.sim, m[i].ready, NET_LANE_START, (uint64_t)i, start, h.net, (uintptr_t)&m[i]);
+    }
+    sim_at(h.sim, 0, 1000, 0, others_pass, &h, 0);
+    while (h.left > 0 && sim_step(h.sim)) continue;
+    for (int i = 0; i < s->q.nmessage; i++) arrival[i] = m[i].arrival;
+    int64_t events = h.left == 0 ? sim_events(h.sim) : -1;
+    sim_destroy(h.sim);
+    arena_destroy(a);
+    return events;
+}
+
+static void others_traffic_delays_both_alike(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        struct sample s = {0};
+        sample_draw(&s, seed + 9000);
+        sim_ps *p = TAKE(s.arena, s.q.nmessage, sim_ps), *q = TAKE(s.arena, s.q.nmessage, sim_ps);
+        assert_true(shared_replay(&s, LEVEL_PACKET, seed, p) > 0);
+        assert_true(shared_replay(&s, LEVEL_AUTO, seed, q) > 0);
+        for (int i = 0; i < s.q.nmessage; i++)
+            if (p[i] != q[i])
+                fail_msg("seed %d message %d: packet %lld, auto %lld", (int)seed, i, (long long)p[i], (long long)q[i]);
+        assert_true(shared_replay(&s, LEVEL_FLIT, seed, q) > 0);
+        arena_destroy(s.arena);
+    }
+}
+
 /* ---- cost ---- */
 
 static void hypercube_steps_cost_two_events(void **state)
@@ -273,6 +350,7 @@ int main(void)
         cmocka_unit_test(auto_equals_packet),
         cmocka_unit_test(auto_locks_up_like_packet),
         cmocka_unit_test(auto_equals_packet_on_the_reference_cases),
+        cmocka_unit_test(others_traffic_delays_both_alike),
         cmocka_unit_test(hypercube_steps_cost_two_events),
         cmocka_unit_test(random_messages_at_low_load_cost_two_events),
         cmocka_unit_test(packets_of_a_message_are_one_claim),
