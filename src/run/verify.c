@@ -167,7 +167,7 @@ bool verify_file(const char *path, const struct verify_options *o, struct arena 
         verify_trajectory(&v);
     } else if (good) {
         verify_serial(&v);
-        good = !o->machine || verify_parallel(&v, e);
+        good = !o->parallel || verify_parallel(&v, e);
     }
     if (good) conclude(r);
     arena_destroy(own);

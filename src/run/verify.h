@@ -21,7 +21,8 @@ struct verify_options {
     double tolerance_inverse;  /* everything but accelerations and loop forces; 0: 1e-12 */
     double tolerance_forward;  /* accelerations and loop forces; 0: 1e-10 */
     enum precision precision;  /* of the algorithms under test */
-    const struct machine_spec *machine; /* for the parallel kernels; NULL: serial algorithms only */
+    bool parallel;             /* the parallel kernels too */
+    const struct machine_spec *machine; /* that they run on; NULL: a crossbar of as many nodes as there are ranks */
     bool all_ranks;            /* large cases too on P = 1, 2, 3, n/2, n; otherwise on 3 and n */
 };
 

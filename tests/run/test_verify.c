@@ -18,16 +18,6 @@
 
 #define DATA(file) MIMDSIM_SRCDIR "/tests/data/vectors/" file
 
-static const struct machine_spec crossbar = {
-    .name = "crossbar",
-    .topology =
-        {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {1024}, .nodes_per_router = 1, .processors_per_node = 1},
-    .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
-    .network =
-        {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7, .virtual_channels = 1},
-    .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
-};
-
 /* Verify `path`; fails the test when the file cannot be used. */
 static struct verify_report report_of(const char *path, const struct verify_options *o, struct arena *a)
 {
@@ -67,14 +57,14 @@ static void all_vectors_pass(const char *pattern, const struct verify_options *o
 static void serial_algorithms_agree_with_the_vectors(void **state)
 {
     (void)state;
-    const struct verify_options o = {.tolerance_inverse = 0};
+    const struct verify_options o = {.parallel = false};
     all_vectors_pass(DATA("*.json"), &o);
 }
 
 static void parallel_kernels_agree_with_small_vectors(void **state)
 {
     (void)state;
-    const struct verify_options o = {.machine = &crossbar};
+    const struct verify_options o = {.parallel = true};
     all_vectors_pass(DATA("serial_*n000*.json"), &o);
     all_vectors_pass(DATA("float_*n000*.json"), &o);
     all_vectors_pass(DATA("tree_*n0015.json"), &o);
@@ -85,7 +75,7 @@ static void parallel_kernels_agree_with_small_vectors(void **state)
 static void trajectories_are_followed(void **state)
 {
     (void)state;
-    const struct verify_options o = {.machine = NULL};
+    const struct verify_options o = {.parallel = false};
     all_vectors_pass(DATA("trajectories/traj_double*.json"), &o);
     all_vectors_pass(DATA("trajectories/traj_spherical*.json"), &o);
     all_vectors_pass(DATA("trajectories/traj_stiff_n*.json"), &o);
@@ -123,7 +113,7 @@ static void a_wrong_answer_fails(void **state)
     for (size_t i = 0; i < sizeof lie / sizeof *lie; i++) {
         char path[] = "/tmp/mimdsim-verify-XXXXXX";
         struct arena *a = arena_create();
-        const struct verify_options o = {.machine = NULL};
+        const struct verify_options o = {.parallel = false};
         copy_changed(DATA("closed_fourbar.json"), lie[i].old, lie[i].new, path);
         struct verify_report r = report_of(path, &o, a);
         assert_false(r.passed);
@@ -159,7 +149,7 @@ static void massless_bodies_rule_out_constraint_forces(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    const struct verify_options o = {.machine = &crossbar};
+    const struct verify_options o = {.parallel = true};
     struct verify_report r = report_of(DATA("x_massless_n0014.json"), &o, a);
     assert_true(r.passed);
     assert_int_equal(row_of(&r, "aba", "qdd_fd")->verdict, VERIFY_PASS);
@@ -176,7 +166,7 @@ static void heavy_tips_are_beyond_the_mass_matrix_by_rounding(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    const struct verify_options o = {.machine = NULL};
+    const struct verify_options o = {.parallel = false};
     struct verify_report r = report_of(DATA("x_massratio_up_n0013.json"), &o, a);
     assert_true(r.passed);
     const struct verify_row *row = row_of(&r, "crba", "qdd_fd");
@@ -201,7 +191,7 @@ static void json_has_every_row_and_sorted_keys(void **state)
     char path[] = "/tmp/mimdsim-verify-XXXXXX";
     struct arena *a = arena_create();
     struct err e;
-    const struct verify_options o = {.machine = NULL};
+    const struct verify_options o = {.parallel = false};
     struct verify_report r[2] = {report_of(DATA("closed_fourbar.json"), &o, a),
                                  report_of(DATA("x_massless_n0014.json"), &o, a)};
     FILE *out = fdopen(mkstemp(path), "w");
@@ -228,7 +218,7 @@ static void a_missing_file_is_the_users_mistake(void **state)
     struct arena *a = arena_create();
     struct verify_report r;
     struct err e;
-    const struct verify_options o = {.machine = NULL};
+    const struct verify_options o = {.parallel = false};
     err_clear(&e);
     assert_false(verify_file("/nowhere/case.json", &o, a, &r, &e));
     assert_int_equal(e.kind, ERR_NO_INPUT);
