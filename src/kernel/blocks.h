@@ -13,20 +13,20 @@
 
 struct blocks {
     struct comm *comm;
-    const unsigned char *size;  /* (nrow of the whole system) orders */
-    int nrow, lo, hi;           /* rows in all; own rows */
-    int m;                      /* right-hand sides */
+    const unsigned char *size; /* (nrow of the whole system) orders */
+    int nrow, lo, hi;          /* rows in all; own rows */
+    int m;                     /* right-hand sides */
     int d_stride, l_stride, r_stride, factor_stride;
-    real *D, *L, *r;            /* own rows: packed; coupling to the row before; right-hand side, then solution */
-    real *factor;               /* of the rows eliminated locally */
-    real *message;              /* [S, dD, dr] */
-    real *left;                 /* (c x m) solution of the row before lo, after blocks_solve */
+    real *D, *L, *r; /* own rows: packed; coupling to the row before; right-hand side, then solution */
+    real *factor;    /* of the rows eliminated locally */
+    real *message;   /* [S, dD, dr] */
+    real *left;      /* (c x m) solution of the row before lo, after blocks_solve */
     bool keep;
-    bool broken;                /* a local pivot was not positive */
-    struct reduction reduction; /* of the interface row */
-    struct rows *rows;          /* all rows take part in the reduction: its buffers */
-    struct block_tridiag *whole;/* SOLVER_THOMAS, rank 0: the whole system */
-    real *x, *gathered;         /* and its solution (nrow x 6 m); messages of rows */
+    bool broken;                 /* a local pivot was not positive */
+    struct reduction reduction;  /* of the interface row */
+    struct rows *rows;           /* all rows take part in the reduction: its buffers */
+    struct block_tridiag *whole; /* SOLVER_THOMAS, rank 0: the whole system */
+    real *x, *gathered;          /* and its solution (nrow x 6 m); messages of rows */
 };
 
 /* block_first: first row of rank k of nrank when nrow rows are split evenly, larger blocks first. */
@@ -53,7 +53,8 @@ static inline int block_owner(int nrow, int nrank, int i)
 void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
                   const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep);
 
-/* blocks_row_D, _L, _r: where the parts of own row i go before blocks_solve: D packed, L (c_i x c_{i-1}), r (c_i x m). */
+/* blocks_row_D, _L, _r: where the parts of own row i go before blocks_solve: D packed, L (c_i x c_{i-1}), r (c_i x m).
+ */
 static inline real *blocks_row_D(const struct blocks *b, int i) { return b->D + (i - b->lo) * b->d_stride; }
 static inline real *blocks_row_L(const struct blocks *b, int i) { return b->L + (i - b->lo) * b->l_stride; }
 static inline real *blocks_row_r(const struct blocks *b, int i) { return b->r + (i - b->lo) * b->r_stride; }

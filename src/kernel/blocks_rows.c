@@ -15,8 +15,8 @@ struct rows {
     real *out_a, *out_b, *in_a, *in_b; /* for and from the rows at -d (a) and +d (b) */
     int *out_a_at, *out_b_at;          /* (rows + 1) where each own row's part begins */
     int *in_a_at, *in_b_at;
-    real **L, **U;                     /* (rows) present couplings */
-    real *spare;                       /* textbook: the rows of the next step */
+    real **L, **U; /* (rows) present couplings */
+    real *spare;   /* textbook: the rows of the next step */
 };
 
 /* most: numbers that one row sends at most to one side. */
@@ -62,8 +62,7 @@ static int numbers(const struct blocks *b, int from, int to, int d, bool again)
 {
     const int c = order(b, from), other = from + (from - to); /* the row on the other side */
     if (again) return order(b, to) * b->m;
-    if (!b->rows->textbook)
-        return block_update_size(order(b, to), b->m) + order(b, to) * order(b, other);
+    if (!b->rows->textbook) return block_update_size(order(b, to), b->m) + order(b, to) * order(b, other);
     const int nl = order(b, from - d), nu = order(b, from + d);
     return c * (nl > 0 ? nl : c) + c * c + c * (nu > 0 ? nu : c) + c * b->m;
 }
@@ -78,7 +77,8 @@ static void send_side(struct blocks *b, int d, const real *out, const int *at, i
         const int owner = block_owner(b->nrow, P, i + d), stop = block_first(b->nrow, P, owner + 1) - d;
         const int to = stop < end ? stop : end;
         if (owner != k)
-            comm_send(b->comm, owner, tag, out + at[i - b->lo], (at[to - b->lo] - at[i - b->lo]) * (int64_t)sizeof(real));
+            comm_send(b->comm, owner, tag, out + at[i - b->lo],
+                      (at[to - b->lo] - at[i - b->lo]) * (int64_t)sizeof(real));
         i = to;
     }
 }
@@ -239,7 +239,8 @@ static void textbook_step(struct blocks *b, int d, struct work *w)
     for (int i = b->lo; i < b->hi; i++) {
         const int c = b->size[i];
         real L[BLOCK_FULL], U[BLOCK_FULL];
-        struct textbook_row row = textbook_row_at(s->out_a + s->out_a_at[i - b->lo], c, order(b, i - d), order(b, i + d));
+        struct textbook_row row =
+            textbook_row_at(s->out_a + s->out_a_at[i - b->lo], c, order(b, i - d), order(b, i + d));
         if (i - d >= 0) {
             struct textbook_row v = textbook_row_at(s->in_a + s->in_a_at[i - b->lo], row.nl, order(b, i - 2 * d), c);
             if (!textbook_row_fold(&row, row.L, &v, v.U, v.L, v.nl, L, b->m, w)) b->broken = true;

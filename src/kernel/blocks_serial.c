@@ -81,8 +81,12 @@ static struct place own_place(const struct blocks *b)
 static struct place whole_place(const struct blocks *b, int from)
 {
     const int stride = BLOCK_MAX * b->m;
-    return (struct place){b->whole->D + (size_t)from * BLOCK_PACKED, b->whole->L + (size_t)from * BLOCK_FULL,
-                          b->x + (size_t)from * stride, BLOCK_PACKED, BLOCK_FULL, stride};
+    return (struct place){b->whole->D + (size_t)from * BLOCK_PACKED,
+                          b->whole->L + (size_t)from * BLOCK_FULL,
+                          b->x + (size_t)from * stride,
+                          BLOCK_PACKED,
+                          BLOCK_FULL,
+                          stride};
 }
 
 /* solve_whole: rank 0 receives all rows, solves, and sends the solutions with the row before each block in front. */
@@ -131,8 +135,7 @@ void blocks_serial_solve(struct blocks *b, bool again, struct work *w)
     work_report(comm, w);
     comm_send(comm, 0, TAG_GATHER, b->gathered, n * (int64_t)sizeof(real));
     const int before = b->size[b->lo - 1] * b->m;
-    comm_recv(comm, 0, TAG_GATHER + 1, b->gathered,
-              (before + numbers(b, b->lo, b->hi, true)) * (int64_t)sizeof(real));
+    comm_recv(comm, 0, TAG_GATHER + 1, b->gathered, (before + numbers(b, b->lo, b->hi, true)) * (int64_t)sizeof(real));
     memcpy(b->left, b->gathered, (size_t)before * sizeof(real));
     unpack(b, b->lo, b->hi, &own, true, b->gathered + before);
 }

@@ -201,7 +201,8 @@ static void entering(struct chain *ch, real *total)
         comm_send(c, k - 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, sum, (int64_t)sizeof sum);
     }
     six_zero(total);
-    if (k + 1 < comm_size(c)) comm_recv(c, k + 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, total, (int64_t)(6 * sizeof *total));
+    if (k + 1 < comm_size(c))
+        comm_recv(c, k + 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, total, (int64_t)(6 * sizeof *total));
     scan_force(&ch->scan, TAG_FORCE, total, &ch->work);
 }
 

@@ -16,13 +16,13 @@
 
 /* What all ranks share, made by prepare; read-only. */
 struct chain_shared {
-    const struct body *body;       /* (nbody) constants */
-    const unsigned char *size;     /* (nbody) constraints of each joint */
-    const unsigned char *interface;/* (nrank) constraints of the last joint of each block */
-    int largest;                   /* largest number of constraints of a joint */
-    int ncolumn;                   /* right-hand sides of the constraint system: 1 + rows of all loops */
+    const struct body *body;           /* (nbody) constants */
+    const unsigned char *size;         /* (nbody) constraints of each joint */
+    const unsigned char *interface;    /* (nrank) constraints of the last joint of each block */
+    int largest;                       /* largest number of constraints of a joint */
+    int ncolumn;                       /* right-hand sides of the constraint system: 1 + rows of all loops */
     size_t pose_bytes, subspace_bytes; /* room for a pose, a subspace: columns only if some joint needs them */
-    real base[6];                  /* acceleration of the base minus gravity */
+    real base[6];                      /* acceleration of the base minus gravity */
 };
 
 /* One rank's share. Arrays over own bodies are indexed by i - lo. */
@@ -31,15 +31,15 @@ struct chain {
     const struct kernel_job *job;
     const struct chain_shared *shared;
     int n, lo, hi;
-    bool dense;              /* operators as full 6x6 matrices */
-    struct work work;        /* done since the last report */
-    real *q, *u;             /* coordinates and rates of own bodies, from q_at and u_at of body lo */
-    char *pose;              /* struct body_pose of own bodies, pose_bytes apart; one more for body hi if asked for */
-    real *matrix;            /* dense: the transforms as matrices, (36) each */
+    bool dense;       /* operators as full 6x6 matrices */
+    struct work work; /* done since the last report */
+    real *q, *u;      /* coordinates and rates of own bodies, from q_at and u_at of body lo */
+    char *pose;       /* struct body_pose of own bodies, pose_bytes apart; one more for body hi if asked for */
+    real *matrix;     /* dense: the transforms as matrices, (36) each */
     struct scan scan;
-    real *h;                 /* (6) joint velocity H u */
-    real *v, *a, *f;         /* (6) velocity, acceleration, force */
-    real *b;                 /* (6) joint bias acceleration */
+    real *h;         /* (6) joint velocity H u */
+    real *v, *a, *f; /* (6) velocity, acceleration, force */
+    real *b;         /* (6) joint bias acceleration */
 };
 
 /* chain_shared_make: from a job's model, state and number of ranks. */

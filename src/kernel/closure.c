@@ -17,7 +17,8 @@ struct closure_shared *closure_shared_make(const struct model *m, const struct b
     struct closure_shared *s = TAKE(a, 1, struct closure_shared);
     struct loop *loop = TAKE(a, m->nloop, struct loop);
     for (int l = 0; l < m->nloop; l++) loop_make(m, l, &loop[l]);
-    *s = (struct closure_shared){.nloop = m->nloop, .nrow = m->nrow, .loop = loop, .owner = owner, .body = body, .base = base};
+    *s = (struct closure_shared){
+        .nloop = m->nloop, .nrow = m->nrow, .loop = loop, .owner = owner, .body = body, .base = base};
     return s;
 }
 
@@ -114,7 +115,8 @@ static void contribute(struct closure *cl, int side, const real *acceleration, r
         body_accelerate(&s->body[closure_body(s, side)], column + 6 * k, accelerated);
         out[c * m + k] = six_dot(column + 6 * k, accelerated);
     }
-    w->flop += (uint64_t)(m * (XFORM_MOTION_FLOP + SIX_DOT_FLOP * c) + c * (XFORM_FORCE_FLOP + SYM6_MUL_FLOP + SIX_DOT_FLOP));
+    w->flop +=
+        (uint64_t)(m * (XFORM_MOTION_FLOP + SIX_DOT_FLOP * c) + c * (XFORM_FORCE_FLOP + SYM6_MUL_FLOP + SIX_DOT_FLOP));
     w->call += 3;
 }
 
@@ -136,8 +138,7 @@ static void solve(struct closure *cl, struct work *w)
 {
     const int n = cl->shared->nrow;
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < i; j++)
-            cl->S[i * n + j] = cl->S[j * n + i] = (cl->S[i * n + j] + cl->S[j * n + i]) / 2;
+        for (int j = 0; j < i; j++) cl->S[i * n + j] = cl->S[j * n + i] = (cl->S[i * n + j] + cl->S[j * n + i]) / 2;
     w->flop += (uint64_t)(n * (n - 1));
     cl->rank = least_norm_solve(n, cl->reference, cl->S, cl->lambda, cl->scratch, w);
 }

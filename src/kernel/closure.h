@@ -29,15 +29,15 @@ struct closure_shared {
 struct closure {
     struct comm *comm;
     const struct closure_shared *shared;
-    int m;                   /* columns: 1 + nrow */
-    bool takes_part;         /* this rank owns a side */
-    struct loop_pose *pose;  /* (nloop) of loops with a side here */
-    struct xform *side_pose; /* (2 nloop) body to base; own sides filled in before closure_meet */
-    real *side_velocity;     /* (2 nloop x 6) */
-    real *contribution;      /* (6 (m + 1)) */
+    int m;                         /* columns: 1 + nrow */
+    bool takes_part;               /* this rank owns a side */
+    struct loop_pose *pose;        /* (nloop) of loops with a side here */
+    struct xform *side_pose;       /* (2 nloop) body to base; own sides filled in before closure_meet */
+    real *side_velocity;           /* (2 nloop x 6) */
+    real *contribution;            /* (6 (m + 1)) */
     real *S, *reference, *scratch; /* rank 0 */
-    real *lambda;            /* (nrow), on every rank after closure_solve */
-    int rank;                /* of S, on rank 0 */
+    real *lambda;                  /* (nrow), on every rank after closure_solve */
+    int rank;                      /* of S, on rank 0 */
 };
 
 /* closure_shared_make: the loops of a model; `owner` (2 nloop) as above, borrowed. NULL when there are none. */

@@ -25,8 +25,8 @@ static inline struct compound compound_at(real *base, int m)
 struct joint_view {
     const struct xform *x;
     const struct subspace *s;
-    const real *active;      /* (d); NULL: zero */
-    const real *bias;        /* (6); NULL: zero */
+    const real *active; /* (d); NULL: zero */
+    const real *bias;   /* (6); NULL: zero */
 };
 
 /* packed_multiply: y (6) = S x for a packed symmetric 6x6 S; y may not be x. 66 flops. */

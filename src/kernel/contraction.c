@@ -129,7 +129,8 @@ static void share_anchors(struct contraction *k, int m)
     int nkid;
     const int *kid = tree_kids(t, &nkid);
     for (int i = 0; i < nkid; i++)
-        comm_send(t->comm, kid[i], TAG_ANCHOR, columns(k->acceleration, k->room, plan->local[plan->anchor[kid[i]]]), bytes);
+        comm_send(t->comm, kid[i], TAG_ANCHOR, columns(k->acceleration, k->room, plan->local[plan->anchor[kid[i]]]),
+                  bytes);
     if (t->piece >= 0 && plan->parent[t->piece] >= 0)
         comm_recv(t->comm, plan->parent[t->piece], TAG_ANCHOR, k->anchor_acceleration, bytes);
 }
@@ -155,8 +156,9 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
         const struct subspace *s = &t->pose[l].s;
         for (int j = 0; j < m; j++) {
             real z[6], moved[6], rest[6], *a = columns(k->acceleration, k->room, l) + 6 * j;
-            const real *below = on_base ? (j == 0 ? base : NULL)
-                                        : p >= 0 ? columns(k->acceleration, k->room, p) + 6 * j : k->anchor_acceleration + 6 * j;
+            const real *below = on_base  ? (j == 0 ? base : NULL)
+                                : p >= 0 ? columns(k->acceleration, k->room, p) + 6 * j
+                                         : k->anchor_acceleration + 6 * j;
             six_copy(z, a);
             if (below) {
                 xform_motion(moved, &t->pose[l].x, below);

@@ -17,18 +17,18 @@
 
 /* What is given for one solution: zero where a pointer is NULL. */
 struct contraction_given {
-    const real *active;  /* own joints: joint forces, column 0 */
-    const real *bias;    /* own bodies (6): joint bias accelerations, column 0 */
-    const real *load;    /* own bodies (6 x room): external loads of all columns */
-    const real *base;    /* (6) acceleration of the base, column 0 */
+    const real *active; /* own joints: joint forces, column 0 */
+    const real *bias;   /* own bodies (6): joint bias accelerations, column 0 */
+    const real *load;   /* own bodies (6 x room): external loads of all columns */
+    const real *base;   /* (6) acceleration of the base, column 0 */
 };
 
 struct contraction {
     struct tree tree;
     struct closure closure;
     bool direct;
-    int room;            /* columns that arrays are made for: 1 + loop constraints */
-    int m;               /* columns of the present solution */
+    int room; /* columns that arrays are made for: 1 + loop constraints */
+    int m;    /* columns of the present solution */
     struct contraction_given given;
     real *tau;           /* own joints: given forces and springs */
     real *active;        /* own joints: forces of the present solution */
@@ -44,11 +44,11 @@ struct contraction {
     real *record;        /* what undoing the operations into own compounds needs */
     int *record_at;      /* (own operations) */
     real *message, *anchor_acceleration;
-    real **side;         /* (2 nloop) accelerations of own loop sides */
+    real **side; /* (2 nloop) accelerations of own loop sides */
     real *side_room;
-    real *lambda;        /* (nrow) loop forces, summed over refinements */
+    real *lambda; /* (nrow) loop forces, summed over refinements */
     struct motion motion;
-    bool stored;         /* the first evaluation's answer is in the job's arrays */
+    bool stored; /* the first evaluation's answer is in the job's arrays */
     real residual;
     bool broken;
 };

@@ -1,4 +1,5 @@
-/* contraction_solve.c - one solution of the tree's constraint forces: contract, solve the roots, undo (contraction.h). */
+/* contraction_solve.c - one solution of the tree's constraint forces: contract, solve the roots, undo (contraction.h).
+ */
 #include <string.h>
 
 #include "kernel/compound.h"

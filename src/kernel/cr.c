@@ -47,7 +47,8 @@ static void serve(struct reduction *s, int distance, int tag)
     while ((1 << slot) < distance) slot++;
     for (; distance >= 1; distance /= 2, slot--) {
         if (kappa % (2 * distance) != 0) continue;
-        if (kappa + distance <= comm_size(comm)) comm_send(comm, kappa + distance - 1, tag + slot + TAG_STEP, s->r, bytes);
+        if (kappa + distance <= comm_size(comm))
+            comm_send(comm, kappa + distance - 1, tag + slot + TAG_STEP, s->r, bytes);
         comm_send(comm, kappa - distance - 1, tag + slot + TAG_STEP, s->r, bytes);
     }
 }
@@ -76,7 +77,8 @@ void cr_run(struct reduction *s, int levels, int tag, struct work *w)
         if (kappa % (2 * distance) == distance) {
             reduction_eliminate(s, 0, v.nl, v.nu, w);
             const int coupling = v.nl * v.nu;
-            give_way(s, &v, tag + slot, block_update_size(v.nl, m) + coupling, block_update_size(v.nu, m) + coupling, w);
+            give_way(s, &v, tag + slot, block_update_size(v.nl, m) + coupling, block_update_size(v.nu, m) + coupling,
+                     w);
             eliminated = true;
             break;
         }

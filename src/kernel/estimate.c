@@ -7,13 +7,13 @@
 
 /* What the formulas need of a spec: P ranks, n bodies, orders of a typical joint (that of the last body). */
 struct outline {
-    double P, n, steps;   /* steps: ceil(log2 P) */
-    double pairs;         /* sum over the steps of the ranks that have a partner: messages of one scan */
-    double triples;       /* of the ranks with partners on both sides, the receiving one's sender having another */
+    double P, n, steps; /* steps: ceil(log2 P) */
+    double pairs;       /* sum over the steps of the ranks that have a partner: messages of one scan */
+    double triples;     /* of the ranks with partners on both sides, the receiving one's sender having another */
     double c, d, nq;
-    double x, y, T;       /* flops of a transform and of a composition; numbers of a transform */
-    bool split;           /* more than one body on some rank */
-    double shifts, many;  /* ranks with several bodies that have a left neighbour; ranks with several bodies */
+    double x, y, T;      /* flops of a transform and of a composition; numbers of a transform */
+    bool split;          /* more than one body on some rank */
+    double shifts, many; /* ranks with several bodies that have a left neighbour; ranks with several bodies */
 };
 
 static struct outline outline_of(const struct run_spec *spec, const struct model *model)
@@ -85,7 +85,8 @@ static void interface(const struct run_spec *spec, const struct outline *o, doub
     const double two = one + c * triangular + packed * (2 * c - 1) + m * product + c * product;
     const double update = packed + c * m;
     const enum solver s = spec->kernel.solver;
-    const bool cyclic = s == SOLVER_CR || s == SOLVER_CR_PCR || (s == SOLVER_PARTITION && spec->kernel.part_solver == PART_CR);
+    const bool cyclic =
+        s == SOLVER_CR || s == SOLVER_CR_PCR || (s == SOLVER_PARTITION && spec->kernel.part_solver == PART_CR);
     if (s == SOLVER_THOMAS) {
         add(e, o->P - 1, o->n / o->P * (packed + c * c + c * m) + 0);
         add(e, o->P - 1, (o->n / o->P + 1) * c * m);

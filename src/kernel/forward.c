@@ -182,8 +182,7 @@ static void add_reactions(struct forward *f)
     const int64_t size = sizeof(real);
     if (has_left(f))
         comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), (6 - body_of(f, ch->lo)->d) * size);
-    for (int i = ch->lo; i < ch->hi; i++)
-        add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
+    for (int i = ch->lo; i < ch->hi; i++) add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
     if (has_left(f)) add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
     if (!has_right(f)) return;
     comm_recv(c, k + 1, TAG_REACTION, f->message, (6 - body_of(f, ch->hi)->d) * size);
@@ -223,10 +222,8 @@ static void operator_form(struct forward *f, bool terms)
     struct chain *ch = &f->chain;
     const int lo = ch->lo, hi = ch->hi;
     real before[6], y[6], moved[6], residual = 0, scale = 0;
-    if (has_left(f))
-        body_acceleration(f, lo - 1, f->force_left, f->force, terms ? f->gain_left : NULL, before);
-    else
-        six_copy(before, ch->shared->base);
+    if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, terms ? f->gain_left : NULL, before);
+    else six_copy(before, ch->shared->base);
     for (int i = lo; i < hi; i++) {
         real *z = chain_at(ch, f->z, i), reaction[6];
         const struct subspace *s = subspace_of(f, i);
@@ -275,7 +272,11 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
         if (j < 0 || j >= ch->n) continue;
         real x[6];
         const struct subspace *s = subspace_of(f, j);
-        assembly_turn_vector(ch, s, j < ch->lo ? f->force_left : j == ch->hi ? f->force_right : chain_at(ch, f->force, j), x);
+        assembly_turn_vector(ch, s,
+                             j < ch->lo    ? f->force_left
+                             : j == ch->hi ? f->force_right
+                                           : chain_at(ch, f->force, j),
+                             x);
         const int n = active ? s->d : 6;
         for (int r = from; r < to; r++)
             for (int k = 0; k < n; k++) y[r] += (j < i ? E[6 * r + k] : j == i ? D[6 * r + k] : next[6 * k + r]) * x[k];

@@ -15,20 +15,20 @@
 struct forward {
     struct chain chain;
     struct blocks blocks;
-    struct subspace *left;     /* of joint lo-1 */
+    struct subspace *left; /* of joint lo-1 */
     bool direct;
-    real *tau;                 /* own joints: given forces and springs */
-    real *ud;                  /* own joints: the answer */
-    real *force;               /* own bodies (6): F in the body's frame */
+    real *tau;                      /* own joints: given forces and springs */
+    real *ud;                       /* own joints: the answer */
+    real *force;                    /* own bodies (6): F in the body's frame */
     real *force_left, *force_right; /* F of bodies lo-1 and hi */
-    real *gain;                /* direct: Fext - P of own bodies (6) */
-    real *gain_left;           /* of body lo-1 */
-    real *z;                   /* own bodies (6): acceleration of the joint, H^T z = u', W^T z = 0 */
-    real *D, *E;               /* paper: Q^T D Q of own joints, Q^T E Q of own joints and of joint hi (36 each) */
-    real *message;             /* coordinates or forces of an edge joint */
+    real *gain;                     /* direct: Fext - P of own bodies (6) */
+    real *gain_left;                /* of body lo-1 */
+    real *z;                        /* own bodies (6): acceleration of the joint, H^T z = u', W^T z = 0 */
+    real *D, *E;                    /* paper: Q^T D Q of own joints, Q^T E Q of own joints and of joint hi (36 each) */
+    real *message;                  /* coordinates or forces of an edge joint */
     struct motion motion;
-    bool stored;               /* the first evaluation's answer is in the job's arrays */
-    real residual;             /* largest |W^T z| over the largest term in it */
+    bool stored;   /* the first evaluation's answer is in the job's arrays */
+    real residual; /* largest |W^T z| over the largest term in it */
 };
 
 /* forward_carve: room for rank `rank`. */

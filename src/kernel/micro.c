@@ -7,7 +7,10 @@ static const char *const stage_name[] = {"exchange"};
 
 /* Every rank's workspace: the message that it sends, then the one that it receives. */
 static int64_t message_bytes(const struct kernel_job *job) { return job->spec->kernel.message_bytes; }
-static int repetitions(const struct kernel_job *job) { return job->spec->kernel.repeat > 1 ? job->spec->kernel.repeat : 1; }
+static int repetitions(const struct kernel_job *job)
+{
+    return job->spec->kernel.repeat > 1 ? job->spec->kernel.repeat : 1;
+}
 
 static size_t workspace_bytes(const struct kernel_job *job, int rank)
 {
@@ -32,7 +35,8 @@ static bool accepts_barrier(const struct run_spec *spec, const struct model *mod
 
 static bool accepts_even(const struct run_spec *spec, const struct model *model, struct err *e)
 {
-    if (spec->nrank % 2) return err_set(e, ERR_CONFIG, "bisection needs an even number of processors, not %d", spec->nrank);
+    if (spec->nrank % 2)
+        return err_set(e, ERR_CONFIG, "bisection needs an even number of processors, not %d", spec->nrank);
     return accepts(spec, model, e);
 }
 
@@ -170,8 +174,15 @@ static void estimate_barrier(const struct run_spec *spec, const struct model *mo
 
 #define MICRO(stem, word, text, accept)                                                                                \
     const struct kernel_type stem##_kernel = {                                                                         \
-        .name = word, .title = text, .nstage = 1, .stage_name = stage_name, .accepts = accept, .prepare = prepare,     \
-        .workspace_bytes = workspace_bytes, .run = stem##_run, .estimate = estimate_##stem,                            \
+        .name = word,                                                                                                  \
+        .title = text,                                                                                                 \
+        .nstage = 1,                                                                                                   \
+        .stage_name = stage_name,                                                                                      \
+        .accepts = accept,                                                                                             \
+        .prepare = prepare,                                                                                            \
+        .workspace_bytes = workspace_bytes,                                                                            \
+        .run = stem##_run,                                                                                             \
+        .estimate = estimate_##stem,                                                                                   \
     }
 
 MICRO(pingpong, "pingpong", "a message there and back between the first and the last rank", accepts);

@@ -12,8 +12,8 @@
 
 struct motion {
     const struct kernel_job *job;
-    const struct body *body;         /* of all bodies */
-    const int *bodies;               /* (n) own bodies; NULL: first, first + 1, .. */
+    const struct body *body; /* of all bodies */
+    const int *bodies;       /* (n) own bodies; NULL: first, first + 1, .. */
     int first, n, nq, nu;
     real *q, *u;                     /* own coordinates and rates, body after body: advanced */
     const real *ud;                  /* own accelerations, made by evaluate */

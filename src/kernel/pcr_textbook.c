@@ -29,8 +29,8 @@ static void orders(const struct reduction *s, int k, int distance, int *nl, int 
     *nu = k + distance < comm_size(s->comm) ? s->size[k + distance] : 0;
 }
 
-bool textbook_row_fold(struct textbook_row *row, const real *K, struct textbook_row *v, const real *back, const real *onward, int norder,
-                 real *next, int m, struct work *w)
+bool textbook_row_fold(struct textbook_row *row, const real *K, struct textbook_row *v, const real *back,
+                       const real *onward, int norder, real *next, int m, struct work *w)
 {
     real alpha[BLOCK_FULL], product[BLOCK_FULL];
     const int c = row->c;
@@ -65,7 +65,8 @@ static struct textbook_row begin(struct reduction *s)
 }
 
 /* next_row: lay out the row for its neighbours at the next distance: D and r move, L and U come in. */
-static struct textbook_row next_row(struct reduction *s, const struct textbook_row *row, int nl, int nu, const real *L, const real *U)
+static struct textbook_row next_row(struct reduction *s, const struct textbook_row *row, int nl, int nu, const real *L,
+                                    const real *U)
 {
     struct textbook_row next = textbook_row_at(s->out_b, s->c, nl, nu);
     memcpy(next.L, L, (size_t)(s->c * nl) * sizeof(real));

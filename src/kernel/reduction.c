@@ -12,7 +12,7 @@ static int steps(int n)
 }
 
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
-                  const unsigned char *size, int rank, int nrank, int largest, int m, bool keep)
+                     const unsigned char *size, int rank, int nrank, int largest, int m, bool keep)
 {
     s->size = size;
     s->method = method;
@@ -22,7 +22,8 @@ void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_s
     s->c = size[rank];
     s->keep = keep;
     const bool textbook = method == SOLVER_PCR;
-    const int update = textbook ? 3 * largest * largest + largest * m : block_update_size(largest, m) + largest * largest;
+    const int update =
+        textbook ? 3 * largest * largest + largest * m : block_update_size(largest, m) + largest * largest;
     s->D = CARVE(c, packed_size(largest), real);
     s->r = CARVE(c, largest * m, real);
     s->y = CARVE(c, largest * m, real);
@@ -46,8 +47,8 @@ void reduction_break(struct reduction *s, int nl, int nu)
 void reduction_eliminate(struct reduction *s, int slot, int nl, int nu, struct work *w)
 {
     real *factor = s->last = s->factor + (s->keep ? slot : 0) * s->factor_size;
-    if (!block_row_eliminate(s->c, nl, nu, s->m, s->D, reduction_left(s), reduction_right(s), s->r, factor, s->y, s->out_a,
-                             s->out_b, w))
+    if (!block_row_eliminate(s->c, nl, nu, s->m, s->D, reduction_left(s), reduction_right(s), s->r, factor, s->y,
+                             s->out_a, s->out_b, w))
         reduction_break(s, nl, nu);
 }
 

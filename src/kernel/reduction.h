@@ -1,4 +1,5 @@
-/* reduction.h - symmetric positive definite block tridiagonal systems spread over the ranks, one interface row per rank.
+/* reduction.h - symmetric positive definite block tridiagonal systems spread over the ranks, one interface row per
+ * rank.
  *
  * Row k couples to rows k-1 and k+1 of the ranks beside it (linalg/block_row.h). Reduction is by symmetric parallel
  * cyclic reduction (physics 5.3 ii), its textbook form (5.3 i), cyclic reduction (5.2), or some levels of the latter
@@ -22,20 +23,20 @@ struct reduction {
     const unsigned char *size; /* (nrank) order of every rank's interface row */
     enum solver method;        /* SOLVER_PCR_SYMMETRIC, SOLVER_PCR, SOLVER_CR or SOLVER_CR_PCR */
     int hybrid_levels;
-    int m;                     /* right-hand sides */
-    int c;                     /* order of the own row */
-    int largest;               /* largest order of any row */
-    bool keep;                 /* store the factors of every step for further right-hand sides */
-    real *D;                   /* (c x c, packed) */
-    real *r;                   /* (c x m) right-hand side, then solution */
-    real *in_a, *in_b;         /* updates from the left and the right, [S v E] */
+    int m;             /* right-hand sides */
+    int c;             /* order of the own row */
+    int largest;       /* largest order of any row */
+    bool keep;         /* store the factors of every step for further right-hand sides */
+    real *D;           /* (c x c, packed) */
+    real *r;           /* (c x m) right-hand side, then solution */
+    real *in_a, *in_b; /* updates from the left and the right, [S v E] */
     real *out_a, *out_b;
-    real *y;                   /* (c x m) */
-    real *factor;              /* one, or one per step */
-    int factor_size;           /* elements of one */
-    real *last;                /* the factor made last */
-    real condition;            /* largest diagonal element of D over its last pivot so far */
-    bool broken;               /* a pivot was not positive: answers are not numbers */
+    real *y;         /* (c x m) */
+    real *factor;    /* one, or one per step */
+    int factor_size; /* elements of one */
+    real *last;      /* the factor made last */
+    real condition;  /* largest diagonal element of D over its last pivot so far */
+    bool broken;     /* a pivot was not positive: answers are not numbers */
 };
 
 /* reduction_carve: room for a rank's row.
@@ -43,7 +44,7 @@ struct reduction {
  *   largest  largest order of any row; m right-hand sides; keep: see above */
 #define reduction_carve REAL_NAME(reduction_carve)
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
-                  const unsigned char *size, int rank, int nrank, int largest, int m, bool keep);
+                     const unsigned char *size, int rank, int nrank, int largest, int m, bool keep);
 
 /* reduction_left, reduction_right: where L (c x c_{k-1}) and U (c x c_{k+1}) are to be put before reduction_run. */
 static inline real *reduction_left(const struct reduction *s) { return s->in_a + block_update_size(s->c, s->m); }

@@ -22,9 +22,9 @@
 struct scan {
     struct comm *comm;
     bool dense, incoming;
-    int size;        /* numbers per transform: 12 or 36 */
-    real *level;     /* transforms T^(0), T^(1), ...; then, while the first scan runs, v */
-    real *in;        /* receive: one transform and one vector */
+    int size;    /* numbers per transform: 12 or 36 */
+    real *level; /* transforms T^(0), T^(1), ...; then, while the first scan runs, v */
+    real *in;    /* receive: one transform and one vector */
 };
 
 /* transform_force: y = T f; transform_motion: y = T^T v; transform_compose: c = a o b; each with its account.

@@ -14,9 +14,9 @@
 
 struct tree_shared {
     const struct tree_plan *plan;
-    const struct body *body;               /* (nbody) */
-    const struct closure_shared *closure;  /* NULL without loops */
-    real base[6];                          /* acceleration of the base minus gravity */
+    const struct body *body;              /* (nbody) */
+    const struct closure_shared *closure; /* NULL without loops */
+    real base[6];                         /* acceleration of the base minus gravity */
 };
 
 /* Arrays over own bodies are in the order of plan.bodies; index l. */
@@ -24,11 +24,11 @@ struct tree {
     struct comm *comm;
     const struct kernel_job *job;
     const struct tree_shared *shared;
-    int n, nu, nq;           /* own bodies, rates and coordinates */
-    int piece;               /* this rank's piece; -1: none */
-    const int *bodies;       /* (n) */
-    const int *q_at, *u_at;  /* (n + 1) places in q, u and all arrays over own joints */
-    bool poses;              /* the base's place is wanted: composites all the way down */
+    int n, nu, nq;          /* own bodies, rates and coordinates */
+    int piece;              /* this rank's piece; -1: none */
+    const int *bodies;      /* (n) */
+    const int *q_at, *u_at; /* (n + 1) places in q, u and all arrays over own joints */
+    bool poses;             /* the base's place is wanted: composites all the way down */
     struct work work;
     real *q, *u;
     struct body_pose *pose;
@@ -77,6 +77,7 @@ static inline int tree_parent(const struct tree *t, int l)
     return p >= 0 && t->shared->plan->owner[p] == t->piece ? t->shared->plan->local[p] : -1;
 }
 
+/* tree_body: constants of own body l. */
 static inline const struct body *tree_body(const struct tree *t, int l) { return &t->shared->body[t->bodies[l]]; }
 
 /* tree_at: element l of an array of 6-vectors. */

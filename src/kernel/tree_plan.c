@@ -137,7 +137,8 @@ static struct tree_op *append(struct tree_plan *p, enum tree_kind kind, int roun
 {
     struct tree_op *op = &p->op[p->nop++];
     const int first = p->nop > 1 ? op[-1].first + op[-1].count : 0;
-    *op = (struct tree_op){.kind = kind, .round = round, .into = into, .first = first, .from = from, .to = p->owner[into]};
+    *op = (struct tree_op){
+        .kind = kind, .round = round, .into = into, .first = first, .from = from, .to = p->owner[into]};
     return op;
 }
 
@@ -163,7 +164,8 @@ static void exhaust_pieces(struct tree_plan *p, const struct model *m, struct fo
 /* rake_round: all leaves at the beginning of the round; those of one owner with the same parent together. */
 static void rake_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive, bool *leaf)
 {
-    for (int k = 0; k < nalive; k++) leaf[alive[k]] = f->alive[alive[k]] && f->count[alive[k]] == 0 && f->up[alive[k]] >= 0;
+    for (int k = 0; k < nalive; k++)
+        leaf[alive[k]] = f->alive[alive[k]] && f->count[alive[k]] == 0 && f->up[alive[k]] >= 0;
     for (int k = 0; k < nalive; k++) {
         const int v = alive[k], u = f->up[v];
         if (!leaf[v]) continue;

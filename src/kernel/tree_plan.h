@@ -26,21 +26,21 @@ struct tree_lists {
 };
 
 struct tree_plan {
-    int nbody, nrank, npiece;   /* ranks npiece .. nrank-1 own nothing */
-    int *owner;                 /* (nbody) */
-    int *local;                 /* (nbody) place of a body among its owner's, ascending */
-    struct tree_lists bodies;   /* of each rank, ascending */
-    int *anchor;                /* (npiece) body that the piece hangs at; -1: the base */
-    int *parent;                /* (npiece) piece that owns the anchor; -1: none */
-    int nlevel;                 /* ceil(log2(depth of pieces)) */
-    int *ancestor;              /* (nlevel x npiece) 2^j-th ancestor piece, -1: none */
-    struct tree_lists kids;     /* pieces hanging at a piece's bodies */
+    int nbody, nrank, npiece;       /* ranks npiece .. nrank-1 own nothing */
+    int *owner;                     /* (nbody) */
+    int *local;                     /* (nbody) place of a body among its owner's, ascending */
+    struct tree_lists bodies;       /* of each rank, ascending */
+    int *anchor;                    /* (npiece) body that the piece hangs at; -1: the base */
+    int *parent;                    /* (npiece) piece that owns the anchor; -1: none */
+    int nlevel;                     /* ceil(log2(depth of pieces)) */
+    int *ancestor;                  /* (nlevel x npiece) 2^j-th ancestor piece, -1: none */
+    struct tree_lists kids;         /* pieces hanging at a piece's bodies */
     struct tree_lists *descendants; /* (nlevel) pieces c with ancestor_j(c) = k, for those k that have an anchor body */
     int nop, nround;
-    struct tree_op *op;         /* in order */
+    struct tree_op *op; /* in order */
     int *absorbed;
-    struct tree_lists ops;      /* indices of the operations in which each rank takes part */
-    int nroot, *root;           /* compounds left at the end, one per body on the base */
+    struct tree_lists ops; /* indices of the operations in which each rank takes part */
+    int nroot, *root;      /* compounds left at the end, one per body on the base */
 };
 
 /* tree_plan_make: for nrank ranks, 1 <= nrank <= nbody. Takes O(n log n) time and memory. */

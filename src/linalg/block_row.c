@@ -158,13 +158,12 @@ void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const re
         for (int j = 0; j < m; j++) y[i * m + j] *= factor[packed_index(i, i)];
     project(c, nl, 0, width, m, Y, y, v_a);
     project(c, nu, nl, width, m, Y, y, v_b);
-    w->flop += (uint64_t)(dense_triangular_flops(c, m) + dense_product_flops(nl, m, c) +
-                          dense_product_flops(nu, m, c));
+    w->flop += (uint64_t)(dense_triangular_flops(c, m) + dense_product_flops(nl, m, c) + dense_product_flops(nu, m, c));
     w->call += (uint64_t)(1 + (nl > 0) + (nu > 0));
 }
 
-void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a,
-                            const real *x_b, struct work *w)
+void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a, const real *x_b,
+                            struct work *w)
 {
     const int width = nl + nu;
     const real *Y = factor + packed_size(c);

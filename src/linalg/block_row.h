@@ -49,7 +49,7 @@ void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const re
 /* block_row_resubstitute: y (c x m) of the two above becomes x = G^-T (y - D'^-1 (Y_L x_a + Y_U x_b)), given
  * x_a (nl x m) and x_b (nu x m). Cost: triangular(c,m) + for each neighbour n: product(c,m,n) + c m. */
 #define block_row_resubstitute REAL_NAME(block_row_resubstitute)
-void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a,
-                            const real *x_b, struct work *w);
+void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a, const real *x_b,
+                            struct work *w);
 
 #endif

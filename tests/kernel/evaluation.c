@@ -19,10 +19,21 @@ struct run_spec evaluation_spec(const char *name, int n, int P)
     snprintf(s.kernel.name, sizeof s.kernel.name, "%s", name);
     s.kernel.composites_incoming = true;
     s.kernel.formulation = FORMULATION_DIRECT;
-    s.model = (struct model_spec){.generator = MODEL_SERIAL_CHAIN, .nbody = n, .joint = JOINT_REVOLUTE,
-                                  .inertia = INERTIA_RANDOM, .pose = POSE_RANDOM, .axes = AXES_TWISTED, .length = 1,
-                                  .radius = 0.05, .mass = 1, .mass_ratio = 4, .gravity = {0, 0, -9.81}, .rate = 1,
-                                  .torque = 1, .branch = 2, .seed = (uint64_t)(7 * n + 1)};
+    s.model = (struct model_spec){.generator = MODEL_SERIAL_CHAIN,
+                                  .nbody = n,
+                                  .joint = JOINT_REVOLUTE,
+                                  .inertia = INERTIA_RANDOM,
+                                  .pose = POSE_RANDOM,
+                                  .axes = AXES_TWISTED,
+                                  .length = 1,
+                                  .radius = 0.05,
+                                  .mass = 1,
+                                  .mass_ratio = 4,
+                                  .gravity = {0, 0, -9.81},
+                                  .rate = 1,
+                                  .torque = 1,
+                                  .branch = 2,
+                                  .seed = (uint64_t)(7 * n + 1)};
     return s;
 }
 

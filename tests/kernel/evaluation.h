@@ -12,8 +12,8 @@ struct evaluation {
     double tau_error, qdd_error; /* relative to the largest reference element; 0 when not computed */
     double residual;             /* largest of all ranks */
     double condition;
-    size_t rank_bytes;           /* largest workspace */
-    double *tau, *qdd;           /* (nu) */
+    size_t rank_bytes; /* largest workspace */
+    double *tau, *qdd; /* (nu) */
     double *q_end, *qd_end;
     double *lambda;
     double *measured;

@@ -132,7 +132,8 @@ static void pieces_are_connected_and_balanced(void **state)
                 }
                 int deepest = 0;
                 for (int k = 0; k < p->npiece; k++) deepest = depth(p, k) > deepest ? depth(p, k) : deepest;
-                assert_true(deepest == 0 ? p->nlevel == 0 : 1 << (p->nlevel - 1) <= deepest && deepest < 1 << p->nlevel);
+                assert_true(deepest == 0 ? p->nlevel == 0
+                                         : 1 << (p->nlevel - 1) <= deepest && deepest < 1 << p->nlevel);
                 assert_int_equal(p->nop + p->nroot <= m->nbody, 1);
                 arena_destroy(a);
             }

@@ -108,67 +108,93 @@ static void the_first_bad_row_is_named(void **state)
     arena_destroy(a);
 }
 
+enum { M = 2 };
+
+/* One row with its neighbours' couplings, what eliminating it gave, and D^-1 [L U r] by dense elimination. */
+struct eliminated {
+    int c, nl, nu, width;
+    double D[21], L[36], U[36], r[12], factor[100], y[12], to_a[80], to_b[80];
+    double inverse_times[6 * 14], schur[12 * 14];
+};
+
+/* eliminate_random: fill *e; schur is [L U]^T D^-1 [L U r]. */
+static void eliminate_random(struct eliminated *e, int c, int nl, int nu, struct random *g)
+{
+    double full[36];
+    struct work w = {0};
+    *e = (struct eliminated){.c = c, .nl = nl, .nu = nu, .width = nl + nu + M};
+    for (int i = 0; i < c; i++)
+        for (int j = 0; j <= i; j++)
+            full[i * c + j] = full[j * c + i] = e->D[packed_index(i, j)] = random_uniform(g, -1, 1) + (i == j ? 7 : 0);
+    for (int i = 0; i < c * nl; i++) e->L[i] = random_uniform(g, -1, 1);
+    for (int i = 0; i < c * nu; i++) e->U[i] = random_uniform(g, -1, 1);
+    for (int i = 0; i < c * M; i++) e->r[i] = random_uniform(g, -1, 1);
+    assert_true(block_row_eliminate(c, nl, nu, M, e->D, e->L, e->U, e->r, e->factor, e->y, e->to_a, e->to_b, &w));
+    for (int i = 0; i < c; i++)
+        for (int j = 0; j < e->width; j++)
+            e->inverse_times[i * e->width + j] = j < nl        ? e->L[i * nl + j]
+                                                 : j < nl + nu ? e->U[i * nu + j - nl]
+                                                               : e->r[i * M + j - nl - nu];
+    if (c > 0) assert_true(dense_solve_general(c, e->width, full, e->inverse_times, &w));
+    for (int i = 0; i < nl + nu; i++)
+        for (int j = 0; j < e->width; j++)
+            for (int k = 0; k < c; k++)
+                e->schur[i * e->width + j] +=
+                    (i < nl ? e->L[k * nl + i] : e->U[k * nu + i - nl]) * e->inverse_times[k * e->width + j];
+}
+
+/* check_side: S and v of the n neighbour's unknowns that begin at row `first` of the Schur complement. */
+static void check_side(const struct eliminated *e, int n, int first, const double *update)
+{
+    for (int i = 0; i < n; i++) {
+        const double *row = e->schur + (first + i) * e->width;
+        for (int j = 0; j <= i; j++) assert_true(fabs(update[packed_index(i, j)] - row[first + j]) < 1e-13);
+        for (int j = 0; j < M; j++)
+            assert_true(fabs(update[packed_size(n) + i * M + j] - row[e->nl + e->nu + j]) < 1e-13);
+    }
+}
+
 static void eliminating_a_row_leaves_the_neighbours_schur_complement(void **state)
 {
     (void)state;
     struct random g = random_make(6, 0, 0);
-    for (int c = 0; c <= 6; c++)
-        for (int nl = 0; nl <= 6; nl++)
-            for (int nu = 0; nu <= 6; nu++) {
-                enum { M = 2 };
-                const int width = nl + nu + M;
-                double D[21], full[36], L[36], U[36], r[12], B[6 * 14], rest[12 * 14];
-                double factor[100], y[12], to_a[80], to_b[80], v_a[12], v_b[12], again[12];
-                struct work w = {0};
-                for (int i = 0; i < c; i++)
-                    for (int j = 0; j <= i; j++)
-                        full[i * c + j] = full[j * c + i] = D[packed_index(i, j)] =
-                            random_uniform(&g, -1, 1) + (i == j ? 7 : 0);
-                for (int i = 0; i < c * nl; i++) L[i] = random_uniform(&g, -1, 1);
-                for (int i = 0; i < c * nu; i++) U[i] = random_uniform(&g, -1, 1);
-                for (int i = 0; i < c * M; i++) r[i] = random_uniform(&g, -1, 1);
-                assert_true(block_row_eliminate(c, nl, nu, M, D, L, U, r, factor, y, to_a, to_b, &w));
-                for (int i = 0; i < c; i++) { /* B = D^-1 [L U r] */
-                    for (int j = 0; j < nl; j++) B[i * width + j] = L[i * nl + j];
-                    for (int j = 0; j < nu; j++) B[i * width + nl + j] = U[i * nu + j];
-                    for (int j = 0; j < M; j++) B[i * width + nl + nu + j] = r[i * M + j];
-                }
-                if (c > 0) assert_true(dense_solve_general(c, width, full, B, &w));
-                for (int i = 0; i < nl + nu; i++)
-                    for (int j = 0; j < width; j++) {
-                        rest[i * width + j] = 0;
-                        for (int k = 0; k < c; k++)
-                            rest[i * width + j] += (i < nl ? L[k * nl + i] : U[k * nu + i - nl]) * B[k * width + j];
-                    }
-                for (int i = 0; i < nl; i++) {
-                    for (int j = 0; j <= i; j++) assert_true(fabs(to_a[packed_index(i, j)] - rest[i * width + j]) < 1e-13);
-                    for (int j = 0; j < M; j++)
-                        assert_true(fabs(to_a[packed_size(nl) + i * M + j] - rest[i * width + nl + nu + j]) < 1e-13);
-                }
-                for (int i = 0; i < nu; i++) {
-                    for (int j = 0; j <= i; j++)
-                        assert_true(fabs(to_b[packed_index(i, j)] - rest[(nl + i) * width + nl + j]) < 1e-13);
-                    for (int j = 0; j < nl; j++) {
-                        const double E = to_b[block_update_size(nu, M) + i * nl + j];
-                        assert_true(fabs(E + rest[(nl + i) * width + j]) < 1e-13);
-                        assert_true(nl == 0 || E == to_a[block_update_size(nl, M) + j * nu + i]);
-                    }
-                }
-                block_row_reduce(c, nl, nu, M, factor, r, again, v_a, v_b, &w);
-                for (int i = 0; i < nl * M; i++) assert_true(v_a[i] == to_a[packed_size(nl) + i]);
-                for (int i = 0; i < nu * M; i++) assert_true(v_b[i] == to_b[packed_size(nu) + i]);
-                double x_a[12], x_b[12]; /* x = D^-1 (r - L x_a - U x_b) */
-                for (int i = 0; i < nl * M; i++) x_a[i] = random_uniform(&g, -1, 1);
-                for (int i = 0; i < nu * M; i++) x_b[i] = random_uniform(&g, -1, 1);
-                block_row_resubstitute(c, nl, nu, M, factor, y, x_a, x_b, &w);
-                for (int i = 0; i < c; i++)
-                    for (int l = 0; l < M; l++) {
-                        double x = B[i * width + nl + nu + l];
-                        for (int j = 0; j < nl; j++) x -= B[i * width + j] * x_a[j * M + l];
-                        for (int j = 0; j < nu; j++) x -= B[i * width + nl + j] * x_b[j * M + l];
-                        assert_true(fabs(y[i * M + l] - x) < 1e-12);
-                    }
+    struct eliminated e;
+    for (int size = 0; size < 7 * 7 * 7; size++) {
+        eliminate_random(&e, size % 7, size / 7 % 7, size / 49, &g);
+        check_side(&e, e.nl, 0, e.to_a);
+        check_side(&e, e.nu, e.nl, e.to_b);
+        for (int i = 0; i < e.nu; i++)
+            for (int j = 0; j < e.nl; j++) {
+                const double E = e.to_b[block_update_size(e.nu, M) + i * e.nl + j];
+                assert_true(fabs(E + e.schur[(e.nl + i) * e.width + j]) < 1e-13);
+                assert_true(E == e.to_a[block_update_size(e.nl, M) + j * e.nu + i]);
             }
+    }
+}
+
+static void a_stored_factor_serves_further_right_hand_sides(void **state)
+{
+    (void)state;
+    struct random g = random_make(7, 0, 0);
+    struct eliminated e;
+    for (int size = 0; size < 7 * 7 * 7; size++) {
+        double again[12], v_a[12], v_b[12], x_a[12], x_b[12];
+        struct work w = {0};
+        eliminate_random(&e, size % 7, size / 7 % 7, size / 49, &g);
+        block_row_reduce(e.c, e.nl, e.nu, M, e.factor, e.r, again, v_a, v_b, &w);
+        for (int i = 0; i < e.nl * M; i++) assert_true(v_a[i] == e.to_a[packed_size(e.nl) + i]);
+        for (int i = 0; i < e.nu * M; i++) assert_true(v_b[i] == e.to_b[packed_size(e.nu) + i]);
+        for (int i = 0; i < e.nl * M; i++) x_a[i] = random_uniform(&g, -1, 1);
+        for (int i = 0; i < e.nu * M; i++) x_b[i] = random_uniform(&g, -1, 1);
+        block_row_resubstitute(e.c, e.nl, e.nu, M, e.factor, again, x_a, x_b, &w); /* D^-1 (r - L x_a - U x_b) */
+        for (int i = 0; i < e.c; i++)
+            for (int l = 0; l < M; l++) {
+                double x = e.inverse_times[i * e.width + e.nl + e.nu + l];
+                for (int j = 0; j < e.nl; j++) x -= e.inverse_times[i * e.width + j] * x_a[j * M + l];
+                for (int j = 0; j < e.nu; j++) x -= e.inverse_times[i * e.width + e.nl + j] * x_b[j * M + l];
+                assert_true(fabs(again[i * M + l] - x) < 1e-12);
+            }
+    }
 }
 
 int main(void)
@@ -178,6 +204,7 @@ int main(void)
         cmocka_unit_test(a_row_of_five_costs_480),
         cmocka_unit_test(the_first_bad_row_is_named),
         cmocka_unit_test(eliminating_a_row_leaves_the_neighbours_schur_complement),
+        cmocka_unit_test(a_stored_factor_serves_further_right_hand_sides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

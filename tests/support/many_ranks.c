@@ -20,8 +20,8 @@ struct rank {
     struct comm comm; /* first */
     struct many_ranks *all;
     struct fiber *fiber;
-    struct message *first, **end;  /* arrived, not yet received, in order */
-    struct comm_request *awaited;  /* the receive that this rank sleeps for */
+    struct message *first, **end; /* arrived, not yet received, in order */
+    struct comm_request *awaited; /* the receive that this rank sleeps for */
     bool in_barrier, done;
     int stage;
     struct rank *next_ready;
@@ -156,8 +156,14 @@ static int64_t no_clock(struct comm *c)
 }
 
 static const struct comm_type many_ranks_type = {
-    .name = "many ranks", .isend = send_now, .irecv = post_receive, .wait = wait_for, .barrier = barrier_now,
-    .work = count_work, .stage = set_stage, .now_ps = no_clock,
+    .name = "many ranks",
+    .isend = send_now,
+    .irecv = post_receive,
+    .wait = wait_for,
+    .barrier = barrier_now,
+    .work = count_work,
+    .stage = set_stage,
+    .now_ps = no_clock,
 };
 
 static void start(void *argument)
