@@ -26,6 +26,7 @@ int cmd_machines(int argc, char **argv);
 int cmd_scenarios(int argc, char **argv);
 int cmd_kernels(int argc, char **argv);
 int cmd_query(int argc, char **argv);
+int cmd_verify(int argc, char **argv);
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {

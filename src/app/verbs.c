@@ -9,6 +9,7 @@ const struct verb verb_list[] = {
     {"machines", "list machines; show one with its sources; compare two", cmd_machines},
     {"scenarios", "list scenarios", cmd_scenarios},
     {"kernels", "list kernels", cmd_kernels},
+    {"verify", "hold every algorithm against reference vectors", cmd_verify},
     {"query", "run SQL on a database", cmd_query},
     {0},
 };

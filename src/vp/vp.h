@@ -25,8 +25,8 @@
 struct world;
 struct message;
 
-/* Lanes of the events that this room posts (the network's own lie between them). */
-enum { LANE_SERVER = 0x0100, LANE_BACKGROUND = 0x0101 };
+/* Lanes of the events that this room posts before the starts of messages at the same time. */
+enum { LANE_SERVER = NET_LANE_START - 2, LANE_BACKGROUND = NET_LANE_START - 1 };
 
 enum waiting_for { WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER };
 
