@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "machine/node_cost.h"
 #include "mech/dynamics_table.h"
+#include "run/dense_tally.h"
 
 enum { CRBA_MOST_DOFS = 512 };
 
@@ -98,23 +99,27 @@ static void add_fastest(struct run_result *out, int first)
     out->baseline[out->nbaseline++] = fastest;
 }
 
-/* The serial codes of the same task: Newton-Euler, then each way to the accelerations. */
+/* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
 static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
                        struct arena *scratch, struct run_result *out)
 {
     static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT};
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
     double *answer = TAKE(scratch, job->model->nu, double);
+    const bool dense = job->spec->kernel.operators == OPERATORS_DENSE;
     struct work inverse = {0};
     if (kernel->does_inverse) {
         t->inverse(job->model, job->state, scratch, answer, &inverse);
+        if (dense) dense_tally_inverse(job->model, &inverse);
         add_baseline(out, cost, "rnea", &inverse);
     }
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
         if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS) continue;
-        struct work w = inverse;
+        struct work w = {0};
         if (!t->forward(job->model, job->state, methods[i], scratch, answer, NULL, NULL, &w)) continue;
+        if (dense) dense_tally_forward(job->model, methods[i], &w);
+        work_add(&w, &inverse);
         char name[40];
         snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "", forward_method_name(methods[i]));
         add_baseline(out, cost, name, &w);

@@ -58,6 +58,7 @@ struct store {
     sqlite3 *db;                    /* owned */
     char *path;                     /* owned */
     bool writable;
+    bool passing;                   /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;            /* store_begin's */
     int64_t build_id;               /* row of this program in table build, 0: not looked up yet */
     sqlite3_stmt *statement[STATEMENT_COUNT]; /* owned, NULL until used */

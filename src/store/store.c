@@ -279,17 +279,24 @@ static bool open_writer(struct store *s, struct err *e)
     return prepare_writer(s, e);
 }
 
+static bool open_memory(struct store *s, struct err *e)
+{
+    if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
+    s->passing = true;
+    return create_schema(s, e) && store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
+}
+
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
-    bool exists;
-    if (!check_path(path, mode, &exists, e)) return NULL;
+    bool exists = true;
+    if (mode != STORE_MEMORY && !check_path(path, mode, &exists, e)) return NULL;
     if (!exists && !make_file(path, e)) return NULL;
     struct store *s = calloc(1, sizeof *s);
     CHECK(s != NULL);
     s->path = strdup(path);
     CHECK(s->path != NULL);
-    s->writable = mode == STORE_WRITE;
-    if (s->writable ? open_writer(s, e) : open_reader(s, e)) return s;
+    s->writable = mode != STORE_READ;
+    if (mode == STORE_MEMORY ? open_memory(s, e) : s->writable ? open_writer(s, e) : open_reader(s, e)) return s;
     store_close(s);
     return NULL;
 }

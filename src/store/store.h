@@ -13,9 +13,14 @@
 #include "spec/run_spec.h"
 
 struct store;
-enum store_mode { STORE_READ, STORE_WRITE };
+enum store_mode {
+    STORE_READ,
+    STORE_WRITE,
+    STORE_MEMORY /* a passing database without a file: `path` is a name for messages; settings and rows of single ranks
+                    are not kept */
+};
 
-/* store_open: open or (STORE_WRITE) make the database `path`. Returns NULL with ERR_NO_INPUT (read, not there),
+/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. Returns NULL with ERR_NO_INPUT (read, not there),
  * ERR_DATA (not ours, or newer), ERR_BUSY (locked), ERR_CREATE or ERR_IO (read-only, disk full). */
 struct store *store_open(const char *path, enum store_mode mode, struct err *e);
 
