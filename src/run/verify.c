@@ -45,7 +45,7 @@ void verify_row_skip(struct verify_case *v, const char *algorithm, const char *q
     text_copy(row->note, sizeof row->note, why);
 }
 
-/* What was asked for, but not better than ten roundings of the inputs nor than the best library. */
+/* What is asked for unless the user says otherwise: not better than ten roundings of the inputs or the best library. */
 static double attainable(double asked, double floor, double peer)
 {
     if (isfinite(floor)) asked = fmax(asked, 10 * floor);
@@ -54,14 +54,14 @@ static double attainable(double asked, double floor, double peer)
 
 double verify_tolerance_inverse(const struct verify_case *v)
 {
-    double asked = v->options->tolerance_inverse > 0 ? v->options->tolerance_inverse : 1e-12;
-    return attainable(asked, v->vector->floor_id, v->vector->peer_id.error);
+    double given = v->options->tolerance_inverse;
+    return given > 0 ? given : attainable(1e-12, v->vector->floor_id, v->vector->peer_id.error);
 }
 
 double verify_tolerance_forward(const struct verify_case *v)
 {
-    double asked = v->options->tolerance_forward > 0 ? v->options->tolerance_forward : 1e-10;
-    return attainable(asked, v->vector->floor_fd, v->vector->peer_fd.error);
+    double given = v->options->tolerance_forward;
+    return given > 0 ? given : attainable(1e-10, v->vector->floor_fd, v->vector->peer_fd.error);
 }
 
 double verify_tolerance_robust(const struct verify_case *v)

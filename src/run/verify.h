@@ -1,8 +1,9 @@
 /* verify.h - every algorithm held against reference vectors computed by others.
  *
  * A row is one algorithm and one quantity of one case. It passes when its error, max |x - ref| / max |ref|, is within
- * the tolerance; what no double-precision code attains is not asked for: the tolerance is never below ten times the
- * change of the exact answer when the inputs are rounded, nor below the best of the libraries that the file quotes.
+ * the tolerance. A tolerance that the caller gives is taken as it is; the default asks for nothing that no
+ * double-precision code attains: it is never below ten times the change of the exact answer when the inputs are
+ * rounded, nor below the best of the libraries that the file quotes.
  * A larger error is either explained by rounding - it goes away in quad precision, or, in large cases, is in proportion
  * to the error in single precision - or it is a failure. A case passes when no row fails and every quantity
  * has a row that passes. */
