@@ -10,20 +10,11 @@ static void round_to(real *y, const quad *x, int n)
     for (int i = 0; i < n; i++) y[i] = (real)x[i];
 }
 
-void body_make(const struct model *m, int i, struct body *b)
+static void make_inertia(const struct model *m, int i, struct body *b)
 {
-    const struct body_def *def = &m->body[i];
     struct body_constants c;
-    body_constants_make(m, i, &c);
-    memset(b, 0, sizeof *b);
-    b->turned = c.turned;
-    round_to(b->tree.r, c.tree_r, 9);
-    round_to(b->tree.p, c.tree_p, 3);
-    round_to(b->user, c.user, 9);
-    round_to(b->slide, c.slide, 9);
-    round_to(&b->unit, &c.unit, 1);
-    b->pitch = (real)def->pitch;
-    b->m = b->inertia.m = (real)def->mass;
+    body_constants_inertia(m, i, &c);
+    b->m = b->inertia.m = (real)m->body[i].mass;
     round_to(b->s, c.s, 3);
     round_to(b->jc, c.jc, 6);
     round_to(b->inertia.ms, c.ms, 3);
@@ -31,10 +22,31 @@ void body_make(const struct model *m, int i, struct body *b)
     round_to(b->phi.a, c.phi_a, 6);
     round_to(b->phi.b, c.phi_b, 9);
     round_to(b->phi.c, c.phi_c, 6);
+}
+
+static void make_frames(const struct model *m, int i, struct body *b)
+{
+    const struct body_def *def = &m->body[i];
+    struct body_constants c;
+    body_constants_place(m, i, &c);
+    b->turned = c.turned;
+    round_to(b->tree.r, c.tree_r, 9);
+    round_to(b->tree.p, c.tree_p, 3);
+    round_to(b->user, c.user, 9);
+    round_to(b->slide, c.slide, 9);
+    round_to(&b->unit, &c.unit, 1);
+    b->pitch = (real)def->pitch;
     b->has_spring = def->stiffness != 0 || def->damping != 0;
     b->stiffness = (real)def->stiffness;
     b->rest = (real)def->rest;
     b->damping = (real)def->damping;
+}
+
+void body_make(const struct model *m, int i, struct body *b)
+{
+    memset(b, 0, sizeof *b);
+    make_inertia(m, i, b);
+    make_frames(m, i, b);
 }
 
 /* Where body i hangs; these differ between otherwise equal bodies. */
@@ -60,12 +72,19 @@ static bool same_turn(const struct model *m, int i, int j)
     return a->joint == b->joint && same_numbers(a->axis, b->axis, 3) && same_numbers(a->axis2, b->axis2, 3);
 }
 
-/* Whether bodies i and j have the same constants. */
-static bool same_constants(const struct model *m, int i, int j)
+/* Whether bodies i and j have the same inertia, in frames turned alike. */
+static bool same_inertia(const struct model *m, int i, int j)
 {
     const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return same_turn(m, i, j) && same_turn(m, a->parent, b->parent) && same_numbers(&a->mass, &b->mass, 1) &&
-           same_numbers(a->com, b->com, 3) && same_numbers(a->inertia, b->inertia, 6) &&
+    return same_turn(m, i, j) && same_numbers(&a->mass, &b->mass, 1) && same_numbers(a->com, b->com, 3) &&
+           same_numbers(a->inertia, b->inertia, 6);
+}
+
+/* Whether all else is the same, too. */
+static bool same_frames(const struct model *m, int i, int j)
+{
+    const struct body_def *a = &m->body[i], *b = &m->body[j];
+    return same_turn(m, i, j) && same_turn(m, a->parent, b->parent) &&
            same_numbers(a->placement.quat, b->placement.quat, 4) && same_numbers(a->placement.p, b->placement.p, 3) &&
            a->pitch == b->pitch && a->stiffness == b->stiffness && a->rest == b->rest && a->damping == b->damping;
 }
@@ -75,10 +94,9 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
     if (REAL_BITS == 64 && m->constants) return m->constants;
     struct body *b = TAKE(a, m->nbody, struct body);
     for (int i = 0; i < m->nbody; i++) {
-        if (i > 0 && same_constants(m, i - 1, i))
-            b[i] = b[i - 1];
-        else
-            body_make(m, i, &b[i]);
+        if (i > 0) b[i] = b[i - 1];
+        if (i == 0 || !same_inertia(m, i - 1, i)) make_inertia(m, i, &b[i]);
+        if (i == 0 || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i]);
         place_in_model(m, i, &b[i]);
     }
     return b;

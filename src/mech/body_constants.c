@@ -52,12 +52,20 @@ static void rotation_from(quad *r, int i, const quad *first, const quad *second)
     }
 }
 
+/* Whether the joint's axis is z as it stands and nothing else is asked of x and y: the common case. */
+static bool along_z(const struct body_def *b)
+{
+    return b->joint != JOINT_UNIVERSAL && b->axis[0] == 0 && b->axis[1] == 0 && b->axis[2] > 0 && b->axis2[0] == 0 &&
+           b->axis2[1] == 0 && b->axis2[2] == 0;
+}
+
 /* The rotation internal -> user of body i's frame: z (universal: x, y) along the axes. False: not turned. */
 static bool turn_of(const struct model *m, int i, quad *r)
 {
     mat3_identity(r);
     if (i < 0) return false;
     const struct body_def *b = &m->body[i];
+    if (along_z(b)) return false;
     quad n[3], t[3];
     switch (b->joint) {
     case JOINT_REVOLUTE:
@@ -154,25 +162,37 @@ static void about_origin(struct body_constants *c, quad mass)
 void frame_constants_make(const struct model *m, int i, const struct frame *f, quad *r, quad *p)
 {
     quad turn[9], rotation[9], offset[3] = {f->p[0], f->p[1], f->p[2]};
-    turn_of(m, i, turn);
-    rotation_of(f->quat, rotation);
+    bool turned = turn_of(m, i, turn);
+    rotation_of(f->quat, turned ? rotation : r);
+    vec3_copy(p, offset);
+    if (!turned) return;
     mat3_transposed_mul(r, turn, rotation);
     mat3_mul_vec_transposed(p, turn, offset);
 }
 
-void body_constants_make(const struct model *m, int i, struct body_constants *c)
+void body_constants_place(const struct model *m, int i, struct body_constants *c)
 {
     const struct body_def *b = &m->body[i];
-    quad r[9], com[3] = {b->com[0], b->com[1], b->com[2]}, inertia[6];
+    quad r[9];
     c->turned = turn_of(m, i, c->user);
-    frame_constants_make(m, b->parent, &b->placement, r, c->tree_p);
-    mat3_mul(c->tree_r, r, c->user);
+    frame_constants_make(m, b->parent, &b->placement, c->turned ? r : c->tree_r, c->tree_p);
+    if (c->turned) mat3_mul(c->tree_r, r, c->user);
     slide_of(b, c->slide);
     quad pitch = b->pitch;
-    c->unit = 1 / sqrtq(1 + pitch * pitch);
-    mat3_mul_vec_transposed(c->s, c->user, com);
-    for (int k = 0; k < 6; k++) inertia[k] = b->inertia[k];
-    turn_back(c->jc, c->user, inertia);
+    c->unit = b->pitch == 0 ? 1 : 1 / sqrtq(1 + pitch * pitch);
+}
+
+void body_constants_inertia(const struct model *m, int i, struct body_constants *c)
+{
+    const struct body_def *b = &m->body[i];
+    for (int k = 0; k < 3; k++) c->s[k] = b->com[k];
+    for (int k = 0; k < 6; k++) c->jc[k] = b->inertia[k];
+    if (turn_of(m, i, c->user)) {
+        quad inertia[6];
+        for (int k = 0; k < 6; k++) inertia[k] = b->inertia[k];
+        mat3_mul_vec_transposed(c->s, c->user, c->s);
+        turn_back(c->jc, c->user, inertia);
+    }
     about_origin(c, b->mass);
     phi_of(c, b->mass);
 }

@@ -22,8 +22,11 @@ struct body_constants {
     bool turned;
 };
 
-/* body_constants_make: of body i. */
-void body_constants_make(const struct model *m, int i, struct body_constants *c);
+/* body_constants_place: frames of body i: tree, user, slide, unit, turned. */
+void body_constants_place(const struct model *m, int i, struct body_constants *c);
+
+/* body_constants_inertia: s, jc, ms, j, phi of body i (and user). */
+void body_constants_inertia(const struct model *m, int i, struct body_constants *c);
 
 /* frame_constants_make: frame f on body i (-1: the base) as (r, p) from the frame to the body's internal axes. */
 void frame_constants_make(const struct model *m, int i, const struct frame *f, quad *r, quad *p);

@@ -29,7 +29,7 @@ static struct axes axes_in(struct dynamics *d)
 /* Transforms, axes, and each body's own inertia. */
 static void outward(struct dynamics *d, const real *q, struct axes *a)
 {
-    real *sine = d->scratch + 60 * (size_t)a->n, *cosine = sine + a->n;
+    real *sine = d->scratch + 45 * (size_t)a->n, *cosine = sine + a->n;
     angle_sincos_batch(a->n, q, sine, cosine);
     for (int i = 0; i < a->n; i++) {
         const struct revolute *b = &d->revolute[i];

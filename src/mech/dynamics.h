@@ -16,7 +16,7 @@
 #include "mech/body.h"
 #include "mech/model.h"
 
-enum { DYNAMICS_SCRATCH = 96 };
+enum { DYNAMICS_SCRATCH = 64 };
 
 struct revolute;              /* compact constants of a body on a revolute joint: revolute.h */
 
