@@ -72,8 +72,8 @@ bool verify_file(const char *path, const struct verify_options *o, struct arena 
 /* verify_print: one case as a table. `brief` prints the heading and only rows that do not pass. */
 void verify_print(FILE *out, const struct verify_report *r, bool brief);
 
-/* verify_print_matrix: one line for each of n reports, as a Markdown table: the largest error of each serial algorithm, of
- * the parallel kernels by formulation (over all solvers and numbers of ranks), and of the best library. */
+/* verify_print_matrix: one line for each of n reports, as a Markdown table: the largest error of each serial algorithm,
+ * of the parallel kernels by formulation (over all solvers and numbers of ranks), and of the best library. */
 void verify_print_matrix(FILE *out, const struct verify_report *r, int n);
 
 /* verify_print_summary: the counts over n reports, by verdict. */

@@ -20,7 +20,7 @@
 /* Write `xml` to a file of its own and read it. */
 static bool read_xml(const char *xml, struct urdf_robot *robot, struct arena *a, struct err *e)
 {
-    char path[] = "/tmp/mimdsim-urdf-XXXXXX";
+    char path[] = P_tmpdir "/mimdsim-urdf-XXXXXX";
     int fd = mkstemp(path);
     assert_true(fd >= 0);
     assert_int_equal(write(fd, xml, strlen(xml)), strlen(xml));

@@ -28,7 +28,7 @@ struct fixture {
 
 static struct fixture fixture_make(const char *content)
 {
-    struct fixture f = {.a = arena_create(), .path = "/tmp/mimdsim-vector-XXXXXX"};
+    struct fixture f = {.a = arena_create(), .path = P_tmpdir "/mimdsim-vector-XXXXXX"};
     err_clear(&f.e);
     int fd = mkstemp(f.path);
     assert_true(fd >= 0);

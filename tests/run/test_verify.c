@@ -111,7 +111,7 @@ static void a_wrong_answer_fails(void **state)
         {"\"bias\": [", "\"bias\": [1", "rnea", "bias"},
     };
     for (size_t i = 0; i < sizeof lie / sizeof *lie; i++) {
-        char path[] = "/tmp/mimdsim-verify-XXXXXX";
+        char path[] = P_tmpdir "/mimdsim-verify-XXXXXX";
         struct arena *a = arena_create();
         const struct verify_options o = {.parallel = false};
         copy_changed(DATA("closed_fourbar.json"), lie[i].old, lie[i].new, path);
@@ -183,7 +183,7 @@ static void keys_are_sorted(const struct node *node)
 static void json_has_every_row_and_sorted_keys(void **state)
 {
     (void)state;
-    char path[] = "/tmp/mimdsim-verify-XXXXXX";
+    char path[] = P_tmpdir "/mimdsim-verify-XXXXXX";
     struct arena *a = arena_create();
     struct err e;
     const struct verify_options o = {.parallel = false};
