@@ -94,6 +94,14 @@ static const char *idle_unless_branching(const struct run_spec *r)
     return branches ? NULL : "only a comb and a dendrimer have it";
 }
 
+static const char *idle_unless_closed(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    bool closed = r->model.generator == MODEL_RING || r->model.generator == MODEL_FOUR_BAR;
+    return closed ? NULL : "only a ring and a four-bar linkage have loops to stabilise";
+}
+
 static const char *idle_unless_random(const struct run_spec *r)
 {
     const char *why = idle_unless_general(r);
@@ -156,6 +164,9 @@ static const struct field fields[] = {
      .fallback = "0 N m/rad", .idle = idle_from_file, .doc = "joint springs to the first pose, 0: none"},
     {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
      .fallback = "0 N m s/rad", .idle = idle_from_file, .doc = "joint dampers, 0: none"},
+    {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation), .min = 0, .max = 1e9,
+     .fallback = "0 rad/s", .idle = idle_unless_closed,
+     .doc = "closed loops: alpha = beta of Baumgarte's method, at most about one over the step size; 0: none"},
     {.key = "branch", .kind = FIELD_INT, AT(branch), .min = 1, .max = 1 << 20, .fallback = "2",
      .idle = idle_unless_branching, .doc = "comb, dendrimer: children of a body"},
     {.key = "seed", .kind = FIELD_SEED, AT(seed), .fallback = "1", .idle = idle_from_vector,

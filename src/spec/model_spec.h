@@ -36,6 +36,7 @@ struct model_spec {
     double torque;            /* scale of the random joint forces [N m] */
     double external_force;    /* scale of random external wrenches on every body [N]; 0: none */
     double stiffness, damping;/* joint springs to the initial pose [N m/rad], [N m s/rad]; 0: none */
+    double stabilisation;     /* loops: alpha = beta of Baumgarte's method [1/s]; 0: none */
     int branch;               /* comb, dendrimer: children per node */
     uint64_t seed;
     char path[256];           /* URDF or vector file */
