@@ -44,8 +44,14 @@ static int64_t no_clock(struct comm *c)
 }
 
 static const struct comm_type serial_type = {
-    .name = "serial", .isend = no_isend, .irecv = no_irecv, .wait = no_wait,
-    .barrier = no_barrier, .work = count_work, .stage = set_stage, .now_ps = no_clock,
+    .name = "serial",
+    .isend = no_isend,
+    .irecv = no_irecv,
+    .wait = no_wait,
+    .barrier = no_barrier,
+    .work = count_work,
+    .stage = set_stage,
+    .now_ps = no_clock,
 };
 
 struct comm_serial comm_serial_make(void)

@@ -7,7 +7,7 @@
 enum { COMM_SERIAL_STAGES = 16 };
 
 struct comm_serial {
-    struct comm comm;                     /* first: pass &s.comm to a kernel */
+    struct comm comm; /* first: pass &s.comm to a kernel */
     int stage;
     struct work work[COMM_SERIAL_STAGES]; /* counted so far, by stage */
 };

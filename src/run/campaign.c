@@ -95,8 +95,8 @@ struct campaign {
     int nspec, next, handed, nworker, ndone, ntodo;
     const bool *skip;
     struct worker worker[MOST_WORKERS];
-    struct answer **slot;   /* (nspec) results waiting for their turn */
-    struct arena **arena;   /* (nspec) their memory */
+    struct answer **slot; /* (nspec) results waiting for their turn */
+    struct arena **arena; /* (nspec) their memory */
     run_done_fn *done;
     void *context;
     struct progress progress;
@@ -189,7 +189,8 @@ static bool serve(struct campaign *c, struct err *e)
         struct pollfd p[MOST_WORKERS];
         for (int i = 0; i < c->nworker; i++)
             p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
-        if (poll(p, (nfds_t)c->nworker, -1) < 0 && errno != EINTR) return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
+        if (poll(p, (nfds_t)c->nworker, -1) < 0 && errno != EINTR)
+            return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
         for (int i = 0; i < c->nworker; i++)
             if (p[i].fd >= 0 && p[i].revents && !take_answer(c, &c->worker[i], e)) return false;
     }
@@ -236,8 +237,8 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
     return ok;
 }
 
-bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet,
-                  run_done_fn *done, void *context, struct err *e)
+bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
+                  void *context, struct err *e)
 {
     struct campaign c = {.spec = spec, .nspec = nspec, .skip = skip, .done = done, .context = context};
     for (int i = 0; i < nspec; i++) c.ntodo += !(skip && skip[i]);

@@ -40,10 +40,7 @@ static void record(struct run_result *out, const char *quantity, const char *ref
     out->status = RUN_INVALID;
 }
 
-static double precision_scale(enum precision p)
-{
-    return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1;
-}
+static double precision_scale(enum precision p) { return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1; }
 
 double references_tolerance(const struct kernel_spec *k, int n)
 {
@@ -56,7 +53,8 @@ static void check_inverse(const struct kernel_job *job, struct arena *scratch, s
     double *tau = TAKE(scratch, job->model->nu, double);
     struct work w = {0};
     dynamics_type_of(PRECISION_DOUBLE)->inverse(job->model, job->state, scratch, tau, &w);
-    double tolerance = fmin(1e-11 * fmax(1, job->model->nbody / 100.0) * precision_scale(job->spec->kernel.precision), 1e-2);
+    double tolerance =
+        fmin(1e-11 * fmax(1, job->model->nbody / 100.0) * precision_scale(job->spec->kernel.precision), 1e-2);
     record(out, "tau", "rnea", relative_error(job->tau, tau, job->model->nu), tolerance);
 }
 
@@ -64,8 +62,8 @@ static void check_forward(const struct kernel_job *job, struct arena *scratch, s
 {
     double *qdd = TAKE(scratch, job->model->nu, double);
     struct work w = {0};
-    bool found = dynamics_type_of(PRECISION_DOUBLE)
-                     ->forward(job->model, job->state, FORWARD_ABA, scratch, qdd, NULL, NULL, &w);
+    bool found =
+        dynamics_type_of(PRECISION_DOUBLE)->forward(job->model, job->state, FORWARD_ABA, scratch, qdd, NULL, NULL, &w);
     record(out, "qdd", "aba", found ? relative_error(job->qdd, qdd, job->model->nu) : NAN,
            references_tolerance(&job->spec->kernel, job->model->nbody));
 }

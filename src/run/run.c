@@ -95,7 +95,11 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
     bool ok = make_job(&job, kernel, spec, scratch, e);
     if (ok) {
         struct launch l = {kernel, &job, make_workspaces(&job, kernel, scratch)};
-        struct world_load load = {spec->nrank, program, &l, kernel->nstage, kernel->stage_name,
+        struct world_load load = {spec->nrank,
+                                  program,
+                                  &l,
+                                  kernel->nstage,
+                                  kernel->stage_name,
                                   kernel->largest_message ? kernel->largest_message(&job) : -1};
         ok = world_run(&spec->machine, &load, &spec->record, spec->seed + (uint64_t)spec->rep, a, out, e);
     }

@@ -20,14 +20,14 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
-    int64_t nbody, nu;           /* bodies, degrees of freedom */
+    int64_t nbody, nu; /* bodies, degrees of freedom */
     double messages, bytes, flops;
-    double host_s;               /* estimated wall time */
-    double host_bytes;           /* estimated memory */
+    double host_s;     /* estimated wall time */
+    double host_bytes; /* estimated memory */
     int nomission;
     struct omission {
         char what[48], why[96];
-        bool exact;              /* proof class: bit-identical; otherwise bounded */
+        bool exact; /* proof class: bit-identical; otherwise bounded */
     } omission[16];
 };
 
@@ -39,7 +39,7 @@ typedef bool run_done_fn(void *context, const struct run_spec *spec, const struc
 
 /* run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
  * 1: in this process). Results are handed over in plan order, so the outcome does not depend on `workers`. */
-bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet,
-                  run_done_fn *done, void *context, struct err *e);
+bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
+                  void *context, struct err *e);
 
 #endif

@@ -179,8 +179,7 @@ static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n
     keys_sort(k + half, scratch, n - half);
     if (!key_before(&k[half], &k[half - 1])) return; /* often posted in order */
     memcpy(scratch, k, half * sizeof *k);
-    for (uint32_t out = 0; i < half; out++)
-        k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
+    for (uint32_t out = 0; i < half; out++) k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
 }
 
 static void keys_room(struct event_queue *q, uint32_t n)

@@ -50,18 +50,18 @@ struct event_key {
 };
 
 struct event_queue {
-    sim_ps now;                /* no event is earlier */
+    sim_ps now; /* no event is earlier */
     uint64_t next_age;
     uint64_t count;            /* pending, all together */
     struct event_bucket run;   /* the events of this instant, */
     struct event_key *key;     /* (run.capacity) sorted; */
     struct event_key *scratch; /* (run.capacity) for sorting */
     uint32_t run_at, key_capacity;
-    struct event_bucket heap;  /* posted at this instant since it began */
+    struct event_bucket heap;    /* posted at this instant since it began */
     uint64_t full[WHEEL_LEVELS]; /* bit per bucket that is not empty */
     struct event_chain wheel[WHEEL_LEVELS][WHEEL_SLOTS];
-    struct event_chunk *pool;  /* chunks not in use */
-    void *slab;                /* owned: memory of the chunks, a list */
+    struct event_chunk *pool; /* chunks not in use */
+    void *slab;               /* owned: memory of the chunks, a list */
 };
 
 /* event_queue_init, event_queue_done: an empty queue at time 0; give its memory back. */

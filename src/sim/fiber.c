@@ -34,7 +34,7 @@ struct fiber {
     struct fiber_pool *pool;
     fiber_fn *fn;
     void *argument;
-    char *stack;   /* lowest byte; the guard or spare page lies below */
+    char *stack; /* lowest byte; the guard or spare page lies below */
     bool finished;
 #ifdef HAVE_FCONTEXT
     void *context; /* of the fiber while it is left */
@@ -138,10 +138,7 @@ static void entry(struct transfer t)
     CHECK(f->pool == NULL); /* a finished fiber was entered */
 }
 
-static void prepare(struct fiber *f, char *top)
-{
-    f->context = make_fcontext(top, (size_t)(top - f->stack), entry);
-}
+static void prepare(struct fiber *f, char *top) { f->context = make_fcontext(top, (size_t)(top - f->stack), entry); }
 
 static inline void switch_in(struct fiber *f) { f->context = jump_fcontext(f->context, f).context; }
 

@@ -12,7 +12,10 @@ struct background {
     int link;
 };
 
-static sim_ps gap(struct background *b) { return (sim_ps)(-b->mean_gap * log1p(-random_uniform(&b->random, 0, 1))) + 1; }
+static sim_ps gap(struct background *b)
+{
+    return (sim_ps)(-b->mean_gap * log1p(-random_uniform(&b->random, 0, 1))) + 1;
+}
 
 static void pass(void *subject, uint64_t argument, sim_ps now)
 {
@@ -32,8 +35,11 @@ void background_start(struct world *w, uint64_t seed)
     for (int i = 0; i < nlink; i++) {
         double rate = topology_link_bandwidth(w->topology, i, w->machine->network.link_bandwidth);
         double busy = (double)s->background_bytes / (rate * w->machine->network.link_bandwidth) * SIM_PS_PER_S;
-        b[i] = (struct background){.world = w, .random = random_make(seed, UINT64_MAX, (uint64_t)i),
-                                   .mean_gap = busy / s->background_load, .busy = (sim_ps)(busy + 0.5), .link = i};
+        b[i] = (struct background){.world = w,
+                                   .random = random_make(seed, UINT64_MAX, (uint64_t)i),
+                                   .mean_gap = busy / s->background_load,
+                                   .busy = (sim_ps)(busy + 0.5),
+                                   .link = i};
         sim_at(w->sim, gap(&b[i]), LANE_BACKGROUND, (uint64_t)i, pass, &b[i], 0);
     }
 }

@@ -8,7 +8,7 @@ enum { CLASS_BYTES = 64, CHUNK_MESSAGES = 64 };
 
 static struct message *refill(struct world *w, int class)
 {
-    size_t size = sizeof(struct message) + (size_t)class * CLASS_BYTES;
+    size_t size = sizeof(struct message) + (size_t) class * CLASS_BYTES;
     size = (size + 15) / 16 * 16;
     char *chunk = arena_take(w->scratch, size * CHUNK_MESSAGES);
     struct message *head = NULL;
@@ -33,7 +33,7 @@ struct message *message_take(struct world *w, int64_t bytes)
         class = MESSAGE_CLASSES;
     }
     memset(m, 0, sizeof *m);
-    m->size_class = (uint16_t)class;
+    m->size_class = (uint16_t) class;
     m->bytes = bytes;
     return m;
 }

@@ -14,8 +14,13 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
 {
     m->kind = MESSAGE_REQUEST_TO_SEND;
     m->send = r;
-    if (r) *r = (struct comm_request){.bytes = m->bytes, .peer = m->to->comm.rank, .tag = m->tag,
-                                      .active = REQUEST_SENDING, .file = v->comm.file, .line = v->comm.line};
+    if (r)
+        *r = (struct comm_request){.bytes = m->bytes,
+                                   .peer = m->to->comm.rank,
+                                   .tag = m->tag,
+                                   .active = REQUEST_SENDING,
+                                   .file = v->comm.file,
+                                   .line = v->comm.line};
     travel(m, v, m->to, 0, v->clock);
 }
 

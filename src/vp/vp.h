@@ -20,89 +20,69 @@
 #include "sim/fiber.h"
 #include "sim/sim.h"
 #include "spec/run_spec.h"
+#include "vp/message.h"
 #include "vp/world.h"
 
 struct world;
-struct message;
+struct vp;
 
 /* Lanes of the events that this room posts before the starts of messages at the same time. */
 enum { LANE_SERVER = NET_LANE_START - 2, LANE_BACKGROUND = NET_LANE_START - 1 };
 
 enum waiting_for { WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER };
 
-/* States of comm_request.active. */
-enum { REQUEST_DONE, REQUEST_POSTED, REQUEST_MATCHED, REQUEST_SENDING, REQUEST_SENT };
-
 struct vp {
-    struct comm comm;              /* first: a kernel's comm is its vp */
+    struct comm comm; /* first: a kernel's comm is its vp */
     struct world *world;
     sim_ps clock;
-    struct stage_time *stages;     /* (nstage + 1) this rank's row in the result */
+    struct stage_time *stages; /* (nstage + 1) this rank's row in the result */
     int stage;
     enum waiting_for waiting_for;
-    struct comm_request *waiting;  /* the request it waits for */
-    struct comm_request *posted, **posted_end;       /* receives without a message, in order */
-    struct message *unexpected, **unexpected_end;    /* messages without a receive, in order */
-    uint32_t sent;                 /* messages so far: the lower half of their numbers */
+    struct comm_request *waiting;                 /* the request it waits for */
+    struct comm_request *posted, **posted_end;    /* receives without a message, in order */
+    struct message *unexpected, **unexpected_end; /* messages without a receive, in order */
+    uint32_t sent;                                /* messages so far: the lower half of their numbers */
     int node, processor;
-    uint64_t digest;               /* of what it received and when */
-    sim_ps server_start;           /* when the kernel server began with it */
-    sim_ps finish;                 /* clock at its end */
+    uint64_t digest;     /* of what it received and when */
+    sim_ps server_start; /* when the kernel server began with it */
+    sim_ps finish;       /* clock at its end */
     struct fiber *fiber;
     struct random noise;
 };
-
-enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA };
-
-struct message {
-    struct net_message net;        /* first */
-    struct message *next;
-    struct vp *from, *to;
-    struct comm_request *send, *receive; /* rendezvous: both ends' requests */
-    int64_t bytes;                 /* of the kernel's data */
-    sim_ps sent;                   /* when the send began; for spans */
-    sim_ps delay;                  /* rendezvous: contention of the hand-shake */
-    int tag;
-    uint16_t size_class;
-    uint16_t kind;
-    char data[];
-};
-
-enum { MESSAGE_CLASSES = 65 };
 
 /* Durations of the message software [ps], from software_spec. */
 struct software_cost {
     sim_ps send_overhead, short_saving, recv_overhead, rendezvous, kernel_time, barrier, shared_latency;
     double send_byte, recv_byte, eager_byte, short_byte, kernel_byte, shared_byte; /* [ps/B] */
-    int64_t short_bytes;           /* largest short message, -1: none is */
+    int64_t short_bytes; /* largest short message, -1: none is */
 };
 
 struct world {
     const struct machine_spec *machine;
     const struct record_spec *record;
     struct run_result *result;
-    struct arena *arena;           /* of the result */
-    struct arena *scratch;         /* of the run */
+    struct arena *arena;   /* of the result */
+    struct arena *scratch; /* of the run */
     struct sim *sim;
     struct net *net;
     struct topology *topology;
     struct placement placement;
     struct fiber_pool *fibers;
-    struct vp *vp;                 /* (nrank) */
+    struct vp *vp; /* (nrank) */
     int nrank, nstage, nfinished;
     struct software_cost software;
     struct node_cost node_cost;
     bool shared_channel, eager_only, noisy;
 
-    int *ready;                    /* (nrank) ring of ranks that can go on */
+    int *ready; /* (nrank) ring of ranks that can go on */
     int ready_head, ready_count;
 
     struct message *free_message[MESSAGE_CLASSES];
 
-    int barrier_count;             /* hardware barrier: ranks inside */
+    int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;
 
-    sim_ps server_free;            /* kernel server */
+    sim_ps server_free; /* kernel server */
     int64_t span_capacity;
 
     const struct world_load *load;
@@ -134,29 +114,6 @@ void vp_arrived(struct message *m);
 /* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
  * stage's wait and contention. No effect when the clock is later. */
 void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended);
-
-/* --- mailbox.c --- */
-
-/* message_take: a message with room for `bytes` bytes, zeroed head; message_give: back to the pool. */
-struct message *message_take(struct world *w, int64_t bytes);
-void message_give(struct world *w, struct message *m);
-
-/* mailbox_post: bind `r` to the first message that matches, or append it to the posted receives. */
-void mailbox_post(struct vp *v, struct comm_request *r);
-
-/* mailbox_deliver: bind `m` to the first posted receive that matches, or keep it as unexpected. */
-void mailbox_deliver(struct vp *v, struct message *m);
-
-/* --- rendezvous.c --- */
-
-/* rendezvous_send: the first step of a message too large to be sent eagerly. */
-void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r);
-
-/* rendezvous_matched: the receiver has bound a request to send. `now`: the later of posting and arrival. */
-void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now);
-
-/* rendezvous_deliver: a clear-to-send or the data have arrived. */
-void rendezvous_deliver(struct message *m);
 
 /* --- server.c --- */
 

@@ -112,7 +112,8 @@ static void vp_irecv(struct comm *c, int src, int tag, void *buffer, int64_t byt
 {
     struct vp *v = (struct vp *)c;
     CHECK(src >= 0 && src < v->world->nrank && tag >= 0 && bytes >= 0);
-    *r = (struct comm_request){.buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .file = c->file, .line = c->line};
+    *r = (struct comm_request){
+        .buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .file = c->file, .line = c->line};
     mailbox_post(v, r);
 }
 
@@ -204,6 +205,12 @@ static void vp_stage(struct comm *c, int stage)
 static int64_t vp_now(struct comm *c) { return ((struct vp *)c)->clock; }
 
 const struct comm_type vp_comm_type = {
-    .name = "vp", .isend = vp_isend, .irecv = vp_irecv, .wait = vp_wait,
-    .barrier = vp_barrier, .work = vp_work, .stage = vp_stage, .now_ps = vp_now,
+    .name = "vp",
+    .isend = vp_isend,
+    .irecv = vp_irecv,
+    .wait = vp_wait,
+    .barrier = vp_barrier,
+    .work = vp_work,
+    .stage = vp_stage,
+    .now_ps = vp_now,
 };

@@ -31,17 +31,27 @@ void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int
         r->span = grown;
         w->span_capacity = capacity;
     }
-    r->span[r->nspan++] = (struct span){.rank = v->comm.rank, .stage = v->stage, .kind = kind, .begin_ps = begin,
-                                        .end_ps = end, .peer = peer, .bytes = bytes, .message = message};
+    r->span[r->nspan++] = (struct span){.rank = v->comm.rank,
+                                        .stage = v->stage,
+                                        .kind = kind,
+                                        .begin_ps = begin,
+                                        .end_ps = end,
+                                        .peer = peer,
+                                        .bytes = bytes,
+                                        .message = message};
 }
 
 void vp_arrived(struct message *m)
 {
     switch ((enum message_kind)m->kind) {
     case MESSAGE_EAGER:
-    case MESSAGE_REQUEST_TO_SEND: mailbox_deliver(m->to, m); break;
+    case MESSAGE_REQUEST_TO_SEND:
+        mailbox_deliver(m->to, m);
+        break;
     case MESSAGE_CLEAR_TO_SEND:
-    case MESSAGE_DATA: rendezvous_deliver(m); break;
+    case MESSAGE_DATA:
+        rendezvous_deliver(m);
+        break;
     }
 }
 
@@ -229,10 +239,20 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
                uint64_t seed, struct arena *a, struct run_result *out, struct err *e)
 {
     struct world w = {
-        .machine = m, .record = record, .result = out, .arena = a, .scratch = arena_create(), .sim = sim_create(),
-        .nrank = load->nrank, .nstage = load->nstage, .load = load, .software = software_cost_make(&m->software),
-        .node_cost = node_cost_make(&m->node), .shared_channel = m->software.shared_bandwidth > 0,
-        .eager_only = all_eager(&m->software, load->largest_message), .noisy = m->noise.compute_cv > 0,
+        .machine = m,
+        .record = record,
+        .result = out,
+        .arena = a,
+        .scratch = arena_create(),
+        .sim = sim_create(),
+        .nrank = load->nrank,
+        .nstage = load->nstage,
+        .load = load,
+        .software = software_cost_make(&m->software),
+        .node_cost = node_cost_make(&m->node),
+        .shared_channel = m->software.shared_bandwidth > 0,
+        .eager_only = all_eager(&m->software, load->largest_message),
+        .noisy = m->noise.compute_cv > 0,
     };
     out->nrank = load->nrank;
     name_stages(out, load->nstage, load->stage_name);

@@ -17,8 +17,8 @@ typedef void world_program(struct comm *c, void *context);
 /* What the virtual processors are to do. */
 struct world_load {
     int nrank;
-    world_program *program;        /* of every rank */
-    void *context;                 /* handed to it; borrowed */
+    world_program *program; /* of every rank */
+    void *context;          /* handed to it; borrowed */
     int nstage;
     const char *const *stage_name; /* (nstage); one more, "end", is added for idling until the makespan */
     int64_t largest_message;       /* bytes; a promise (CHECK), -1: none. When every message is eager, sends of a node

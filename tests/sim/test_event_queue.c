@@ -1,4 +1,4 @@
-/* The event queue against a dumb twin, and the loop's total order. */
+/* test_event_queue.c - The event queue against a dumb twin, and the loop's total order. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>

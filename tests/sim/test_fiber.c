@@ -1,4 +1,4 @@
-/* Fibers keep their place and their stacks apart. */
+/* test_fiber.c - Fibers keep their place and their stacks apart. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-/* Virtual processors: exact times, exact accounts, matching, collectives, deadlock. */
+/* test_world.c - Virtual processors: exact times, exact accounts, matching, collectives, deadlock. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -15,13 +15,20 @@ static const char *const stage_name[] = {"first", "second"};
 static struct machine_spec crossbar(int nodes)
 {
     struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1,
-                                        .processors_per_node = 1};
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1, .processors_per_node = 1};
     m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 100e-9,
-                                      .end_latency = 300e-9, .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6, .recv_overhead = 3e-6, .send_copy = 1e-9,
-                                        .recv_copy = 2e-9, .gap_per_byte = 0, .eager_bytes = -1};
+    m.network = (struct network_spec){.level = LEVEL_LOGGP,
+                                      .link_bandwidth = 1e9,
+                                      .hop_latency = 100e-9,
+                                      .end_latency = 300e-9,
+                                      .virtual_channels = 1};
+    m.software = (struct software_spec){.send_overhead = 2e-6,
+                                        .recv_overhead = 3e-6,
+                                        .send_copy = 1e-9,
+                                        .recv_copy = 2e-9,
+                                        .gap_per_byte = 0,
+                                        .eager_bytes = -1};
     return m;
 }
 
@@ -253,7 +260,8 @@ static void large_message(struct comm *c, void *context)
     assert_memory_equal(in, data, sizeof in);
 }
 
-/* Request and clearance each take one zero-byte trip of 300 ns (hop latency 0), then 1 us of software, then the data. */
+/* Request and clearance each take one zero-byte trip of 300 ns (hop latency 0), then 1 us of software, then the data.
+ */
 static void a_large_message_shakes_hands_first(void **state)
 {
     (void)state;
@@ -355,8 +363,8 @@ static void background_traffic_slows_but_never_breaks(void **state)
 {
     (void)state;
     struct machine_spec m = crossbar(16);
-    m.topology = (struct topology_spec){.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1,
-                                        .processors_per_node = 1};
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1, .processors_per_node = 1};
     m.network.level = LEVEL_LINK;
     struct outcome quiet = go(&m, 16, traffic, NULL);
     m.noise.background_load = 0.5;
