@@ -6,9 +6,10 @@
 #include "base/units.h"
 #include "run/run.h"
 
-static const char doc[] = "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
-                          "memory they will take on this computer.\n\n"
-                          "Example: mimdsim explain scenarios/speedup-t3e.yaml\n";
+static const char doc[] =
+    "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
+    "memory they will take on this computer.\n\n"
+    "Example: mimdsim explain scenarios/speedup-t3e.yaml\n";
 
 struct totals {
     double host_s, host_bytes;
@@ -23,8 +24,8 @@ static void add(struct totals *t, const struct run_estimate *r)
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
     struct totals t = {0};
-    printf("%s\n%d runs\n\n%-10s %-12s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun, "kernel", "formulation", "n",
-           "P", "messages", "MB sent", "Mflop", "host s", "host MB");
+    printf("%s\n%d runs\n\n%-10s %-12s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun, "kernel",
+           "formulation", "n", "P", "messages", "MB sent", "Mflop", "host s", "host MB");
     for (int i = 0; i < p->nrun; i++) {
         const struct run_spec *s = &p->run[i];
         printf("%-10s %-12s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n", s->kernel.name,

@@ -28,7 +28,8 @@ static void print_pairs(const struct common *c, int n, const char *const *name, 
 int cmd_scenarios(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, 0, "", "List the scenarios, each with its question.\n\nExample: mimdsim scenarios\n", 0, 0);
+    common_parse(&c, argc, argv, 0, "", "List the scenarios, each with its question.\n\nExample: mimdsim scenarios\n",
+                 0, 0);
     struct err e;
     err_clear(&e);
     struct arena *a = arena_create();

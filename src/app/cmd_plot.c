@@ -5,9 +5,10 @@
 #include "report/report.h"
 #include "store/store.h"
 
-static const char doc[] = "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv and the script .gp.\n\n"
-                          "Example: mimdsim plot mimdsim.db fig6 --dir figures\n\v"
-                          "Without FIGURE: list the figures there are.";
+static const char doc[] =
+    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv and the script .gp.\n\n"
+    "Example: mimdsim plot mimdsim.db fig6 --dir figures\n\v"
+    "Without FIGURE: list the figures there are.";
 
 static int list_figures(void)
 {

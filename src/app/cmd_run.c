@@ -26,7 +26,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     k->invalid += r->status == RUN_INVALID || r->status == RUN_FAILED;
     k->deadlock += r->status == RUN_DEADLOCK;
     if (r->status != RUN_OK)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank, r->text);
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
+                r->text);
     return store_put(k->store, spec, r, "", k->error);
 }
 

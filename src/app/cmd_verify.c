@@ -17,7 +17,8 @@ static const char doc[] =
 enum { KEY_TOLERANCE = 0x200, KEY_SERIAL, KEY_ALL_RANKS, KEY_BRIEF, KEY_PRECISION, KEY_MARKDOWN, KEY_JSON_OUT };
 
 static const struct argp_option options[] = {
-    {"tolerance", KEY_TOLERANCE, "X[,Y]", 0, "relative tolerance of inverse (X) and forward (Y, default 100 X) dynamics", 0},
+    {"tolerance", KEY_TOLERANCE, "X[,Y]", 0,
+     "relative tolerance of inverse (X) and forward (Y, default 100 X) dynamics", 0},
     {"serial", KEY_SERIAL, NULL, 0, "serial algorithms only", 0},
     {"all-ranks", KEY_ALL_RANKS, NULL, 0, "large cases too on P = 1, 2, 3, n/2, n", 0},
     {"precision", KEY_PRECISION, "double|float|quad", 0, "of the algorithms (default double)", 0},
@@ -41,7 +42,8 @@ static void set_tolerance(struct request *r, const char *arg, struct argp_state 
     char *end;
     double x = strtod(arg, &end), y = 100 * x;
     if (*end == ',') y = strtod(end + 1, &end);
-    if (*end || end == arg || !(x > 0) || !(y > 0)) argp_error(state, "--tolerance: '%s' is not a positive number", arg);
+    if (*end || end == arg || !(x > 0) || !(y > 0))
+        argp_error(state, "--tolerance: '%s' is not a positive number", arg);
     r->options.tolerance_inverse = x;
     r->options.tolerance_forward = y;
 }
@@ -61,17 +63,38 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
     switch (key) {
-    case KEY_TOLERANCE: set_tolerance(r, arg, state); break;
-    case KEY_PRECISION: set_precision(r, arg, state); break;
-    case KEY_SERIAL: r->options.parallel = false; break;
-    case KEY_ALL_RANKS: r->options.all_ranks = true; break;
-    case KEY_BRIEF: r->brief = true; break;
-    case KEY_MARKDOWN: r->markdown = true; break;
-    case KEY_JSON_OUT: r->common.json = true; break;
-    case 'q': r->common.quiet = true; break;
-    case ARGP_KEY_ARG: r->file[r->nfile++] = arg; break;
-    case ARGP_KEY_NO_ARGS: argp_error(state, "a reference file is missing"); break;
-    default: return ARGP_ERR_UNKNOWN;
+    case KEY_TOLERANCE:
+        set_tolerance(r, arg, state);
+        break;
+    case KEY_PRECISION:
+        set_precision(r, arg, state);
+        break;
+    case KEY_SERIAL:
+        r->options.parallel = false;
+        break;
+    case KEY_ALL_RANKS:
+        r->options.all_ranks = true;
+        break;
+    case KEY_BRIEF:
+        r->brief = true;
+        break;
+    case KEY_MARKDOWN:
+        r->markdown = true;
+        break;
+    case KEY_JSON_OUT:
+        r->common.json = true;
+        break;
+    case 'q':
+        r->common.quiet = true;
+        break;
+    case ARGP_KEY_ARG:
+        r->file[r->nfile++] = arg;
+        break;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "a reference file is missing");
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
     }
     return 0;
 }

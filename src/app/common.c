@@ -10,7 +10,8 @@ enum { KEY_JSON = 0x100, KEY_FORCE, KEY_DIR };
 
 static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
-    {"set", 's', "KEY=VALUE", 0, "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; may be repeated", 1},
+    {"set", 's', "KEY=VALUE", 0,
+     "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; may be repeated", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db)", 2},
     {"force", KEY_FORCE, NULL, 0, "run again what is already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
@@ -51,14 +52,30 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     struct parse *p = state->input;
     struct common *c = p->common;
     switch (key) {
-    case 'm': c->machine = arg; break;
-    case 's': add_set(c, arg); break;
-    case 'o': c->database = arg; break;
-    case 'q': c->quiet = true; break;
-    case 'j': set_jobs(c, arg, state); break;
-    case KEY_FORCE: c->force = true; break;
-    case KEY_DIR: c->directory = arg; break;
-    case KEY_JSON: c->json = true; break;
+    case 'm':
+        c->machine = arg;
+        break;
+    case 's':
+        add_set(c, arg);
+        break;
+    case 'o':
+        c->database = arg;
+        break;
+    case 'q':
+        c->quiet = true;
+        break;
+    case 'j':
+        set_jobs(c, arg, state);
+        break;
+    case KEY_FORCE:
+        c->force = true;
+        break;
+    case KEY_DIR:
+        c->directory = arg;
+        break;
+    case KEY_JSON:
+        c->json = true;
+        break;
     case ARGP_KEY_ARG:
         if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
             argp_error(state, "unexpected argument '%s'", arg);
@@ -67,7 +84,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (c->narg < p->least) argp_error(state, "an argument is missing");
         break;
-    default: return ARGP_ERR_UNKNOWN;
+    default:
+        return ARGP_ERR_UNKNOWN;
     }
     return 0;
 }

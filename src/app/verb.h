@@ -11,34 +11,35 @@
 
 struct verb {
     const char *name;
-    const char *title;               /* one line for `mimdsim --help` */
+    const char *title;                 /* one line for `mimdsim --help` */
     int (*run)(int argc, char **argv); /* argv[0] is "mimdsim VERB"; returns the exit status */
 };
 
 /* verb_list: all verbs, ended by a NULL name. */
 extern const struct verb verb_list[];
 
-int cmd_run(int argc, char **argv);
-int cmd_plot(int argc, char **argv);
-int cmd_check(int argc, char **argv);
-int cmd_explain(int argc, char **argv);
-int cmd_machines(int argc, char **argv);
-int cmd_scenarios(int argc, char **argv);
-int cmd_kernels(int argc, char **argv);
-int cmd_query(int argc, char **argv);
-int cmd_verify(int argc, char **argv);
+/* The verbs. Each reads its command line (argv[0] is "mimdsim VERB") and returns the exit status. */
+int cmd_run(int argc, char **argv);       /* run a scenario */
+int cmd_plot(int argc, char **argv);      /* draw figures */
+int cmd_check(int argc, char **argv);     /* validate files */
+int cmd_explain(int argc, char **argv);   /* estimate a scenario */
+int cmd_machines(int argc, char **argv);  /* list, show or compare machines */
+int cmd_scenarios(int argc, char **argv); /* list scenarios */
+int cmd_kernels(int argc, char **argv);   /* list kernels */
+int cmd_query(int argc, char **argv);     /* SQL */
+int cmd_verify(int argc, char **argv);    /* reference vectors */
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {
     const char *machine;
-    const char **set;      /* (nset), owned by the process */
+    const char **set; /* (nset), owned by the process */
     int nset;
     bool json, quiet, force;
     const char *database;  /* -o */
     const char *directory; /* --dir */
     int jobs;              /* 0: as many as processors */
     int narg;
-    const char *arg[64];   /* what is not an option */
+    const char *arg[64]; /* what is not an option */
 };
 
 /* Which of the common options a verb takes. */
