@@ -43,21 +43,22 @@ static sim_ps credit_bound(const struct fabric *f, const struct credit *c, int64
     return later(at, credit_left(c, k1 + ahead) + f->net->credit - k1 * flit);
 }
 
-static void credits_drop(struct fabric *f, struct fifo *q)
+/* forget the packets of which every credit is back */
+static void credits_drop(struct fabric *f, struct fifo *q, sim_ps now)
 {
-    while (q->first) {
+    while (q->first && q->first->tail + f->net->credit <= now) {
         struct credit *c = q->first;
         q->first = c->next;
         credit_return(f, c);
     }
-    q->last = NULL;
+    if (!q->first) q->last = NULL;
 }
 
 /* from when on (>= now) a packet of `flits`, one flit every `flit`, may enter q; SIM_NEVER when that depends on a
  * grant yet to come */
 static sim_ps fifo_room(struct fabric *f, struct fifo *q, int32_t flits, sim_ps flit, sim_ps now)
 {
-    if (q->first && q->home <= now) credits_drop(f, q);
+    credits_drop(f, q, now);
     int32_t spare = f->buffer - flits;
     if (q->front && (int32_t)(q->position - q->front->position) > spare) {
         q->starved = true;
