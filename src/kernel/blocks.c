@@ -9,6 +9,7 @@
 void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
                   const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep)
 {
+    b->rows.used = false;
     b->size = size;
     b->nrow = nrow;
     b->lo = block_first(nrow, nrank, rank);
@@ -140,7 +141,7 @@ void blocks_solve(struct blocks *b, struct work *w)
         blocks_serial_solve(b, false, w);
         return;
     }
-    if (b->rows) {
+    if (b->rows.used) {
         blocks_rows_solve(b, false, w);
         return;
     }
@@ -167,7 +168,7 @@ void blocks_resolve(struct blocks *b, struct work *w)
         blocks_serial_solve(b, true, w);
         return;
     }
-    if (b->rows) {
+    if (b->rows.used) {
         blocks_rows_solve(b, true, w);
         return;
     }

@@ -11,6 +11,18 @@
 #include "kernel/reduction.h"
 #include "linalg/block_tridiag.h"
 
+/* Buffers of a reduction in which all rows take part. What rows send and receive lies one row behind the other. */
+struct blocks_rows {
+    bool used, textbook;
+    struct work *work;
+    real *out_a, *out_b, *in_a, *in_b; /* for and from the rows at -d (a) and +d (b) */
+    int *out_a_at, *out_b_at;          /* (rows + 1) where each own row's part begins */
+    int *in_a_at, *in_b_at;
+    real **L, **U; /* (rows) present couplings */
+    real *spare;   /* textbook: the rows of the next step */
+};
+
+/* The memory carved may be used for something else before blocks_solve: nothing in it is kept until then. */
 struct blocks {
     struct comm *comm;
     const unsigned char *size; /* (nrow of the whole system) orders */
@@ -22,11 +34,11 @@ struct blocks {
     real *message;   /* [S, dD, dr] */
     real *left;      /* (c x m) solution of the row before lo, after blocks_solve */
     bool keep;
-    bool broken;                 /* a local pivot was not positive */
-    struct reduction reduction;  /* of the interface row */
-    struct rows *rows;           /* all rows take part in the reduction: its buffers */
-    struct block_tridiag *whole; /* SOLVER_THOMAS, rank 0: the whole system */
-    real *x, *gathered;          /* and its solution (nrow x 6 m); messages of rows */
+    bool broken;                /* a local pivot was not positive */
+    struct reduction reduction; /* of the interface row */
+    struct blocks_rows rows;    /* all rows take part in the reduction: its buffers */
+    struct block_tridiag whole; /* SOLVER_THOMAS, rank 0: the whole system */
+    real *x, *gathered;         /* and its solution (nrow x 6 m); messages of rows */
 };
 
 /* block_first: first row of rank k of nrank when nrow rows are split evenly, larger blocks first. */

@@ -9,16 +9,6 @@
 #include "kernel/scan.h"
 #include "kernel/tags.h"
 
-struct rows {
-    bool textbook;
-    struct work *work;
-    real *out_a, *out_b, *in_a, *in_b; /* for and from the rows at -d (a) and +d (b) */
-    int *out_a_at, *out_b_at;          /* (rows + 1) where each own row's part begins */
-    int *in_a_at, *in_b_at;
-    real **L, **U; /* (rows) present couplings */
-    real *spare;   /* textbook: the rows of the next step */
-};
-
 /* most: numbers that one row sends at most to one side. */
 static int most(const struct blocks *b)
 {
@@ -37,8 +27,8 @@ static int steps(int n)
 void blocks_rows_carve(struct blocks *b, struct carve *c)
 {
     const int n = b->hi - b->lo, room = n * most(b);
-    struct rows *s = b->rows = CARVE(c, 1, struct rows);
-    struct rows measured, *to = s ? s : &measured;
+    struct blocks_rows *to = &b->rows;
+    to->used = true;
     to->textbook = b->reduction.method == SOLVER_PCR;
     to->out_a = CARVE(c, room, real);
     to->out_b = CARVE(c, to->textbook ? 0 : room, real);
@@ -62,7 +52,7 @@ static int numbers(const struct blocks *b, int from, int to, int d, bool again)
 {
     const int c = order(b, from), other = from + (from - to); /* the row on the other side */
     if (again) return order(b, to) * b->m;
-    if (!b->rows->textbook) return block_update_size(order(b, to), b->m) + order(b, to) * order(b, other);
+    if (!b->rows.textbook) return block_update_size(order(b, to), b->m) + order(b, to) * order(b, other);
     const int nl = order(b, from - d), nu = order(b, from + d);
     return c * (nl > 0 ? nl : c) + c * c + c * (nu > 0 ? nu : c) + c * b->m;
 }
@@ -102,7 +92,7 @@ static void receive_side(struct blocks *b, int d, const real *out, const int *ou
             comm_recv(b->comm, owner, tag, in + from, size * (int64_t)sizeof(real));
         } else {
             memcpy(in + from, out + out_at[i + d - b->lo], (size_t)size * sizeof(real));
-            b->rows->work->bytes += (uint64_t)size * sizeof(real);
+            b->rows.work->bytes += (uint64_t)size * sizeof(real);
         }
         i = to;
     }
@@ -111,7 +101,7 @@ static void receive_side(struct blocks *b, int d, const real *out, const int *ou
 /* transposed_above: U of own rows: the transpose of the next row's L, by message from the next rank for the last. */
 static void transposed_above(struct blocks *b)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     const int k = comm_rank(b->comm), n = b->hi - b->lo;
     if (k > 0)
         comm_send(b->comm, k - 1, TAG_INTERFACE, blocks_row_L(b, b->lo),
@@ -132,7 +122,7 @@ static void transposed_above(struct blocks *b)
 /* eliminate: all own rows towards both sides (again: their right-hand sides only). */
 static void eliminate(struct blocks *b, int d, int slot, bool again, struct work *w)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     const int n = b->hi - b->lo;
     int at_a = 0, at_b = 0;
     for (int i = b->lo; i < b->hi; i++) {
@@ -194,7 +184,7 @@ static void pass_on(struct blocks *b)
 
 static void symmetric(struct blocks *b, bool again, struct work *w)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     int slot = 0;
     for (int d = 1; d < b->nrow; d *= 2, slot++) {
         eliminate(b, d, slot, again, w);
@@ -212,7 +202,7 @@ static void symmetric(struct blocks *b, bool again, struct work *w)
 /* textbook_begin: own rows as [L D U r], one behind the other. */
 static void textbook_begin(struct blocks *b)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     int at = 0;
     for (int i = b->lo; i < b->hi; i++) {
         struct textbook_row row = textbook_row_at(s->spare + at, b->size[i], order(b, i - 1), order(b, i + 1));
@@ -234,7 +224,7 @@ static void textbook_begin(struct blocks *b)
 /* textbook_step: every own row from itself and its two neighbours at distance d, into the spare rows. */
 static void textbook_step(struct blocks *b, int d, struct work *w)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     int at = 0;
     for (int i = b->lo; i < b->hi; i++) {
         const int c = b->size[i];
@@ -267,7 +257,7 @@ static void textbook_step(struct blocks *b, int d, struct work *w)
 
 static void textbook(struct blocks *b, struct work *w)
 {
-    struct rows *s = b->rows;
+    struct blocks_rows *s = &b->rows;
     textbook_begin(b);
     for (int d = 1, slot = 0; d < b->nrow; d *= 2, slot++) {
         work_report(b->comm, w);
@@ -289,9 +279,9 @@ static void textbook(struct blocks *b, struct work *w)
 
 void blocks_rows_solve(struct blocks *b, bool again, struct work *w)
 {
-    b->rows->work = w;
+    b->rows.work = w;
     if (!again) transposed_above(b);
-    if (b->rows->textbook) textbook(b, w);
+    if (b->rows.textbook) textbook(b, w);
     else symmetric(b, again, w);
     pass_on(b);
 }

@@ -13,12 +13,11 @@ void blocks_serial_carve(struct blocks *b, struct carve *c, int rank)
         b->gathered = CARVE(c, rows * (b->d_stride + b->l_stride + b->r_stride), real);
         return;
     }
-    b->whole = CARVE(c, 1, struct block_tridiag);
     real *D = CARVE(c, (size_t)b->nrow * BLOCK_PACKED, real), *L = CARVE(c, (size_t)b->nrow * BLOCK_FULL, real);
     b->x = CARVE(c, (size_t)b->nrow * BLOCK_MAX * b->m, real);
     const int most = b->hi - b->lo + 1; /* the largest block and the row before it */
     b->gathered = CARVE(c, most * (b->d_stride + b->l_stride + b->r_stride), real);
-    if (b->whole) *b->whole = (struct block_tridiag){.nrow = b->nrow, .size = b->size, .D = D, .L = L};
+    b->whole = (struct block_tridiag){.nrow = b->nrow, .size = b->size, .D = D, .L = L};
 }
 
 /* copy_rows: rows from .. to-1 between the packed message and wherever `D`, `L`, `r` point (strides given). Returns
@@ -81,8 +80,8 @@ static struct place own_place(const struct blocks *b)
 static struct place whole_place(const struct blocks *b, int from)
 {
     const int stride = BLOCK_MAX * b->m;
-    return (struct place){b->whole->D + (size_t)from * BLOCK_PACKED,
-                          b->whole->L + (size_t)from * BLOCK_FULL,
+    return (struct place){b->whole.D + (size_t)from * BLOCK_PACKED,
+                          b->whole.L + (size_t)from * BLOCK_FULL,
                           b->x + (size_t)from * stride,
                           BLOCK_PACKED,
                           BLOCK_FULL,
@@ -104,8 +103,8 @@ static void solve_whole(struct blocks *b, bool again, struct work *w)
         const int n = unpack(b, from, end, &to, again, b->gathered);
         w->bytes += (uint64_t)n * sizeof(real);
     }
-    if (!again && block_tridiag_factor(b->whole, w) >= 0) b->broken = true;
-    block_tridiag_solve(b->whole, b->m, b->x, w);
+    if (!again && block_tridiag_factor(&b->whole, w) >= 0) b->broken = true;
+    block_tridiag_solve(&b->whole, b->m, b->x, w);
     if (b->broken)
         for (size_t i = 0; i < (size_t)b->nrow * BLOCK_MAX * (size_t)b->m; i++) b->x[i] = (real)__builtin_nan("");
     work_report(comm, w);

@@ -43,7 +43,7 @@ static void every_solver_and_variant(void **state)
             for (int solver = 0; solver <= SOLVER_THOMAS; solver++)
                 for (int variant = 0; variant < 8; variant++) {
                     struct run_spec s = evaluation_spec("dynamics", n, P);
-                    s.model.joint = JOINT_MIXED;
+                    s.model.joint = variant & 4 ? JOINT_SPHERICAL : JOINT_MIXED;
                     s.model.base = variant & 1 ? BASE_FLOATING : BASE_FIXED;
                     s.model.external_force = 1;
                     s.kernel.solver = solver;
