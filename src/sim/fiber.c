@@ -13,6 +13,7 @@
 #include "base/check.h"
 
 #ifdef SANITIZERS
+#include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -68,6 +69,31 @@ static int mapping_limit(void)
     return limit;
 }
 
+#ifdef SANITIZERS
+static void sanitizer_enter(struct fiber *f)
+{
+    __sanitizer_start_switch_fiber(&f->fake_outside, f->stack, f->pool->stack_bytes);
+}
+static void sanitizer_entered(struct fiber *f)
+{
+    __sanitizer_finish_switch_fiber(f->fake_fiber, &f->outside_stack, &f->outside_size);
+}
+static void sanitizer_leave(struct fiber *f)
+{
+    __sanitizer_start_switch_fiber(f->finished ? NULL : &f->fake_fiber, f->outside_stack, f->outside_size);
+}
+static void sanitizer_left(struct fiber *f) { __sanitizer_finish_switch_fiber(f->fake_outside, NULL, NULL); }
+
+/* A mapping at the address of an earlier pool must not inherit what was poisoned there. */
+static void sanitizer_fresh(void *memory, size_t bytes) { __asan_unpoison_memory_region(memory, bytes); }
+#else
+static inline void sanitizer_enter(struct fiber *f) { (void)f; }
+static inline void sanitizer_entered(struct fiber *f) { (void)f; }
+static inline void sanitizer_leave(struct fiber *f) { (void)f; }
+static inline void sanitizer_left(struct fiber *f) { (void)f; }
+static inline void sanitizer_fresh(void *memory, size_t bytes) { (void)memory, (void)bytes; }
+#endif
+
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 {
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
@@ -79,6 +105,7 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
                 stride * (size_t)n >> 20, n, strerror(errno));
         return NULL;
     }
+    sanitizer_fresh(base, stride * (size_t)n);
     madvise(base, stride * (size_t)n, MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
     struct fiber_pool *p = calloc(1, sizeof *p);
     CHECK(p);
@@ -103,27 +130,6 @@ void fiber_pool_destroy(struct fiber_pool *p)
     free(p->fiber);
     free(p);
 }
-
-#ifdef SANITIZERS
-static void sanitizer_enter(struct fiber *f)
-{
-    __sanitizer_start_switch_fiber(&f->fake_outside, f->stack, f->pool->stack_bytes);
-}
-static void sanitizer_entered(struct fiber *f)
-{
-    __sanitizer_finish_switch_fiber(f->fake_fiber, &f->outside_stack, &f->outside_size);
-}
-static void sanitizer_leave(struct fiber *f)
-{
-    __sanitizer_start_switch_fiber(f->finished ? NULL : &f->fake_fiber, f->outside_stack, f->outside_size);
-}
-static void sanitizer_left(struct fiber *f) { __sanitizer_finish_switch_fiber(f->fake_outside, NULL, NULL); }
-#else
-static inline void sanitizer_enter(struct fiber *f) { (void)f; }
-static inline void sanitizer_entered(struct fiber *f) { (void)f; }
-static inline void sanitizer_leave(struct fiber *f) { (void)f; }
-static inline void sanitizer_left(struct fiber *f) { (void)f; }
-#endif
 
 #ifdef HAVE_FCONTEXT
 static void entry(struct transfer t)
