@@ -7,7 +7,7 @@
 
 static const char doc[] = "List the machines; with NAME, show one with the origin of every value.\n\n"
                           "Example: mimdsim machines t3e-300\n"
-                          "         mimdsim machines t3e-300 t3e-300-mpt     what differs\n";
+                          "         mimdsim machines --compare t3e-300 t3e-300-mpt\n";
 
 struct shown {
     struct machine_spec spec;
@@ -144,7 +144,13 @@ static int show(const struct common *c, struct arena *a)
 int cmd_machines(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN, "[NAME [OTHER]]", doc, 0, 2);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE, "[NAME]\n--compare NAME OTHER", doc, 0, 2);
+    if (c.compare && c.narg != 2) {
+        struct err e;
+        err_clear(&e);
+        err_set(&e, ERR_USAGE, "--compare wants two machines, not %d", c.narg);
+        return common_fail(&c, &e);
+    }
     struct arena *a = arena_create();
     int status = c.narg ? show(&c, a) : list_machines(&c, a);
     arena_destroy(a);

@@ -6,7 +6,7 @@
 #include "base/check.h"
 #include "base/json.h"
 
-enum { KEY_JSON = 0x100, KEY_FORCE, KEY_DIR };
+enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR };
 
 static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
@@ -16,6 +16,9 @@ static const struct argp_option option_table[] = {
     {"force", KEY_FORCE, NULL, 0, "run again what is already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
     {"jobs", 'j', "N", 0, "worker processes (default: one a processor)", 4},
+    {"level", KEY_LEVEL, "LEVEL", 0, "only this level: loggp, link, packet, flit or auto", 6},
+    {"brief", KEY_BRIEF, NULL, 0, "statistics only", 6},
+    {"compare", KEY_COMPARE, NULL, 0, "show what differs between two", 7},
     {"json", KEY_JSON, NULL, 0, "answer with one JSON document on standard output", 5},
     {"quiet", 'q', NULL, 0, "no progress and no remarks on standard error", 5},
     {0},
@@ -23,7 +26,7 @@ static const struct argp_option option_table[] = {
 
 static unsigned group_of(int group)
 {
-    static const unsigned takes[] = {0, TAKES_PLAN, TAKES_STORE, TAKES_DIR, TAKES_JOBS, 0};
+    static const unsigned takes[] = {0, TAKES_PLAN, TAKES_STORE, TAKES_DIR, TAKES_JOBS, 0, TAKES_LEVEL, TAKES_COMPARE};
     return takes[group];
 }
 
@@ -72,6 +75,15 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case KEY_DIR:
         c->directory = arg;
+        break;
+    case KEY_LEVEL:
+        c->level = arg;
+        break;
+    case KEY_BRIEF:
+        c->brief = true;
+        break;
+    case KEY_COMPARE:
+        c->compare = true;
         break;
     case KEY_JSON:
         c->json = true;

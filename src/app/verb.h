@@ -26,7 +26,8 @@ int cmd_explain(int argc, char **argv);   /* estimate a scenario */
 int cmd_machines(int argc, char **argv);  /* list, show or compare machines */
 int cmd_scenarios(int argc, char **argv); /* list scenarios */
 int cmd_kernels(int argc, char **argv);   /* list kernels */
-int cmd_query(int argc, char **argv);     /* SQL */
+int cmd_query(int argc, char **argv);
+int cmd_netcheck(int argc, char **argv);     /* SQL */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
@@ -37,13 +38,15 @@ struct common {
     bool json, quiet, force;
     const char *database;  /* -o */
     const char *directory; /* --dir */
+    const char *level;     /* --level, NULL: all */
+    bool brief, compare;
     int jobs;              /* 0: as many as processors */
     int narg;
     const char *arg[64]; /* what is not an option */
 };
 
 /* Which of the common options a verb takes. */
-enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8 };
+enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEVEL = 16, TAKES_COMPARE = 32 };
 
 /* common_parse: read the command line of a verb.
  *

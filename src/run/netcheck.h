@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "base/err.h"
+#include "base/json.h"
 #include "spec/machine_spec.h"
 
 enum { NETCHECK_LEVELS = LEVEL_AUTO + 1 };
@@ -72,6 +73,9 @@ const char *netcheck_level_name(enum network_level level);
 /* netcheck_print: a table of cases (unless brief) and of totals per group and level; netcheck_json: the same. */
 void netcheck_print(const struct netcheck *n, bool brief, FILE *out);
 void netcheck_json(const struct netcheck *n, FILE *out);
+
+/* netcheck_json_object: the same as the next value of a larger document. */
+void netcheck_json_object(const struct netcheck *n, struct json *j);
 
 /* netcheck_file: netcheck_run and print or JSON on `out`: the verb `netcheck FILE [--level L]`. level NULL: all. */
 bool netcheck_file(const char *path, const enum network_level *level, bool json, bool brief, bool quiet, FILE *out,

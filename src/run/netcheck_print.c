@@ -197,21 +197,26 @@ static void json_total(const struct netcheck *n, const char *group, struct json 
     }
 }
 
+void netcheck_json_object(const struct netcheck *n, struct json *j)
+{
+    json_object(j);
+    json_key(j, "file");
+    json_text(j, n->path);
+    json_key(j, "totals");
+    json_array(j);
+    for (int i = 0; i < n->nrow; i++)
+        if (opens_group(n, i)) json_total(n, n->row[i].group, j);
+    json_total(n, NULL, j);
+    json_end(j);
+    json_key(j, "cases");
+    json_rows(n, j);
+    json_end(j);
+}
+
 void netcheck_json(const struct netcheck *n, FILE *out)
 {
     struct json j = json_make(out);
-    json_object(&j);
-    json_key(&j, "file");
-    json_text(&j, n->path);
-    json_key(&j, "totals");
-    json_array(&j);
-    for (int i = 0; i < n->nrow; i++)
-        if (opens_group(n, i)) json_total(n, n->row[i].group, &j);
-    json_total(n, NULL, &j);
-    json_end(&j);
-    json_key(&j, "cases");
-    json_rows(n, &j);
-    json_end(&j);
+    netcheck_json_object(n, &j);
     json_finish(&j);
 }
 
