@@ -186,7 +186,7 @@ static void correction(struct cfa_run *r, const real *q, const real *u, const re
     arena_release(d->arena, mark);
 }
 
-/* Outer refinement while corrections shrink to half; one that does not is left out. */
+/* Outer refinement while corrections shrink; one that does not is left out. */
 static void refine_outer(struct cfa_run *r, const real *q, const real *u, const real *tau,
                          const struct cfa_options *options, real *ud, real *lambda, struct cfa_report *report)
 {
@@ -197,7 +197,7 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
     for (int step = 0; step < options->outer; step++) {
         correction(r, q, u, tau, options->inner, ud, lambda, more);
         double size = relative_size(d->nu, more, ud);
-        if (!(size < before / 2)) {
+        if (!(size < before)) {
             if (step == 0) report->correction = size;
             break;
         }

@@ -2,7 +2,7 @@
 #include "mech/dynamics.h"
 #include "mech/refine.h"
 
-enum { ROBUST_OUTER = 8 };
+enum { ROBUST_OUTER = 12 };
 
 double relative_size(int n, const real *x, const real *y)
 {
@@ -15,7 +15,7 @@ double relative_size(int n, const real *x, const real *y)
     return b > 0 ? a / b : a > 0 ? 1 : 0;
 }
 
-/* ud += M^-1 (tau - RNEA(ud)) by articulated bodies, while corrections shrink to half. */
+/* ud += M^-1 (tau - RNEA(ud)) by articulated bodies, while corrections shrink. */
 static void refine(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
                    struct cfa_report *report, struct work *w)
 {
@@ -29,7 +29,7 @@ static void refine(struct dynamics *d, const real *q, const real *u, const real 
         bool good = aba_response(d, rest, more, w);
         d->load = given;
         double size = relative_size(d->nu, more, ud);
-        if (!good || !(size < before / 2)) break;
+        if (!good || !(size < before)) break;
         for (int k = 0; k < d->nu; k++) ud[k] += more[k];
         report->correction = before = size;
         report->outer_done = step + 1;
