@@ -99,16 +99,19 @@ static void collectives(void **state)
         const struct netcheck_row *row = &n.row[i];
         const struct netcheck_answer *x = &row->answer[LEVEL_PACKET];
         double error = x->error < 0 ? -x->error : x->error;
-        assert_true(x->ran && !x->deadlock);
+        if (!x->ran) { /* longer than the buffers, and not cut into packets */
+            assert_non_null(strstr(x->why, "do not fit"));
+            continue;
+        }
+        assert_false(x->deadlock);
         if (strstr(row->group, "torus")) {
             torus++;
             sum += error;
             if (error > worst) worst = error;
-        } else if (strstr(row->group, "hcube")) { /* messages fit the buffers */
+        } else {
             single++;
             assert_true(error <= 1e-9); /* required: 0.03 */
-        } else {
-            assert_true(error <= 0.15);
+            assert_true(x->differing == 0);
         }
     }
     assert_true(torus >= 20 && single >= 10);
