@@ -38,8 +38,6 @@ static bool accepts_inverse(const struct run_spec *spec, const struct model *mod
                        model->nbody);
     if (branches(model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
-    if (branches(model) && !spec->kernel.composites_incoming)
-        return err_set(e, ERR_CONFIG, "outgoing composites exist for open chains only");
     return true;
 }
 

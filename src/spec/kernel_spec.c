@@ -75,6 +75,19 @@ static const char *idle_without_message(const struct run_spec *r)
     return strcmp(r->kernel.name, "barrier") == 0 ? "a barrier has no size" : NULL;
 }
 
+static const char *idle_unless_open_chain(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    switch (r->model.generator) {
+    case MODEL_SERIAL_CHAIN:
+    case MODEL_POLYMER:
+    case MODEL_URDF:
+    case MODEL_VECTOR: return NULL;
+    default: return "trees and closed chains always take incoming composites";
+    }
+}
+
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 32, .fallback = "dynamics",
      .doc = "the program; see `mimdsim kernels`"},
@@ -91,7 +104,7 @@ static const struct field fields[] = {
     {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
      .idle = idle_without_model, .doc = "bodies over ranks: equal counts, or equal work"},
     {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
-     .idle = idle_without_model,
+     .idle = idle_unless_open_chain,
      .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
     {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
      .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},

@@ -21,7 +21,8 @@ struct kernel_spec {
     enum operators operators;    /* dense: general 6x6 operators as the paper's code, structured: (r, p) pairs */
     enum precision precision;
     enum partition_rule partition;
-    bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2 */
+    bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2; trees
+                                    and closed chains always take incoming ones */
     int hybrid_levels;           /* cr-pcr: levels of CR before PCR */
     int inner_refinements;       /* residual corrections with stored factors */
     int outer_refinements;       /* corrections through inverse dynamics */
