@@ -96,7 +96,7 @@ struct fabric {
     struct net *net;
     struct resource *resource;    /* (nresource) */
     sim_action *look;             /* what an event of a resource does: subject the fabric, argument its number */
-    sim_action *occupied;         /* resource `argument` begins to serve somebody else's traffic, debt[argument] of it */
+    sim_action *occupied;         /* resource `argument` begins to serve others, for debt[argument] */
     sim_ps *debt;                 /* (nresource) NULL until used */
     bool cuts;                    /* messages larger than a buffer travel in pieces of its size */
     struct source *source;        /* (nnode) */

@@ -249,7 +249,8 @@ static int64_t shared_replay(struct sample *s, enum network_level level, uint64_
     if (!h.net) fail_msg("%s", e.text);
     h.nlink = s->topology->nlink;
     h.busy = 1 + (sim_ps)random_below(&h.random, 60000);
-    h.gap = (1 + 4 * h.busy / (h.nlink + 1)) * (1 + (sim_ps)random_below(&h.random, 20)); /* a fourth or less of its time */
+    h.gap =
+        (1 + 4 * h.busy / (h.nlink + 1)) * (1 + (sim_ps)random_below(&h.random, 20)); /* a fourth or less of its time */
     for (int i = 0; i < s->q.nmessage; i++) {
         m[i] = (struct net_message){.id = i, .src = s->q.src[i], .dst = s->q.dst[i], .bytes = s->q.bytes[i],
                                     .ready = s->q.time[i]};

@@ -222,6 +222,31 @@ static void a_ring_without_classes(void **state)
     arena_destroy(b.arena);
 }
 
+/* A message of 40 flits on buffers of 16 is 16 + 16 + 8, back to back: alone as fast as in one piece, and the message
+ * behind it on the same way waits for its last flit. */
+static void long_messages_travel_in_pieces(void **state)
+{
+    (void)state;
+    int src[2] = {0, 0}, dst[2] = {5, 3};
+    int64_t bytes[2] = {640, 64};
+    sim_ps time[2] = {0}, arrival[2], uncontended[2];
+    struct traffic q = {.nmessage = 2, .src = src, .dst = dst, .bytes = bytes, .time = time};
+    struct traffic_result r = {.arrival = arrival, .uncontended = uncontended};
+    struct bench b;
+    struct err e;
+    err_clear(&e);
+    bench_open(&b, "mesh1x8", 1, 16);
+    assert_true(traffic_run(&q, &b.machine, b.topology, b.arena, true, &r, &e));
+    assert_int_equal(arrival[0], (6 * 3 + 2 + 39) * 1000);
+    assert_int_equal(arrival[1], (40 + 4 * 3 + 2 + 3) * 1000);
+    assert_int_equal(uncontended[0], arrival[0]);
+    assert_int_equal(uncontended[1], arrival[1]);
+    assert_int_equal(r.link[0].messages, 2);
+    assert_int_equal(r.link[0].busy_ps, 44000);
+    assert_int_equal(r.link[0].queue_ps, 40000);
+    arena_destroy(b.arena);
+}
+
 /* Case B, the second message 10 B short of 18 flits: what each resource did, by hand. */
 static void loads_by_hand(void **state)
 {
@@ -261,6 +286,7 @@ int main(void)
         cmocka_unit_test(steps_of_several_packets_lie_in_the_band),
         cmocka_unit_test(buffers_too_small_are_refused),
         cmocka_unit_test(a_ring_without_classes),
+        cmocka_unit_test(long_messages_travel_in_pieces),
         cmocka_unit_test(loads_by_hand),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
