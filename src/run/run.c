@@ -55,16 +55,11 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
     return kernel->accepts(spec, job->model, e) && kernel->prepare(job, a, e);
 }
 
+/* Taken one by one: all of it will be touched, so the arena may use large pages. */
 static char **make_workspaces(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *a)
 {
     char **w = TAKE(a, job->nrank, char *);
-    size_t total = 0;
-    for (int i = 0; i < job->nrank; i++) total += (kernel->workspace_bytes(job, i) + 63) / 64 * 64;
-    char *next = arena_take(a, total ? total : 64);
-    for (int i = 0; i < job->nrank; i++) {
-        w[i] = next;
-        next += (kernel->workspace_bytes(job, i) + 63) / 64 * 64;
-    }
+    for (int i = 0; i < job->nrank; i++) w[i] = arena_take(a, kernel->workspace_bytes(job, i));
     return w;
 }
 
