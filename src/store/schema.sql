@@ -356,6 +356,22 @@ FROM run r JOIN stage s ON s.run_id = r.id
 WHERE r.status = 'ok'
 GROUP BY r.id;
 
+-- Repetitions of one configuration (noise, background traffic): mean, spread, and the half-width of the 95 % confidence
+-- interval of the mean by Student's t.
+CREATE VIEW v_repetition AS
+WITH spread AS (
+    SELECT min(id) AS run_id, config_hash, scenario, machine, level, kernel, formulation, n, P, count(*) AS repetitions,
+           avg(makespan_ps) AS mean_ps, min(makespan_ps) AS min_ps, max(makespan_ps) AS max_ps,
+           CASE WHEN count(*) > 1
+                THEN sqrt(max(0.0, avg(1.0 * makespan_ps * makespan_ps) - avg(makespan_ps) * avg(makespan_ps))
+                          * count(*) / (count(*) - 1.0)) END AS deviation_ps
+    FROM run WHERE status = 'ok' GROUP BY config_hash)
+SELECT *, deviation_ps / sqrt(repetitions)
+           * CASE repetitions WHEN 2 THEN 12.706 WHEN 3 THEN 4.303 WHEN 4 THEN 3.182 WHEN 5 THEN 2.776 WHEN 6 THEN 2.571
+                              WHEN 7 THEN 2.447 WHEN 8 THEN 2.365 WHEN 9 THEN 2.306 WHEN 10 THEN 2.262
+                              ELSE 1.96 + 2.5 / (repetitions - 1) END AS confidence95_ps
+FROM spread;
+
 CREATE VIEW v_setting AS
 SELECT rs.run_id, s.key, s.value FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
 
