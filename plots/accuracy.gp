@@ -10,7 +10,7 @@ do for [i=1:panels*most] { method[i] = "" }
 stats data using (p = int(column("panel")), ladder[p] = strcol("ladder"), \
     quantity[p] = strcol("quantity")." against ".strcol("reference").", ".strcol("at"), \
     method[(p - 1)*most + int(column("series"))] = strcol("method"), \
-    failed[p] = strcol("status") eq "failed" ? failed[p]."  ".strcol("method")." ".strcol("rung") : failed[p], \
+    failed[p] = strcol("failed"), \
     e = column("relative_error"), least[p] = e > 0 && e < least[p] ? e : least[p], top[p] = e > top[p] ? e : top[p], \
     headline = "Error against run time, scenario ".strcol("scenario"), 0) nooutput
 subline = "each point a rung, each curve a method"
@@ -40,11 +40,11 @@ do for [format in formats] {
             set format y (side == 1 ? "10^{%T}" : "")
             if (side == 1) {
                 set label 1 ladder[p].": ".quantity[p] at graph 0,1.08 left noenhanced
-                set label 2 (failed[p] eq "" ? "" : "failed:".failed[p]) at screen 0.10,(1.0 - (60.0 + row*p - 8)/high) left noenhanced font tiny textcolor rgb "#d55e00"
+                set label 2 (failed[p] eq "" ? "" : "failed (rungs): ".failed[p]) at screen 0.10,(1.0 - (60.0 + row*p - 8)/high) left noenhanced font tiny textcolor rgb "#d55e00"
                 unset key
             } else {
                 unset label 1; unset label 2
-                set key at screen 0.755,(1.0 - (60.0 + row*(p - 1) + 30)/high) left top vertical maxrows 12 samplen 2.5 font tiny
+                set key at screen 0.755,(1.0 - (60.0 + row*(p - 1) + 30)/high) left top vertical maxrows 21 samplen 2.5 font tiny
             }
             plot for [k=1:most] data using (column(word(costs, side))):(of(p, k, shown(column("shown_error")))) \
                 with linespoints linewidth 1.8 dashtype dash[(k - 1) % 8 + 1] pointtype point[(k - 1) % 8 + 1] pointsize 0.9 \

@@ -29,6 +29,7 @@ int cmd_kernels(int argc, char **argv);   /* list kernels */
 int cmd_query(int argc, char **argv);
 int cmd_netcheck(int argc, char **argv);     /* SQL */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
+int cmd_accuracy(int argc, char **argv);  /* error against run time */
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {

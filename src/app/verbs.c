@@ -11,6 +11,7 @@ const struct verb verb_list[] = {
     {"kernels", "list kernels", cmd_kernels},
     {"verify", "hold every algorithm against reference vectors", cmd_verify},
     {"netcheck", "hold the network levels against reference answers", cmd_netcheck},
+    {"accuracy", "error against run time: network, arithmetic, integration", cmd_accuracy},
     {"query", "run SQL on a database", cmd_query},
     {0},
 };

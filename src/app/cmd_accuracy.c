@@ -1,0 +1,102 @@
+/* cmd_accuracy.c - mimdsim accuracy: error against run time, for each ladder of a scenario. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/verb.h"
+#include "report/report.h"
+#include "run/accuracy.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that take seconds: levels of the network,\n"
+    "precisions and algorithms, steppers and step sizes. Rows go to table `ladder` of the database, a work-precision\n"
+    "diagram beside it; failed methods are listed. Ends with the cheapest rung of each ladder.\n\n"
+    "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n";
+
+/* Take "--within X" or "--within=X" out of the arguments; X is a number or a percentage. */
+static bool take_within(int *argc, char **argv, double *within, struct err *e)
+{
+    for (int i = 1; i < *argc; i++) {
+        bool joined = strncmp(argv[i], "--within=", 9) == 0;
+        if (!joined && strcmp(argv[i], "--within") != 0) continue;
+        const char *text = joined ? argv[i] + 9 : i + 1 < *argc ? argv[i + 1] : "";
+        char *end;
+        *within = strtod(text, &end);
+        if (strcmp(end, "%") == 0 && end != text) *within /= 100, end++;
+        if (end == text || *end || !(*within > 0) || !isfinite(*within))
+            return err_set(e, ERR_USAGE, "--within: '%s' is not a positive number such as 2%% or 1e-6", text);
+        int gone = joined ? 1 : 2;
+        for (int k = i; k + gone <= *argc; k++) argv[k] = argv[k + gone];
+        *argc -= gone;
+        i--;
+    }
+    return true;
+}
+
+static bool store_rung(struct store *s, const struct accuracy_report *r, int i, struct err *e)
+{
+    static const char *const name[] = {"scenario", "ladder", "at", "method", "rung", "ordinal", "quantity", "reference",
+                                       "relative_error", "host_s", "machine_ps", "status", "text"};
+    const struct accuracy_rung *x = &r->rung[i];
+    const struct store_value value[] = {
+        store_text(r->scenario), store_text(x->ladder), store_text(x->at), store_text(x->method), store_text(x->rung),
+        store_int(i), store_text(x->quantity), store_text(x->reference), store_real(x->error), store_real(x->host_s),
+        x->machine_ps >= 0 ? store_int(x->machine_ps) : store_null(), store_text(rung_status_word(x->status)),
+        store_text(x->text)};
+    return store_insert(s, "ladder", 13, name, value, e);
+}
+
+static bool store_choice(struct store *s, const char *scenario, const struct accuracy_choice *c, struct err *e)
+{
+    static const char *const name[] = {"scenario", "ladder", "at", "quantity", "tolerance", "method", "rung",
+                                       "relative_error", "cost_ratio"};
+    const struct store_value value[] = {
+        store_text(scenario), store_text(c->ladder), store_text(c->at), store_text(c->quantity),
+        store_real(c->tolerance), store_text(c->rung ? c->rung->method : NULL),
+        store_text(c->rung ? c->rung->rung : NULL), store_real(c->rung ? c->rung->error : NAN),
+        store_real(c->rung ? c->cost_ratio : NAN)};
+    return store_insert(s, "ladder_choice", 9, name, value, e);
+}
+
+static bool store_all(struct store *s, const struct accuracy_report *r, struct err *e)
+{
+    if (!store_begin(s, e)) return false;
+    bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e);
+    for (int i = 0; ok && i < r->nrung; i++) ok = store_rung(s, r, i, e);
+    for (int i = 0; ok && i < r->nchoice; i++) ok = store_choice(s, r->scenario, &r->choice[i], e);
+    if (ok) return store_commit(s, e);
+    store_rollback(s);
+    return false;
+}
+
+static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct err *e)
+{
+    struct store *s = store_open(c->database, STORE_WRITE, e);
+    if (!s) return false;
+    bool ok = store_all(s, r, e) &&
+              report_figure(s, plan_data_dir(), "accuracy", c->directory ? c->directory : "figures", e);
+    store_close(s);
+    return ok;
+}
+
+int cmd_accuracy(int argc, char **argv)
+{
+    struct common c;
+    struct err e;
+    err_clear(&e);
+    double within = 0;
+    bool ok = take_within(&argc, argv, &within, &e);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR, "SCENARIO", doc, ok ? 1 : 0, ok ? 1 : 64);
+    struct plan p = {0};
+    struct plan_options o = common_plan(&c);
+    struct arena *a = arena_create();
+    struct accuracy_report r;
+    ok = ok && plan_read(&p, c.arg[0], &o, &e) && accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
+    if (ok && c.json) accuracy_print_json(stdout, &r);
+    else if (ok) accuracy_print(stdout, &r);
+    ok = ok && keep_and_draw(&c, &r, &e);
+    arena_destroy(a);
+    plan_free(&p);
+    return ok ? 0 : common_fail(&c, &e);
+}

@@ -1,0 +1,89 @@
+/* trial.c - a kernel, its job and its world, once; see trial.h. */
+#include "run/trial.h"
+
+#include <math.h>
+
+#include "base/text.h"
+#include "kernel/kernel.h"
+#include "vp/world.h"
+
+struct launch {
+    const struct kernel_type *kernel;
+    const struct kernel_job *job;
+    char **workspace; /* (nrank) */
+};
+
+static void program(struct comm *c, void *context)
+{
+    struct launch *l = context;
+    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
+}
+
+double trial_error(const double *x, const double *reference, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fabs(reference[i]));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
+                     const struct model *m, const struct state *s, struct arena *a, struct err *e)
+{
+    *job = (struct kernel_job){.spec = spec, .model = m, .state = s, .nrank = spec->nrank};
+    job->residual = TAKE(a, spec->nrank, double);
+    job->condition = TAKE(a, spec->nrank, double);
+    job->loop_rank = TAKE(a, 1, int);
+    if (!kernel->needs_model) job->measured = TAKE(a, spec->nrank, double);
+    if (m && kernel->does_inverse) job->tau = TAKE(a, m->nu + 1, double);
+    if (m && kernel->does_forward) job->qdd = TAKE(a, m->nu + 1, double);
+    if (m && m->nrow > 0) job->lambda = TAKE(a, m->nrow, double);
+    return kernel->accepts(spec, m, e) && kernel->prepare(job, a, e);
+}
+
+/* A number that is none must not hide behind the others. */
+static double worst(const double *x, int n)
+{
+    double largest = 0;
+    for (int i = 0; i < n; i++)
+        if (!(x[i] <= largest)) largest = x[i];
+    return largest;
+}
+
+static void answer(struct trial *t, const struct kernel_job *job, const struct run_result *r)
+{
+    t->answered = r->status == RUN_OK;
+    text_copy(t->text, sizeof t->text, r->text);
+    t->tau = job->tau;
+    t->qdd = job->qdd;
+    t->residual = worst(job->residual, job->nrank);
+    t->condition = worst(job->condition, job->nrank);
+    t->makespan_ps = r->makespan_ps;
+    t->finish_ps = r->finish_ps;
+    t->host_s = r->host_s;
+}
+
+struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a)
+{
+    struct trial t = {.residual = NAN};
+    const struct kernel_type *kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
+    struct run_result *result = TAKE(a, 1, struct run_result);
+    struct kernel_job job;
+    struct err e;
+    err_clear(&e);
+    if (!kernel) err_set(&e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
+    bool good = kernel && job_make(&job, kernel, spec, m, s, a, &e);
+    if (good) {
+        struct launch l = {kernel, &job, TAKE(a, spec->nrank, char *)};
+        for (int i = 0; i < spec->nrank; i++) l.workspace[i] = arena_take(a, kernel->workspace_bytes(&job, i) + 64);
+        struct world_load load = {spec->nrank, program, &l, kernel->nstage, kernel->stage_name,
+                                  kernel->largest_message ? kernel->largest_message(&job) : -1};
+        good = world_run(&spec->machine, &load, &spec->record, spec->seed, a, result, &e);
+    }
+    if (good) answer(&t, &job, result);
+    else text_copy(t.text, sizeof t.text, e.text);
+    return t;
+}

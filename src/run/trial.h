@@ -1,0 +1,34 @@
+/* trial.h - one evaluation of a parallel kernel on virtual processors, without references: for ladders and suites.
+ *
+ * A trial never ends the program that makes it: a kernel that refuses the scene or a machine that cannot run the level
+ * is an outcome with its reason. */
+#ifndef RUN_TRIAL_H
+#define RUN_TRIAL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "measure/run_result.h"
+#include "mech/model.h"
+#include "spec/run_spec.h"
+
+struct trial {
+    bool answered;      /* the program ran to its end; the numbers may still be no numbers */
+    char text[160];     /* why not */
+    double *tau, *qdd;  /* (nu) NULL when the task has none */
+    double residual;    /* largest over the ranks, relative; NaN when a rank's is */
+    double condition;   /* largest over the ranks, a lower bound; 0: not known */
+    int64_t makespan_ps;
+    int64_t *finish_ps; /* (nrank) */
+    double host_s;      /* wall time of the simulation */
+};
+
+/* trial_run: run spec->kernel on spec->machine with spec->nrank processors for model m (NULL: kernels without a model)
+ * in state s. Memory from a. */
+struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a);
+
+/* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no numbers, 0 for equal. */
+double trial_error(const double *x, const double *reference, int n);
+
+#endif
