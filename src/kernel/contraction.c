@@ -2,10 +2,12 @@
  * (contraction.h). */
 #include "kernel/contraction.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "kernel/chain.h"
 #include "kernel/compound.h"
+#include "kernel/extremes.h"
 #include "kernel/tags.h"
 
 enum { TAG_ANCHOR = TAG_TREE + 2 };
@@ -135,14 +137,6 @@ static void share_anchors(struct contraction *k, int m)
         comm_recv(t->comm, plan->parent[t->piece], TAG_ANCHOR, k->anchor_acceleration, bytes);
 }
 
-/* largest: the larger of `so_far` and the elements of x (n) by magnitude. */
-static real largest(real so_far, int n, const real *x)
-{
-    for (int i = 0; i < n; i++)
-        if (!(real_fabs(x[i]) <= so_far)) so_far = real_fabs(x[i]);
-    return so_far;
-}
-
 /* joint_accelerations: ud = H^T (a - X^T a_parent - bias - base) of columns 0 .. m-1; notes what the constraints of
  * column 0 leave over, as a bias for the next refinement. */
 static void joint_accelerations(struct contraction *k, int m, const real *bias, const real *base)
@@ -173,8 +167,8 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
             t->work.flop += (uint64_t)joint_cost_of(tree_body(t, l)->joint)->h_transposed;
             if (j > 0) continue;
             subspace_w_transposed(s, z, rest);
-            residual = largest(residual, 6 - d, rest);
-            scale = largest(scale, 6, a);
+            residual = largest_size(residual, 6 - d, rest);
+            scale = largest_size(scale, 6, a);
             real *left_over = k->residual_bias + 6 * l;
             six_zero(left_over);
             for (int i = 0; i < 6 - d; i++) rest[i] = -rest[i];
@@ -203,7 +197,8 @@ static void refine_inside(struct contraction *k, const real *bias, const real *b
     k->given = given;
 }
 
-/* close_loops: lambda from the accelerations of the loops' bodies; the answer's columns put together. */
+/* close_loops: lambda from the accelerations of the loops' bodies; all columns put together in `active`, which has
+ * been used. */
 static void close_loops(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -220,11 +215,19 @@ static void close_loops(struct contraction *k)
     for (int i = 0; i < t->nu; i++) {
         real sum = k->ud[i];
         for (int j = 1; j < k->room; j++) sum += k->closure.lambda[j - 1] * k->ud[j * t->nu + i];
-        k->answer[i] += sum;
+        k->active[i] = sum;
     }
-    for (int j = 1; j < k->room; j++) k->lambda[j - 1] += k->closure.lambda[j - 1];
     t->work.flop += (uint64_t)(2 * (k->room - 1) * t->nu);
     tree_report(t);
+}
+
+/* add_up: the answer and the loop forces += what the last solution gave. */
+static void add_up(struct contraction *k)
+{
+    struct tree *t = &k->tree;
+    for (int i = 0; i < t->nu; i++) k->answer[i] += k->active[i];
+    for (int j = 1; j < k->room; j++) k->lambda[j - 1] += k->closure.lambda[j - 1];
+    t->work.flop += (uint64_t)(t->nu + k->room - 1);
 }
 
 /* first_solution: u' for all columns. */
@@ -243,6 +246,7 @@ static void first_solution(struct contraction *k)
     joint_accelerations(k, k->m, bias, base);
     refine_inside(k, bias, base);
     close_loops(k);
+    add_up(k);
 }
 
 /* loop_forces: f -= the loops' forces on own bodies, for inverse dynamics of the closed system. */
@@ -254,11 +258,10 @@ static void loop_forces(struct contraction *k, real *f)
             six_axpy(tree_at(f, l), -k->lambda[j - 1], columns(k->load, k->room, l) + 6 * j);
 }
 
-/* refine_outside: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6). */
-static void refine_outside(struct contraction *k)
+/* refine: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6). False when that would not have made it better. */
+static bool refine(struct contraction *k, struct refinement *course)
 {
     struct tree *t = &k->tree;
-    const real residual = k->residual;
     comm_stage(t->comm, STAGE_ACCELERATION);
     tree_acceleration(t, k->answer);
     memcpy(k->offset, t->a, (size_t)(6 * t->n) * sizeof(real));
@@ -278,6 +281,22 @@ static void refine_outside(struct contraction *k)
     joint_accelerations(k, 1, NULL, NULL);
     refine_inside(k, NULL, NULL);
     close_loops(k);
+    if (!refinement_accept(course, t->comm, TAG_EXTREME, t->nu, k->active, k->answer)) return false;
+    add_up(k);
+    return true;
+}
+
+/* refine_outside: as often as the job allows and it helps. */
+static void refine_outside(struct contraction *k)
+{
+    struct comm *c = k->tree.comm;
+    const int outer = k->tree.job->spec->kernel.outer_refinements;
+    const real residual = k->residual; /* of the answer itself; the corrections have their own */
+    struct refinement course;
+    /* the paper's residual does not see the errors of its bias forces */
+    const real known = k->direct ? residual : (real)INFINITY;
+    bool going = outer > 0 && refinement_begin(&course, c, TAG_EXTREME, known);
+    for (int pass = 0; going && pass < outer; pass++) going = refine(k, &course);
     k->residual = residual;
 }
 
@@ -309,7 +328,7 @@ static void evaluate(struct contraction *k)
         t->work.flop += (uint64_t)t->nu;
     }
     first_solution(k);
-    for (int pass = 0; pass < t->job->spec->kernel.outer_refinements; pass++) refine_outside(k);
+    refine_outside(k);
 }
 
 /* store: the answer and the loop forces into the job's arrays. */

@@ -1,9 +1,11 @@
 /* forward.c - the constraint force algorithm on a block of a chain (forward.h). Symbols as in physics 4. */
 #include "kernel/forward.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "kernel/assembly.h"
+#include "kernel/extremes.h"
 #include "kernel/tags.h"
 
 void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank)
@@ -189,14 +191,6 @@ static void add_reactions(struct forward *f)
     add_reaction(f, ch->hi, f->message, f->force_right);
 }
 
-/* largest: the larger of `so_far` and the elements of x (n) by magnitude. */
-static real largest(real so_far, int n, const real *x)
-{
-    for (int k = 0; k < n; k++)
-        if (!(real_fabs(x[k]) <= so_far)) so_far = real_fabs(x[k]);
-    return so_far;
-}
-
 /* body_acceleration: y = Phi_i (F_i - X_{i+1} F_{i+1} + gain). */
 static void body_acceleration(struct forward *f, int i, const real *force, const real *next, const real *gain, real *y)
 {
@@ -230,20 +224,20 @@ static void operator_form(struct forward *f, bool terms)
         const real *next = i + 1 < hi ? chain_at(ch, f->force, i + 1) : has_right(f) ? f->force_right : NULL;
         body_acceleration(f, i, chain_at(ch, f->force, i), next, terms ? chain_at(ch, f->gain, i) : NULL, y);
         six_copy(z, y);
-        scale = largest(scale, 6, y);
+        scale = largest_size(scale, 6, y);
         if (i > 0 || terms) {
             transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
             six_sub(z, moved);
             ch->work.flop += SIX_ADD_FLOP;
-            scale = largest(scale, 6, moved);
+            scale = largest_size(scale, 6, moved);
         }
         if (terms) {
             six_sub(z, chain_at(ch, ch->b, i));
             ch->work.flop += SIX_ADD_FLOP;
-            scale = largest(scale, 6, chain_at(ch, ch->b, i));
+            scale = largest_size(scale, 6, chain_at(ch, ch->b, i));
         }
         subspace_w_transposed(s, z, reaction);
-        residual = largest(residual, s->c, reaction);
+        residual = largest_size(residual, s->c, reaction);
         six_copy(before, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
@@ -293,10 +287,10 @@ static void paper_residual(struct forward *f)
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = subspace_of(f, i)->d;
         multiply_rows(f, i, 0, 6, false, y);
-        residual = largest(residual, 6 - d, y + d);
-        scale = largest(scale, 6, y);
+        residual = largest_size(residual, 6 - d, y + d);
+        scale = largest_size(scale, 6, y);
         multiply_rows(f, i, 0, 6, true, y);
-        scale = largest(scale, 6, y);
+        scale = largest_size(scale, 6, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
     ch->work = before;
@@ -321,16 +315,13 @@ static void solve_operator_form(struct forward *f, bool terms, bool again)
     }
 }
 
-/* joint_accelerations: ud = H^T z, or ud += H^T z. */
-static void joint_accelerations(struct forward *f, bool add)
+/* joint_accelerations: ud = H^T z. */
+static void joint_accelerations(struct forward *f, real *ud)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
-        real x[6], *ud = f->ud + chain_u_at(ch, i);
-        const int d = body_of(f, i)->d;
-        subspace_h_transposed(subspace_of(f, i), chain_at(ch, f->z, i), x);
-        for (int k = 0; k < d; k++) ud[k] = add ? ud[k] + x[k] : x[k];
-        ch->work.flop += (uint64_t)(joint_cost_of(body_of(f, i)->joint)->h_transposed + (add ? d : 0));
+        subspace_h_transposed(subspace_of(f, i), chain_at(ch, f->z, i), ud + chain_u_at(ch, i));
+        ch->work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->h_transposed;
     }
     chain_report(ch);
 }
@@ -351,7 +342,7 @@ static void evaluate_direct(struct forward *f)
     assemble_direct(f);
     begin_forces(f, f->tau, true);
     solve_operator_form(f, true, false);
-    joint_accelerations(f, false);
+    joint_accelerations(f, f->ud);
 }
 
 /* paper_solution: u' = C FT + B^T FS with A FS = -B FT, (4.3), (4.4). */
@@ -408,8 +399,9 @@ static void evaluate_paper(struct forward *f)
     paper_solution(f, f->ud);
 }
 
-/* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer refinement). */
-static void refine(struct forward *f)
+/* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer refinement). False when
+ * that would not have made it better. */
+static bool refine(struct forward *f, struct refinement *course)
 {
     struct chain *ch = &f->chain;
     const int nu = chain_nu(ch->shared, ch->lo, ch->hi);
@@ -423,7 +415,25 @@ static void refine(struct forward *f)
     comm_stage(ch->comm, STAGE_ASSEMBLY);
     begin_forces(f, rest, false);
     solve_operator_form(f, false, true);
-    joint_accelerations(f, true);
+    joint_accelerations(f, rest);
+    if (!refinement_accept(course, ch->comm, TAG_EXTREME, nu, rest, f->ud)) return false;
+    for (int k = 0; k < nu; k++) f->ud[k] += rest[k];
+    ch->work.flop += (uint64_t)nu;
+    return true;
+}
+
+/* refine_outside: as often as the job allows and it helps. */
+static void refine_outside(struct forward *f)
+{
+    struct chain *ch = &f->chain;
+    const int outer = ch->job->spec->kernel.outer_refinements;
+    const real residual = f->residual; /* of the answer itself; the corrections have their own */
+    struct refinement course;
+    /* the paper's residual does not see the errors of its bias forces */
+    const real known = f->direct ? residual : (real)INFINITY;
+    bool going = outer > 0 && refinement_begin(&course, ch->comm, TAG_EXTREME, known);
+    for (int pass = 0; going && pass < outer; pass++) going = refine(f, &course);
+    f->residual = residual;
 }
 
 /* evaluate: ud from the coordinates and rates in the chain. */
@@ -436,9 +446,7 @@ static void evaluate(struct forward *f)
     exchange_joints(f);
     if (f->direct) evaluate_direct(f);
     else evaluate_paper(f);
-    const real first_residual = f->residual;
-    for (int pass = 0; pass < ch->job->spec->kernel.outer_refinements; pass++) refine(f);
-    f->residual = first_residual;
+    refine_outside(f);
 }
 
 /* store: the answer, residual and condition into the job's arrays. */

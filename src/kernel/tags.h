@@ -18,9 +18,10 @@ enum {
     TAG_REDUCE = 11 * TAG_STEP,     /* cyclic reduction, parallel cyclic reduction */
     TAG_SUBSTITUTE = 12 * TAG_STEP, /* cyclic reduction, way back */
     TAG_GATHER = 13 * TAG_STEP,
-    TAG_TREE = 14 * TAG_STEP, /* tree contraction */
-    TAG_LOOP = 15 * TAG_STEP, /* loop closure */
-    TAG_BENCH = 16 * TAG_STEP /* micro-benchmarks */
+    TAG_TREE = 14 * TAG_STEP,    /* tree contraction */
+    TAG_LOOP = 15 * TAG_STEP,    /* loop closure */
+    TAG_EXTREME = 16 * TAG_STEP, /* largest numbers of all ranks */
+    TAG_BENCH = 17 * TAG_STEP    /* micro-benchmarks */
 };
 
 #endif
