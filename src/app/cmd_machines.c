@@ -22,24 +22,7 @@ static int list_machines(const struct common *c, struct arena *a)
     const char **stem, **title;
     int n;
     if (!plan_list("machines", a, &stem, &title, &n, &e)) return common_fail(c, &e);
-    struct json j = json_make(stdout);
-    if (c->json) json_array(&j);
-    for (int i = 0; i < n; i++) {
-        if (!c->json) {
-            printf("%-20s %s\n", stem[i], title[i]);
-            continue;
-        }
-        json_object(&j);
-        json_key(&j, "name");
-        json_text(&j, stem[i]);
-        json_key(&j, "title");
-        json_text(&j, title[i]);
-        json_end(&j);
-    }
-    if (c->json) {
-        json_end(&j);
-        json_finish(&j);
-    }
+    common_print_pairs(c, n, stem, title);
     return 0;
 }
 

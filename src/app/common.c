@@ -12,7 +12,7 @@ static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
     {"set", 's', "KEY=VALUE", 0,
      "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; may be repeated", 1},
-    {"output", 'o', "DB", 0, "database (default mimdsim.db)", 2},
+    {"output", 'o', "DB", 0, "database (default mimdsim.db; of paper: paper.db)", 2},
     {"force", KEY_FORCE, NULL, 0, "run again what is already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
     {"jobs", 'j', "N", 0, "worker processes (default: one a processor)", 4},
@@ -146,4 +146,26 @@ int common_fail(const struct common *c, const struct err *e)
     }
     err_print(e);
     return status;
+}
+
+void common_print_pairs(const struct common *c, int n, const char *const *name, const char *const *title)
+{
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    for (int i = 0; i < n; i++) {
+        if (!c->json) {
+            printf("%-20s %s\n", name[i], title[i]);
+            continue;
+        }
+        json_object(&j);
+        json_key(&j, "name");
+        json_text(&j, name[i]);
+        json_key(&j, "title");
+        json_text(&j, title[i]);
+        json_end(&j);
+    }
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
 }

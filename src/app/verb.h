@@ -27,7 +27,11 @@ int cmd_machines(int argc, char **argv);  /* list, show or compare machines */
 int cmd_scenarios(int argc, char **argv); /* list scenarios */
 int cmd_kernels(int argc, char **argv);   /* list kernels */
 int cmd_query(int argc, char **argv);
-int cmd_netcheck(int argc, char **argv);     /* SQL */
+int cmd_paper(int argc, char **argv);
+int cmd_claims(int argc, char **argv);
+int cmd_timeline(int argc, char **argv);
+int cmd_netcheck(int argc, char **argv);
+int cmd_validate(int argc, char **argv);     /* SQL */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 int cmd_accuracy(int argc, char **argv);  /* error against run time */
 
@@ -38,6 +42,7 @@ struct common {
     int nset;
     bool json, quiet, force;
     const char *database;  /* -o */
+    bool database_given;   /* -o was there */
     const char *directory; /* --dir */
     const char *level;     /* --level, NULL: all */
     bool brief, compare;
@@ -61,6 +66,9 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
 
 /* common_plan: the plan options among them. */
 struct plan_options common_plan(const struct common *c);
+
+/* common_print_pairs: n names with their titles, as lines or as a JSON array of {name, title}. */
+void common_print_pairs(const struct common *c, int n, const char *const *name, const char *const *title);
 
 /* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit status. */
 int common_fail(const struct common *c, const struct err *e);
