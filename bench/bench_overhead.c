@@ -1,0 +1,130 @@
+/* bench_overhead.c - what simulating costs beside the kernels themselves.
+ *
+ *   bench_overhead [P...]      default 16 128 1024 4096
+ *
+ * The main scenario with n = P, inverse and forward dynamics: host seconds of the simulated run over those of the same
+ * kernels on the same number of ranks without any simulator (fibers, plain memory copies for messages, no clocks). */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../tests/support/many_ranks.h"
+#include "base/progress.h"
+#include "kernel/kernel.h"
+#include "mech/model.h"
+#include "plan/plan.h"
+#include "run/run.h"
+
+enum { MOST_ROUNDS = 200 };
+
+struct bare {
+    const struct kernel_type *kernel;
+    struct kernel_job job;
+    char **workspace;
+};
+
+static void program(struct comm *c, void *context)
+{
+    struct bare *b = context;
+    b->kernel->run(c, &b->job, b->workspace[comm_rank(c)]);
+}
+
+/* torus_of: dimensions with the product nrank, as equal as powers of two allow. */
+static void torus_of(int nrank, int dims[3])
+{
+    dims[0] = dims[1] = dims[2] = 1;
+    for (int k = 0; nrank > 1; nrank /= 2, k++) dims[k % 3] *= 2;
+}
+
+static bool load(struct plan *p, int nrank, const char *level, struct err *e)
+{
+    int dims[3];
+    char set[3][96];
+    torus_of(nrank, dims);
+    snprintf(set[0], sizeof set[0], "machine.topology.dims=[%d, %d, %d]", dims[0], dims[1], dims[2]);
+    snprintf(set[1], sizeof set[1], "model.n=%d", nrank);
+    snprintf(set[2], sizeof set[2], "machine.network.level=%s", level);
+    const char *all[] = {set[0], set[1], set[2], "record.links=false"};
+    struct plan_options o = {.nset = 4, .set = all};
+    return plan_read(p, "speedup-t3e", &o, e);
+}
+
+/* rounds_for: repetitions that fill about a second, at least three. */
+static int rounds_for(int nrank)
+{
+    const int n = 40000 / nrank;
+    return n < 3 ? 3 : n > MOST_ROUNDS ? MOST_ROUNDS : n;
+}
+
+/* bare_seconds: the best of some rounds without a simulator; everything is set up before. */
+static double bare_seconds(const struct run_spec *spec, struct err *e)
+{
+    struct arena *a = arena_create();
+    struct bare b = {.kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision)};
+    struct model *m = model_build(&spec->model, a, e);
+    if (!m) return 0;
+    b.job =
+        (struct kernel_job){.spec = spec, .model = m, .state = state_make(m, &spec->model, a), .nrank = spec->nrank};
+    b.job.tau = TAKE(a, m->nu, double);
+    b.job.qdd = TAKE(a, m->nu, double);
+    if (!b.kernel->accepts(spec, m, e) || !b.kernel->prepare(&b.job, a, e)) return 0;
+    b.workspace = TAKE(a, spec->nrank, char *);
+    for (int k = 0; k < spec->nrank; k++) b.workspace[k] = arena_take(a, b.kernel->workspace_bytes(&b.job, k));
+    double best = 1e30;
+    for (int round = 0; round < rounds_for(spec->nrank); round++) {
+        for (int k = 0; k < spec->nrank; k++) memset(b.workspace[k], 0, b.kernel->workspace_bytes(&b.job, k));
+        const double begin = host_seconds();
+        many_ranks_run(spec->nrank, program, &b);
+        const double took = host_seconds() - begin;
+        if (took < best) best = took;
+    }
+    arena_destroy(a);
+    return best;
+}
+
+/* simulated_seconds: the best of some rounds of the simulation proper. */
+static double simulated_seconds(const struct run_spec *spec, struct err *e)
+{
+    double best = 1e30;
+    for (int round = 0; round < rounds_for(spec->nrank) / 2 + 1; round++) {
+        struct arena *a = arena_create();
+        struct run_result r;
+        const bool good = run_one(spec, a, &r, e);
+        if (good && r.host_s < best) best = r.host_s;
+        arena_destroy(a);
+        if (!good) return 0;
+    }
+    return best;
+}
+
+static bool measure(int nrank)
+{
+    static const char *const levels[] = {"loggp", "link"};
+    struct err e;
+    err_clear(&e);
+    double bare = 0, simulated[2];
+    for (int k = 0; k < 2; k++) {
+        struct plan p = {0};
+        if (!load(&p, nrank, levels[k], &e)) break;
+        if (k == 0) bare = bare_seconds(&p.run[0], &e);
+        simulated[k] = simulated_seconds(&p.run[0], &e);
+    }
+    if (e.kind != ERR_NONE) {
+        err_print(&e);
+        return false;
+    }
+    printf("%8d %12.3f %12.3f %12.3f %12.2f %12.2f\n", nrank, 1e3 * bare, 1e3 * simulated[0], 1e3 * simulated[1],
+           simulated[0] / bare, simulated[1] / bare);
+    fflush(stdout);
+    return true;
+}
+
+int main(int argc, char **argv)
+{
+    static const int standard[] = {16, 128, 1024, 4096};
+    const int n = argc > 1 ? argc - 1 : 4;
+    bool good = true;
+    printf("%8s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms", "loggp/bare", "link/bare");
+    for (int i = 0; i < n; i++) good = measure(argc > 1 ? atoi(argv[i + 1]) : standard[i]) && good;
+    return !good;
+}
