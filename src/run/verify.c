@@ -22,6 +22,21 @@ double verify_error(const double *x, const double *ref, int n)
     return scale > 0 ? difference / scale : difference;
 }
 
+double verify_largest(const double *x, int n)
+{
+    double largest = 0;
+    for (int i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]));
+    return largest;
+}
+
+double verify_error_beside(const double *x, const double *ref, int n, double scale)
+{
+    const double own = verify_largest(ref, n), error = verify_error(x, ref, n);
+    return own > 0 && own < 1e-3 * scale ? error * own / (1e-3 * scale)
+           : own == 0 && scale > 0       ? error / (1e-3 * scale)
+                                         : error;
+}
+
 struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm, const char *quantity)
 {
     struct verify_report *r = v->report;

@@ -139,7 +139,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
 /* The errors of a variant over all numbers of ranks. */
 struct spread {
     double error, lambda_error, condition;
-    int worst, rank_deficiency;
+    int worst, lambda_worst, rank_deficiency;
     bool answered;
     char ranks[32], text[128];
 };
@@ -159,7 +159,11 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
     s->answered = true;
     if (good) s->condition = fmax(s->condition, x->condition);
     if (!inverse && c->lambda && good) {
-        s->lambda_error = fmax(s->lambda_error, verify_error(x->lambda, c->lambda, c->nrow));
+        double lambda_error = verify_error(x->lambda, c->lambda, c->nrow);
+        if (s->lambda_worst == 0 || lambda_error > s->lambda_error) {
+            s->lambda_error = lambda_error;
+            s->lambda_worst = nrank;
+        }
         if (x->loop_rank > 0 && x->loop_rank < c->nrow) s->rank_deficiency = c->nrow - x->loop_rank;
     }
 }
@@ -182,16 +186,19 @@ static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel,
     return true;
 }
 
-/* The error of the variant in another precision, with the ranks that were worst. */
+/* The errors of the variant's accelerations and loop forces in another precision, with the ranks that were worst. */
 static bool error_in(struct verify_case *v, const struct kernel_spec *kernel, enum precision precision, int nrank,
-                     double *error, struct err *e)
+                     double *error, double *lambda_error, struct err *e)
 {
+    const struct vector_case *c = v->vector;
     struct kernel_spec again = *kernel;
     struct arena_mark mark = arena_mark(v->arena);
     struct outcome x;
     again.precision = precision;
     if (!kernel_run(v, &again, nrank, &x, e)) return false;
-    *error = x.kind == ANSWERED ? verify_error(x.x, v->vector->qdd_fd, v->vector->nv) : INFINITY;
+    *error = *lambda_error = INFINITY;
+    if (x.kind == ANSWERED) *error = verify_error(x.x, c->qdd_fd, c->nv);
+    if (x.kind == ANSWERED && c->lambda) *lambda_error = verify_error(x.lambda, c->lambda, c->nrow);
     arena_release(v->arena, mark);
     return true;
 }
@@ -204,20 +211,40 @@ static bool explain(struct verify_case *v, const struct kernel_spec *kernel, dou
 {
     enum { QUAD_LIMIT = 310 };
     bool quad = v->vector->nv <= QUAD_LIMIT;
-    double error;
+    double error, ignored;
     char before[64];
     if (condition * dynamics_type_of(kernel->precision)->epsilon >= 1) {
         row->verdict = VERIFY_ROUNDING;
         snprintf(row->note, sizeof row->note, "P=%d; its condition is above %.0e", row->worst_rank, condition);
         return true;
     }
-    if (!error_in(v, kernel, quad ? PRECISION_QUAD : PRECISION_FLOAT, row->worst_rank, &error, e)) return false;
+    if (!error_in(v, kernel, quad ? PRECISION_QUAD : PRECISION_FLOAT, row->worst_rank, &error,
+                  &ignored, e))
+        return false;
     if (quad ? verify_error_vanishes(row->error, error) : verify_error_scales(row->error, error))
         row->verdict = VERIFY_ROUNDING;
     text_copy(before, sizeof before, row->note);
     snprintf(row->note, sizeof row->note, "P=%d%s%s%s; in %s precision %.1e", row->worst_rank,
              isfinite(row->error) ? "" : " breaks down", before[0] ? ": " : "", before, quad ? "quad" : "single",
              error);
+    return true;
+}
+
+/* Loop forces are no better than the accelerations: `rounded` tells that rounding explains those. */
+static bool lambda_row(struct verify_case *v, const char *name, const struct kernel_spec *kernel,
+                       const struct spread *s, bool rounded, struct err *e)
+{
+    struct verify_row *row = verify_row_add(v, name, "lambda");
+    row->parallel = true;
+    row->error = s->lambda_error;
+    row->tolerance = verify_tolerance_forward(v);
+    row->worst_rank = s->lambda_worst;
+    text_copy(row->ranks, sizeof row->ranks, s->ranks);
+    if (s->lambda_error <= row->tolerance) return true;
+    double ignored, quad;
+    if (!error_in(v, kernel, PRECISION_QUAD, s->lambda_worst, &ignored, &quad, e)) return false;
+    row->verdict = rounded || verify_error_vanishes(row->error, quad) ? VERIFY_ROUNDING : VERIFY_FAIL;
+    snprintf(row->note, sizeof row->note, "P=%d; in quad precision %.1e", row->worst_rank, quad);
     return true;
 }
 
@@ -244,14 +271,7 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     text_copy(row->note, sizeof row->note, s.text);
     if (row->verdict == VERIFY_FAIL && !inverse && !explain(v, &kernel, s.condition, row, e)) return false;
     if (inverse || !v->vector->lambda || s.rank_deficiency > 0) return true;
-    bool rounded = row->verdict == VERIFY_ROUNDING; /* loop forces are no better than the accelerations */
-    row = verify_row_add(v, variant->name, "lambda");
-    row->parallel = true;
-    row->error = s.lambda_error;
-    row->tolerance = verify_tolerance_forward(v);
-    row->verdict = s.lambda_error <= row->tolerance ? VERIFY_PASS : rounded ? VERIFY_ROUNDING : VERIFY_FAIL;
-    text_copy(row->ranks, sizeof row->ranks, s.ranks);
-    return true;
+    return lambda_row(v, variant->name, &kernel, &s, row->verdict == VERIFY_ROUNDING, e);
 }
 
 bool verify_parallel(struct verify_case *v, struct err *e)
