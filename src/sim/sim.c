@@ -57,6 +57,7 @@ bool sim_step(struct sim *s)
 }
 
 sim_ps sim_next_time(const struct sim *s) { return event_queue_next_time(&s->queue); }
+int64_t sim_pending(const struct sim *s) { return (int64_t)s->queue.count; }
 sim_ps sim_now(const struct sim *s) { return s->now; }
 int64_t sim_events(const struct sim *s) { return s->events; }
 int64_t sim_ties(const struct sim *s) { return s->ties; }

@@ -34,6 +34,9 @@ bool sim_step(struct sim *s);
 /* sim_next_time: time of the earliest event, SIM_NEVER when there is none. */
 sim_ps sim_next_time(const struct sim *s);
 
+/* sim_pending: events posted and not yet dispatched. */
+int64_t sim_pending(const struct sim *s);
+
 /* sim_now: time of the event being, or last, dispatched [ps]. */
 sim_ps sim_now(const struct sim *s);
 

@@ -106,9 +106,9 @@ static const char *idle_unless_list(const struct run_spec *r)
     return r->machine.placement.kind == PLACEMENT_LIST ? NULL : "placement.kind is not 'list'";
 }
 
-static const char *idle_unless_link(const struct run_spec *r)
+static const char *idle_at_loggp(const struct run_spec *r)
 {
-    return r->machine.network.level == LEVEL_LINK ? NULL : "only network.level 'link' lets other jobs take links";
+    return r->machine.network.level != LEVEL_LOGGP ? NULL : "network.level 'loggp' has no links that other jobs take";
 }
 
 static const char *idle_unless_background(const struct run_spec *r)
@@ -251,7 +251,7 @@ static const struct field fields[] = {
     {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
      .fallback = "0 %", .doc = "standard deviation of each computation over its mean"},
     {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
-     .max = 0.95, .fallback = "0 %", .idle = idle_unless_link, .doc = "part of each link's time taken by other jobs"},
+     .max = 0.95, .fallback = "0 %", .idle = idle_at_loggp, .doc = "part of each link's time taken by other jobs"},
     {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(noise.background_bytes), .min = 1,
      .max = 1 << 30, .fallback = "1024 B", .idle = idle_unless_background, .doc = "size of their messages"},
 };

@@ -22,7 +22,10 @@ static void pass(void *subject, uint64_t argument, sim_ps now)
     (void)argument;
     struct background *b = subject;
     struct world *w = b->world;
-    if (w->nfinished == w->nrank || !net_occupy(w->net, b->link, now, b->busy)) return;
+    bool alone = w->ready_count == 0 && sim_pending(w->sim) < w->background_events; /* all else is stuck */
+    w->background_events--;
+    if (alone || w->nfinished == w->nrank || !net_occupy(w->net, b->link, now, b->busy)) return;
+    w->background_events++;
     sim_at(w->sim, now + gap(b), LANE_BACKGROUND, (uint64_t)b->link, pass, b, 0);
 }
 
@@ -31,6 +34,7 @@ void background_start(struct world *w, uint64_t seed)
     const struct noise_spec *s = &w->machine->noise;
     if (s->background_load <= 0) return;
     int nlink = w->topology->nlink;
+    w->background_events = nlink;
     struct background *b = TAKE(w->scratch, nlink, struct background);
     for (int i = 0; i < nlink; i++) {
         double rate = topology_link_bandwidth(w->topology, i, w->machine->network.link_bandwidth);

@@ -82,6 +82,7 @@ struct world {
     int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;
 
+    int64_t background_events; /* of other jobs' traffic, pending */
     sim_ps server_free; /* kernel server */
     int64_t span_capacity;
 

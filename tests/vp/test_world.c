@@ -377,6 +377,20 @@ static void background_traffic_slows_but_never_breaks(void **state)
     arena_destroy(busy.arena);
 }
 
+static void a_deadlock_is_seen_under_background_traffic(void **state)
+{
+    (void)state;
+    struct machine_spec m = crossbar(6);
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_TORUS, .ndim = 1, .dims = {6}, .nodes_per_router = 1, .processors_per_node = 1};
+    m.network.level = LEVEL_LINK;
+    m.noise.background_load = 0.3;
+    m.noise.background_bytes = 1000;
+    struct outcome o = go(&m, 6, everybody_waits_for_the_left, NULL);
+    assert_int_equal(o.r.status, RUN_DEADLOCK);
+    arena_destroy(o.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -393,6 +407,7 @@ int main(void)
         cmocka_unit_test(a_forgotten_barrier_is_explained),
         cmocka_unit_test(noise_is_seeded_and_off_by_default),
         cmocka_unit_test(background_traffic_slows_but_never_breaks),
+        cmocka_unit_test(a_deadlock_is_seen_under_background_traffic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
