@@ -108,10 +108,44 @@ static void interface(const struct run_spec *spec, const struct outline *o, doub
     }
 }
 
+/* rows: reduction of all rows of all ranks (5.4 b): what crosses ranks, step by step. */
+static void rows(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+{
+    const int n = (int)o->n, P = (int)o->P;
+    const bool textbook = spec->kernel.solver == SOLVER_PCR;
+    const double c = o->c, packed = c * (c + 1) / 2;
+    struct outline all = *o; /* as if every row had a rank of its own, for the work */
+    struct kernel_estimate work = {0};
+    all.P = o->n, all.steps = all.pairs = all.triples = 0;
+    for (int d = 1; d < n; d *= 2) {
+        all.steps += 1;
+        all.pairs += n - d;
+        all.triples += n > 2 * d ? n - 2 * d : 0;
+        int from = -1, to = -1;
+        for (int i = 0; i + d < n; i++) {
+            const int a = block_owner(n, P, i), b = block_owner(n, P, i + d);
+            if (a == b) continue;
+            const double right = i >= d ? 1 : 0, left = i + 2 * d < n ? 1 : 0; /* updates that carry a coupling */
+            const double numbers = textbook ? 2 * (3 * c * c + c) : 2 * (packed + c) + (right + left) * c * c;
+            if (a != from || b != to) e->messages += 2;
+            e->bytes += numbers * (double)sizeof(real);
+            from = a, to = b;
+        }
+    }
+    interface(spec, &all, 1, &work);
+    e->flops += work.flops;
+    add(e, o->P - 1, c * c);
+    add(e, o->P - 1, c);
+}
+
 /* solution: the block tridiagonal system. */
 static void solution(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
 {
     const double c = o->c, packed = c * (c + 1) / 2;
+    if (o->split && (spec->kernel.solver == SOLVER_PCR || spec->kernel.solver == SOLVER_PCR_SYMMETRIC)) {
+        rows(spec, o, e);
+        return;
+    }
     interface(spec, o, 1, e);
     if (spec->kernel.solver == SOLVER_THOMAS) return;
     add(e, o->P - 1, c * c); /* coupling to the left, with the Schur complement of several rows */
@@ -133,10 +167,29 @@ static double rank_memory(const struct outline *o, bool keep)
     return (m * (12 + 36 + 60) + o->T * (o->steps + 1) + row + rows) * (double)sizeof(real) + 512;
 }
 
+/* evaluations: forward dynamics of all time steps. */
+static double evaluations(const struct kernel_spec *k)
+{
+    if (k->steps == 0) return 1;
+    return k->step == STEP_RK4 ? 4.0 * k->steps : k->step == STEP_KDK ? k->steps + 1.0 : k->steps;
+}
+
+/* repeat: the same again and again. */
+static void repeat(struct kernel_estimate *e, double times)
+{
+    e->messages *= times;
+    e->bytes *= times;
+    e->flops *= times;
+}
+
 void estimate_inverse(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
 {
     const struct outline o = outline_of(spec, model);
     *out = (struct kernel_estimate){0};
+    if (kernel_branches(model)) {
+        estimate_tree(spec, model, true, false, out);
+        return;
+    }
     velocity_scan(&o, spec->kernel.composites_incoming, out);
     vector_scan(&o, false, out);
     vector_scan(&o, true, out);
@@ -149,6 +202,11 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, st
     const struct outline o = outline_of(spec, model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     *out = (struct kernel_estimate){0};
+    if (kernel_branches(model)) {
+        estimate_tree(spec, model, false, true, out);
+        repeat(out, evaluations(&spec->kernel));
+        return;
+    }
     velocity_scan(&o, spec->kernel.composites_incoming, out);
     if (!direct) {
         vector_scan(&o, false, out);
@@ -165,6 +223,7 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, st
     if (direct) out->flops += 2 * ((o.n - 1) * (2 * o.x + 66 + 24) + 66 + 24 + edges * (66 + 12 + o.x));
     else out->flops += o.n * 60 + edges * 310;
     out->rank_bytes = rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
+    repeat(out, evaluations(&spec->kernel));
 }
 
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)

@@ -144,6 +144,38 @@ static void estimates_equal_what_is_sent(void **state)
         }
 }
 
+static void estimates_of_all_rows_and_of_trees(void **state)
+{
+    (void)state;
+    static const struct {
+        enum model_generator generator;
+        enum solver solver;
+    } cases[] = {{MODEL_SERIAL_CHAIN, SOLVER_PCR},
+                 {MODEL_SERIAL_CHAIN, SOLVER_PCR_SYMMETRIC},
+                 {MODEL_COMB, SOLVER_PCR_SYMMETRIC},
+                 {MODEL_RANDOM_TREE, SOLVER_PCR_SYMMETRIC},
+                 {MODEL_DENDRIMER, SOLVER_PCR_SYMMETRIC}};
+    for (int k = 0; k < 5; k++)
+        for (int P = 1; P <= 40; P += 6) {
+            struct run_spec spec = evaluation_spec("forward", 61, P);
+            spec.model.generator = cases[k].generator;
+            spec.kernel.solver = cases[k].solver;
+            const struct many_ranks_result r = counts_of(spec);
+            struct kernel_estimate e;
+            struct err err = {0};
+            struct arena *a = arena_create();
+            kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err), &e);
+            arena_destroy(a);
+            assert_int_equal((int64_t)e.messages, r.messages);
+            assert_int_equal((int64_t)e.bytes, r.bytes);
+            struct work all = {0};
+            for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &r.stage_work[stage]);
+            const double done = (double)operations(&all);
+            if (!(e.flops > 0.7 * done && e.flops < 1.4 * done))
+                fail_msg("case %d P %d: %g, not %g", k, P, e.flops, done);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +186,7 @@ int main(void)
         cmocka_unit_test(the_solvers_work_adds_up),
         cmocka_unit_test(eliminating_a_row_costs_915_385_and_212),
         cmocka_unit_test(estimates_equal_what_is_sent),
+        cmocka_unit_test(estimates_of_all_rows_and_of_trees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
