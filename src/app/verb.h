@@ -8,6 +8,7 @@
 
 #include "base/err.h"
 #include "plan/plan.h"
+#include "run/catalogue.h"
 
 struct verb {
     const char *name;
@@ -34,6 +35,7 @@ int cmd_netcheck(int argc, char **argv);
 int cmd_validate(int argc, char **argv);     /* SQL */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 int cmd_accuracy(int argc, char **argv);  /* error against run time */
+int cmd_stability(int argc, char **argv); /* stiff and extreme cases */
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {
@@ -45,14 +47,17 @@ struct common {
     bool database_given;   /* -o was there */
     const char *directory; /* --dir */
     const char *level;     /* --level, NULL: all */
+    const char *format;    /* --format, NULL: the usual ones */
     bool brief, compare;
     int jobs;              /* 0: as many as processors */
+    struct catalogue kernel; /* the kernels there are */
     int narg;
     const char *arg[64]; /* what is not an option */
 };
 
 /* Which of the common options a verb takes. */
-enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEVEL = 16, TAKES_COMPARE = 32 };
+enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEVEL = 16, TAKES_COMPARE = 32,
+       TAKES_FORMAT = 64 };
 
 /* common_parse: read the command line of a verb.
  *
@@ -60,11 +65,11 @@ enum { TAKES_PLAN = 1, TAKES_STORE = 2, TAKES_DIR = 4, TAKES_JOBS = 8, TAKES_LEV
  *   args, doc   in  for --help: the arguments, and what the verb does, with an example first
  *   least,most  in  how many arguments; outside: message and exit status 64
  *
- * Ends the process on a wrong option (64) and after --help (0). */
+ * Ends the process on a wrong option (64; with --json, with a document) and after --help (0). */
 void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
                   int most);
 
-/* common_plan: the plan options among them. */
+/* common_plan: the plan options among them, and the names of the kernels; borrowed from *c. */
 struct plan_options common_plan(const struct common *c);
 
 /* common_print_pairs: n names with their titles, as lines or as a JSON array of {name, title}. */
@@ -72,5 +77,8 @@ void common_print_pairs(const struct common *c, int n, const char *const *name, 
 
 /* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit status. */
 int common_fail(const struct common *c, const struct err *e);
+
+/* common_wants_json: whether --json stands among the options. */
+bool common_wants_json(int argc, char **argv);
 
 #endif

@@ -10,6 +10,7 @@ const struct verb verb_list[] = {
     {"scenarios", "list scenarios", cmd_scenarios},
     {"kernels", "list kernels", cmd_kernels},
     {"verify", "hold every algorithm against reference vectors", cmd_verify},
+    {"validate", "machines beside published figures, networks beside references", cmd_validate},
     {"netcheck", "hold the network levels against reference answers", cmd_netcheck},
     {"accuracy", "error against run time: network, arithmetic, integration", cmd_accuracy},
     {"query", "run SQL on a database", cmd_query},

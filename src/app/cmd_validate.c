@@ -1,0 +1,297 @@
+/* cmd_validate.c - mimdsim validate: simulated machines beside published figures, network levels beside references. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/published.h"
+#include "app/verb.h"
+#include "base/check.h"
+#include "base/json.h"
+#include "base/text.h"
+#include "run/netcheck.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Run the micro-benchmarks of MACHINE (or of all machines) through the simulator and print them beside the published "
+    "figures of machines/published.csv, with the error of each; store them as check points.\n\n"
+    "Example: mimdsim validate t3e-300\n"
+    "         mimdsim validate network\n\v"
+    "`network` holds every network level against the reference answers in tests/data/net, or in the FILEs named, and "
+    "prints a table of errors for documents. A figure whose evidence is E only says that the machine file was followed. "
+    "The exit status is 1 when a figure used for calibration is missed: by more than 10 % (5 % for wires and rates of "
+    "cuts, 20 % for recalled figures, class PR).";
+
+/* What a point came to. */
+struct outcome {
+    bool measured;
+    double value;
+    char why[256];
+    double error, tolerance;
+    const char *verdict; /* pass, fail, not-testable */
+};
+
+static double tolerance_of(const struct published *p)
+{
+    if (p->evidence[0] == 'P' && p->evidence[1] != 'R')
+        return p->quantity == PROBE_WIRE || p->quantity == PROBE_READ || p->quantity == PROBE_BISECTION ||
+                       p->quantity == PROBE_GLOBAL
+                   ? 0.05
+                   : 0.1;
+    return strcmp(p->evidence, "D") == 0 ? 0.1 : 0.2;
+}
+
+/* Points that no machine file claims are shown with their error and judged by nobody. */
+static void judge(const struct published *p, struct outcome *o)
+{
+    o->tolerance = tolerance_of(p);
+    o->error = (o->value - p->value) / p->value;
+    bool inside = p->low < p->high && o->value >= p->low && o->value <= p->high;
+    bool wire = p->quantity == PROBE_BISECTION || p->quantity == PROBE_GLOBAL || p->quantity == PROBE_WIRE;
+    if (!o->measured || !(p->calibrated || wire)) o->verdict = "not-testable";
+    else o->verdict = inside || fabs(o->error) <= o->tolerance ? "pass" : "fail";
+}
+
+/* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
+static bool measure(const struct common *c, const struct published *p, struct outcome *o, struct arena *a, struct err *e)
+{
+    struct machine_spec m;
+    struct plan_options options = {.nset = p->nset, .set = p->set};
+    *o = (struct outcome){.value = NAN};
+    if (!plan_machine(&m, p->machine, &options, a, NULL, NULL, e)) return false;
+    struct err why;
+    err_clear(&why);
+    o->measured = probe_measure(&m, p->quantity, p->at, &o->value, &why);
+    o->value = o->measured ? o->value + p->add : NAN;
+    text_copy(o->why, sizeof o->why, why.text);
+    judge(p, o);
+    (void)c;
+    return true;
+}
+
+static void print_row(const struct published *p, const struct outcome *o)
+{
+    char published[48];
+    if (p->low < p->high)
+        snprintf(published, sizeof published, "%.5g (%.4g-%.4g)", p->value / p->scale, p->low / p->scale,
+                 p->high / p->scale);
+    else snprintf(published, sizeof published, "%.6g", p->value / p->scale);
+    printf("%-6s %-17s %-10s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text, published);
+    if (o->measured) printf("%11.5g %-5s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
+    else printf("%11s %-5s %9s", "-", p->unit, "");
+    printf(" %-3s %-4s %s\n", p->evidence, p->calibrated ? "yes" : "no", o->verdict);
+}
+
+static void json_pair(struct json *j, const char *key, double value)
+{
+    json_key(j, key);
+    json_real(j, value);
+}
+
+static void json_word(struct json *j, const char *key, const char *value)
+{
+    json_key(j, key);
+    json_text(j, value);
+}
+
+static void json_row(struct json *j, const struct published *p, const struct outcome *o)
+{
+    json_object(j);
+    json_word(j, "id", p->id);
+    json_word(j, "machine", p->machine);
+    json_word(j, "quantity", probe_name(p->quantity));
+    json_word(j, "at", p->at_text);
+    json_word(j, "unit", p->unit);
+    json_pair(j, "published", p->value / p->scale);
+    json_pair(j, "low", p->low / p->scale);
+    json_pair(j, "high", p->high / p->scale);
+    json_pair(j, "simulated", o->value / p->scale);
+    json_pair(j, "relative_error", o->measured ? o->error : NAN);
+    json_pair(j, "tolerance", o->tolerance);
+    json_word(j, "class", p->evidence);
+    json_key(j, "calibrated");
+    json_bool(j, p->calibrated);
+    json_word(j, "verdict", o->verdict);
+    json_word(j, "why", o->why);
+    json_word(j, "source", p->source);
+    json_end(j);
+}
+
+static bool keep(struct store *s, const struct published *p, const struct outcome *o, struct err *e)
+{
+    static const char *const name[] = {"suite", "subject",        "quantity",  "at",    "unit",    "reference",
+                                       "value", "relative_error", "tolerance", "class", "verdict", "source"};
+    struct text at = {0};
+    text_add(&at, "%s%s%s", p->at_text, *p->at_text ? " " : "", p->id);
+    const struct store_value value[] = {store_text("machines"),
+                                        store_text(p->machine),
+                                        store_text(probe_name(p->quantity)),
+                                        store_text(at.s),
+                                        store_text(p->unit),
+                                        store_real(p->value / p->scale),
+                                        o->measured ? store_real(o->value / p->scale) : store_null(),
+                                        o->measured ? store_real(o->error) : store_null(),
+                                        store_real(o->tolerance),
+                                        store_text(p->evidence),
+                                        store_text(o->verdict),
+                                        store_text(p->source)};
+    bool ok = store_insert(s, "check_point", sizeof name / sizeof *name, name, value, e);
+    text_free(&at);
+    return ok;
+}
+
+struct tally {
+    int shown, failed, untested;
+    double worst, sum;
+    int counted; /* published and calibrated */
+};
+
+static void count(struct tally *t, const struct published *p, const struct outcome *o)
+{
+    t->shown++;
+    t->failed += strcmp(o->verdict, "fail") == 0;
+    t->untested += strcmp(o->verdict, "not-testable") == 0;
+    if (!o->measured || !p->calibrated || p->evidence[0] != 'P') return;
+    t->counted++;
+    t->sum += fabs(o->error);
+    if (fabs(o->error) > fabs(t->worst)) t->worst = o->error;
+}
+
+static bool go_through(const struct common *c, const struct published *p, int n, struct store *s, struct arena *a,
+                       struct tally *t, struct err *e)
+{
+    const char *name = c->arg[0];
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    else
+        printf("%-6s %-17s %-10s %8s %20s %11s %-5s %9s %-3s %-4s %s\n", "id", "machine", "quantity", "at", "published",
+               "simulated", "unit", "error", "ev.", "cal.", "verdict");
+    for (int i = 0; i < n; i++) {
+        struct outcome o;
+        if (strcmp(name, "all") != 0 && strcmp(name, p[i].machine) != 0) continue;
+        if (!measure(c, &p[i], &o, a, e) || !keep(s, &p[i], &o, e)) return false;
+        count(t, &p[i], &o);
+        if (c->json) json_row(&j, &p[i], &o);
+        else print_row(&p[i], &o);
+    }
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
+    return true;
+}
+
+/* A machine without published figures is said to have none; a name that is no machine is refused by plan_machine. */
+static bool known_machine(const char *name, const struct published *p, int n, struct arena *a, struct err *e)
+{
+    struct machine_spec m;
+    struct plan_options none = {0};
+    if (strcmp(name, "all") == 0) return true;
+    for (int i = 0; i < n; i++)
+        if (strcmp(name, p[i].machine) == 0) return true;
+    return plan_machine(&m, name, &none, a, NULL, NULL, e) &&
+           err_set(e, ERR_NO_INPUT, "machines/published.csv has no figures of machine '%s'", name);
+}
+
+static void summary(const struct tally *t)
+{
+    printf("\n%d points: %d fail, %d not testable", t->shown, t->failed, t->untested);
+    if (t->counted)
+        printf("; %d published and used for calibration: mean |error| %.1f %%, worst %+.1f %%", t->counted,
+               100 * t->sum / t->counted, 100 * t->worst);
+    putchar('\n');
+}
+
+static bool validate_machines(const struct common *c, struct arena *a, struct tally *t, struct err *e)
+{
+    struct published *p;
+    int n;
+    struct text path = {0};
+    text_add(&path, "%s/machines/published.csv", plan_data_dir());
+    bool ok = published_read(path.s, a, &p, &n, e) && known_machine(c->arg[0], p, n, a, e);
+    text_free(&path);
+    if (!ok) return false;
+    struct store *s = store_open(c->database, STORE_WRITE, e);
+    ok = s && store_begin(s, e) && go_through(c, p, n, s, a, t, e) && store_commit(s, e);
+    if (!ok && s) store_rollback(s);
+    store_close(s);
+    if (ok && !c->json) summary(t);
+    return ok;
+}
+
+/* One table a file: mean of |error| in percent, in brackets the worst with its sign; a group without answers has a
+ * dash. */
+static void network_table(const struct netcheck *n)
+{
+    const char *slash = strrchr(n->path, '/');
+    printf("`%s`:\n\n| network | cases |", slash ? slash + 1 : n->path);
+    for (int l = 0; l < NETCHECK_LEVELS; l++) printf(" `%s` |", netcheck_level_name((enum network_level)l));
+    printf("\n| --- | --- |");
+    for (int l = 0; l < NETCHECK_LEVELS; l++) printf(" --- |");
+    putchar('\n');
+    for (int g = 0; g <= n->nrow; g++) {
+        const char *group = g < n->nrow ? n->row[g].group : NULL;
+        bool seen = group && !n->row[g].counted;
+        for (int k = 0; group && k < g && !seen; k++) seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
+        if (seen) continue;
+        int cases = 0;
+        for (int k = 0; k < n->nrow; k++)
+            cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
+        printf("| %s | %d |", group ? group : "all", cases);
+        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+            struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
+            if (t.cases == 0) printf(" - |");
+            else printf(" %.1f (%+.0f) |", 100 * t.mean, 100 * t.worst);
+        }
+        putchar('\n');
+    }
+    putchar('\n');
+}
+
+static void network_json(const struct netcheck *n, struct json *j) { netcheck_json_object(n, j); }
+
+static bool validate_network(const struct common *c, struct arena *a, struct err *e)
+{
+    static const char *const file[] = {"makespan", "makespan_sensitivity", "collectives", "hand_cases", "latency_load"};
+    const char *path[64];
+    int n = 0;
+    for (int i = 1; i < c->narg; i++) path[n++] = c->arg[i];
+    for (size_t i = 0; c->narg == 1 && i < sizeof file / sizeof *file; i++) {
+        struct text t = {0};
+        text_add(&t, "%s/tests/data/net/%s.json", plan_data_dir(), file[i]);
+        char *kept = arena_take(a, t.length + 1);
+        memcpy(kept, t.s, t.length + 1);
+        text_free(&t);
+        path[n++] = kept;
+    }
+    struct netcheck *checks = TAKE(a, n, struct netcheck);
+    for (int i = 0; i < n; i++)
+        if (!netcheck_run(&checks[i], path[i], NULL, NULL, c->quiet, a, e)) return false;
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    for (int i = 0; i < n; i++) {
+        if (c->json) network_json(&checks[i], &j);
+        else network_table(&checks[i]);
+    }
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
+    return true;
+}
+
+int cmd_validate(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_STORE, "MACHINE|all\nnetwork [FILE...]", doc, 1, 64);
+    struct err e;
+    err_clear(&e);
+    struct tally t = {0};
+    struct arena *a = arena_create();
+    bool network = strcmp(c.arg[0], "network") == 0;
+    bool ok = network || c.narg == 1 || err_set(&e, ERR_USAGE, "unexpected argument '%s'", c.arg[1]);
+    ok = ok && (network ? validate_network(&c, a, &e) : validate_machines(&c, a, &t, &e));
+    arena_destroy(a);
+    if (!ok) return common_fail(&c, &e);
+    return t.failed ? err_exit_status(ERR_CHECK) : 0;
+}

@@ -1,0 +1,118 @@
+/* published.c - machines/published.csv into records (published.h). */
+#include "app/published.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+
+enum { COLUMNS = 13, MOST_SETS = 8 };
+
+static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source";
+
+static const struct {
+    const char *name;
+    double scale;
+} units[] = {{"s", 1},      {"us", 1e-6},    {"ns", 1e-9},    {"B", 1},
+             {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12}};
+
+static char *copied(struct arena *a, const char *s, size_t n)
+{
+    char *c = arena_take(a, n + 1);
+    memcpy(c, s, n);
+    c[n] = '\0';
+    return c;
+}
+
+/* The cells of one line; a quoted cell may hold commas. Returns how many there are. */
+static int split(char *line, char *cell[COLUMNS])
+{
+    int n = 0;
+    for (char *at = line; n < COLUMNS; n++) {
+        bool quoted = *at == '"';
+        cell[n] = at + quoted;
+        char *end = quoted ? strchr(at + 1, '"') : strchrnul(at, ',');
+        if (!end) return -1;
+        char *next = quoted ? end + 1 : end;
+        bool more = *next == ',';
+        *end = '\0';
+        at = next + 1;
+        if (!more) return n + 1;
+    }
+    return n + 1;
+}
+
+static bool number(const char *s, double scale, double otherwise, double *value)
+{
+    char *end;
+    *value = *s ? strtod(s, &end) * scale : otherwise;
+    return !*s || *end == '\0';
+}
+
+static void split_sets(struct published *p, const char *s, struct arena *a)
+{
+    p->set = TAKE(a, MOST_SETS, const char *);
+    while (*s && p->nset < MOST_SETS) {
+        size_t n = strcspn(s, ";");
+        struct text t = {0};
+        text_add(&t, "machine.%.*s", (int)n, s);
+        p->set[p->nset++] = copied(a, t.s, t.length);
+        text_free(&t);
+        s += n;
+        s += strspn(s, "; ");
+    }
+}
+
+static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, struct err *e)
+{
+    *p = (struct published){.id = cell[0], .machine = cell[1], .at_text = cell[3], .unit = cell[7], .evidence = cell[8],
+                            .source = cell[12]};
+    p->quantity = probe_find(cell[2]);
+    if (p->quantity == PROBE_QUANTITIES) return err_set(e, ERR_DATA, "no quantity is called '%s'", cell[2]);
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcmp(cell[7], units[i].name) == 0) p->scale = units[i].scale;
+    if (p->scale == 0) return err_set(e, ERR_DATA, "unknown unit '%s'", cell[7]);
+    p->calibrated = strcmp(cell[9], "yes") == 0;
+    if (!*cell[4] || !number(cell[3], 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
+        !number(cell[5], p->scale, p->value, &p->low) || !number(cell[6], p->scale, p->value, &p->high) ||
+        !number(cell[10], p->scale, 0, &p->add))
+        return err_set(e, ERR_DATA, "%s: not a number", cell[0]);
+    split_sets(p, cell[11], a);
+    return true;
+}
+
+static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n, struct err *e)
+{
+    int line = 0;
+    for (char *next; *s; s = next) {
+        char *cell[COLUMNS];
+        size_t length = strcspn(s, "\r\n");
+        next = s + length;
+        next += strspn(next, "\r");
+        next += *next == '\n';
+        s[length] = '\0';
+        line++;
+        bool ok = line == 1 ? strcmp(s, header) == 0 || err_set(e, ERR_DATA, "the header is not '%s'", header)
+                            : split(s, cell) == COLUMNS || err_set(e, ERR_DATA, "expected %d cells", COLUMNS);
+        if (ok && line > 1) ok = record(&row[(*n)++], cell, a, e);
+        if (ok) continue;
+        text_copy(e->file, sizeof e->file, path);
+        e->line = line;
+        return false;
+    }
+    return true;
+}
+
+bool published_read(const char *path, struct arena *a, struct published **row, int *n, struct err *e)
+{
+    struct text t = {0};
+    if (!text_read_file(&t, path, e)) return false;
+    int lines = 1;
+    for (const char *c = t.s; *c; c++) lines += *c == '\n';
+    char *s = copied(a, t.s, t.length);
+    *row = TAKE(a, lines, struct published);
+    *n = 0;
+    text_free(&t);
+    return read_lines(path, s, a, *row, n, e);
+}

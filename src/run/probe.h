@@ -1,0 +1,42 @@
+/* probe.h - what a benchmark would measure on a simulated machine: one number for each quantity that is published.
+ *
+ * Message times come from the micro-benchmark kernels on virtual processors; wire times from the same kernels with
+ * message software that costs nothing; rates of cuts from the links of the topology. */
+#ifndef RUN_PROBE_H
+#define RUN_PROBE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/err.h"
+#include "spec/machine_spec.h"
+
+enum probe_quantity {
+    PROBE_ONE_WAY,        /* ping-pong of ranks 0 and 1: half the round trip [s]; at: bytes */
+    PROBE_ROUND_TRIP,     /* [s]; at: bytes */
+    PROBE_BANDWIDTH,      /* bytes / one way [B/s]; at: bytes */
+    PROBE_R_INF,          /* asymptotic rate: from 4 to 8 MiB [B/s] */
+    PROBE_N_HALF,         /* smallest size that reaches half of r_inf [B] */
+    PROBE_SEND_OVERHEAD,  /* LogGP o_s of 8 bytes [s] */
+    PROBE_RECV_OVERHEAD,  /* LogGP o_r of 8 bytes [s] */
+    PROBE_LATENCY,        /* LogGP L: one way of 8 bytes less o_s and o_r [s] */
+    PROBE_GAP,            /* LogGP g: between 8-byte messages of one sender [s] */
+    PROBE_WIRE,           /* one way without software, empty message [s]; at: links on the way */
+    PROBE_READ,           /* a remote read: request and reply over the wire, beside what memory takes [s]; at: routers */
+    PROBE_BISECTION,      /* links that a halving cuts, both directions; the smallest over the dimensions [B/s] */
+    PROBE_GLOBAL,         /* all links between groups of a dragonfly, one direction [B/s] */
+    PROBE_BARRIER,        /* [s]; at: ranks */
+    PROBE_QUANTITIES
+};
+
+/* probe_name: "one-way", "r-inf", ...; probe_find: the reverse, PROBE_QUANTITIES when there is none. */
+const char *probe_name(enum probe_quantity q);
+enum probe_quantity probe_find(const char *name);
+
+/* probe_measure: quantity `q` of machine `m` at `at` into *value (SI).
+ *
+ *   Returns false with ERR_CONFIG when the machine has no such quantity (no route of so many links, no groups), or as
+ *   run_one. */
+bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e);
+
+#endif
