@@ -13,6 +13,7 @@ const struct verb verb_list[] = {
     {"validate", "machines beside published figures, networks beside references", cmd_validate},
     {"netcheck", "hold the network levels against reference answers", cmd_netcheck},
     {"accuracy", "error against run time: network, arithmetic, integration", cmd_accuracy},
+    {"stability", "stiff and extreme cases against every algorithm", cmd_stability},
     {"query", "run SQL on a database", cmd_query},
     {0},
 };

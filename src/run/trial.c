@@ -30,6 +30,19 @@ double trial_error(const double *x, const double *reference, int n)
     return scale > 0 ? difference / scale : difference;
 }
 
+struct machine_spec trial_machine(int nrank)
+{
+    return (struct machine_spec){
+        .name = "crossbar",
+        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+                     .processors_per_node = 1},
+        .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
+        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
+                    .virtual_channels = 1},
+        .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
+    };
+}
+
 static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
                      const struct model *m, const struct state *s, struct arena *a, struct err *e)
 {

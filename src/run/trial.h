@@ -28,6 +28,9 @@ struct trial {
  * in state s. Memory from a. */
 struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a);
 
+/* trial_machine: a crossbar of nrank processors; answers do not depend on the machine. */
+struct machine_spec trial_machine(int nrank);
+
 /* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no numbers, 0 for equal. */
 double trial_error(const double *x, const double *reference, int n);
 

@@ -1,0 +1,167 @@
+/* stability_forward.c - accelerations of one scene by every algorithm, held against quad precision. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "mech/dynamics_table.h"
+#include "run/stability_scene.h"
+#include "run/trial.h"
+
+enum {
+    MOST_RANKS = 64,
+    MOST_DENSE = 1024,   /* degrees of freedom for the mass matrix */
+    MOST_MEASURED = 8192 /* bodies for the condition, which takes a second reference */
+};
+
+struct judge {
+    struct stability_report *report;
+    const char *subject;
+    const struct model *m;
+    const struct state *s;
+    struct arena *a;
+    double *reference;   /* (nu) */
+    double force;        /* largest joint force with the right answer: the residual's scale */
+    double condition;
+};
+
+static bool quad_forward(const struct model *m, const struct state *s, struct arena *a, double *qdd)
+{
+    struct work w = {0};
+    return dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w);
+}
+
+/* How much the answer moves when coordinates, rates and forces move by 1e-10 of themselves. */
+static double condition_of(const struct judge *j)
+{
+    const double change = 1e-10;
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *qdd = TAKE(j->a, m->nu, double);
+    s.q = TAKE(j->a, m->nq, double), s.qd = TAKE(j->a, m->nu, double), s.tau = TAKE(j->a, m->nu, double);
+    for (int i = 0; i < m->nq; i++) s.q[i] = j->s->q[i] * (1 + (i % 3 - 1) * change);
+    for (int i = 0; i < m->nu; i++) s.qd[i] = j->s->qd[i] * (1 + (i % 2 ? change : -change));
+    for (int i = 0; i < m->nu; i++) s.tau[i] = j->s->tau[i] * (1 + (i % 2 ? -change : change));
+    double moved = quad_forward(m, &s, j->a, qdd) ? trial_error(qdd, j->reference, m->nu) / change : NAN;
+    arena_release(j->a, mark);
+    return moved;
+}
+
+/* Largest |tau - inverse dynamics(qdd)|, springs in tau, over j->force. The answer's own rounding is part of it. */
+static double residual_of(const struct judge *j, double *qdd)
+{
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0;
+    struct work w = {0};
+    s.qdd = qdd;
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
+    s.qdd = j->reference;
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, right, &w);
+    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fabs(tau[i] - right[i]));
+    arena_release(j->a, mark);
+    return j->force > 0 ? largest / j->force : largest;
+}
+
+/* The largest of inertial and other forces that meet in a joint, each alone. */
+static double force_of(const struct judge *j)
+{
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *tau = TAKE(j->a, m->nu, double), largest = 0;
+    struct work w = {0};
+    s.qdd = TAKE(j->a, m->nu, double);
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
+    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fmax(fabs(tau[i]), fabs(s.tau[i])));
+    arena_release(j->a, mark);
+    return largest;
+}
+
+static void finish_row(const struct judge *j, struct stability_row *x, double *qdd, double own_residual, bool single)
+{
+    row_grade(x, trial_error(qdd, j->reference, j->m->nu), single);
+    x->residual = j->m->nloop > 0 || !isfinite(x->error) ? own_residual : residual_of(j, qdd);
+    x->condition = j->condition;
+}
+
+static void serial_row(const struct judge *j, enum forward_method method, enum precision precision)
+{
+    const struct dynamics_type *t = dynamics_type_of(precision);
+    struct stability_row *x = row_add(j->report, j->subject, forward_method_name(method), t->name);
+    double *qdd = TAKE(j->a, j->m->nu + 1, double);
+    struct work w = {0};
+    struct forward_report f = {0};
+    if (!t->forward(j->m, j->s, method, j->a, qdd, NULL, &f, &w)) {
+        text_copy(x->reason, sizeof x->reason, "a pivot was not positive");
+        return;
+    }
+    if (f.fell_back) text_copy(x->reason, sizeof x->reason, "articulated bodies had to solve it");
+    finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT);
+}
+
+static const struct variant {
+    const char *name;
+    bool contraction; /* for trees and loops; the others for open chains */
+    enum precision precision;
+    enum formulation formulation;
+    enum solver solver;
+    int inner, outer;
+} variant_table[] = {
+    {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0},
+    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0},
+    {"direct cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0},
+    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0},
+    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 0},
+    {"robust cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1},
+    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1},
+    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1},
+    {"paper contraction", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0},
+    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0},
+    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1},
+};
+
+static void parallel_row(const struct judge *j, const struct variant *v)
+{
+    int P = j->m->nbody < MOST_RANKS ? j->m->nbody : MOST_RANKS;
+    struct run_spec spec = {.machine = trial_machine(P), .nrank = P};
+    spec.kernel = (struct kernel_spec){.name = "forward", .formulation = v->formulation, .solver = v->solver,
+                                       .part_solver = PART_CR, .precision = v->precision, .composites_incoming = true,
+                                       .inner_refinements = v->inner, .outer_refinements = v->outer};
+    struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
+    x->refinements = v->inner + v->outer;
+    struct trial t = trial_run(&spec, j->m, j->s, j->a);
+    if (!t.answered) {
+        text_copy(x->reason, sizeof x->reason, t.text);
+        return;
+    }
+    finish_row(j, x, t.qdd, t.residual, v->precision == PRECISION_FLOAT);
+    if (t.condition > 0) x->growth = t.condition;
+}
+
+void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
+                             const struct state *s, struct arena *scratch)
+{
+    struct judge j = {r, subject, m, s, scratch, TAKE(scratch, m->nu + 1, double), 0, NAN};
+    if (!quad_forward(m, s, scratch, j.reference)) {
+        text_copy(row_add(r, subject, "aba", "quad")->reason, 60, "the reference itself broke down");
+        return;
+    }
+    j.force = force_of(&j);
+    if (m->nbody <= MOST_MEASURED) j.condition = condition_of(&j);
+    for (int k = 0; k < FORWARD_METHODS; k++) {
+        struct arena_mark mark = arena_mark(scratch);
+        if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && m->nu > MOST_DENSE)) continue;
+        serial_row(&j, (enum forward_method)k, PRECISION_DOUBLE);
+        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT) serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
+        arena_release(scratch, mark);
+    }
+    bool branched = !m->is_chain || m->nloop > 0;
+    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
+        struct arena_mark mark = arena_mark(scratch);
+        if (variant_table[k].contraction == branched) parallel_row(&j, &variant_table[k]);
+        arena_release(scratch, mark);
+    }
+}

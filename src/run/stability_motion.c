@@ -1,0 +1,127 @@
+/* stability_motion.c - steppers on stiff scenes: the largest stable step of the explicit ones, and what each costs. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "mech/dynamics_table.h"
+#include "mech/trajectory.h"
+#include "run/stability_scene.h"
+#include "run/trial.h"
+
+enum { STEPS = 400, MOST_EVALUATIONS = 300000 };
+
+static struct state copy_of(const struct model *m, const struct state *s, struct arena *a)
+{
+    struct state c = *s;
+    c.q = TAKE(a, m->nq, double);
+    c.qd = TAKE(a, m->nu, double);
+    memcpy(c.q, s->q, (size_t)m->nq * sizeof *c.q);
+    memcpy(c.qd, s->qd, (size_t)m->nu * sizeof *c.qd);
+    return c;
+}
+
+static double energy_of(const struct model *m, const struct state *s, struct arena *a)
+{
+    struct dynamics_totals t;
+    dynamics_type_of(PRECISION_DOUBLE)->totals(m, s, a, &t);
+    return t.kinetic + t.potential;
+}
+
+/* Whether `steps` steps of h stay within bounds: energy may not rise by more than gravity and motors can explain. */
+static bool is_stable(const struct model *m, const struct state *s, enum step_rule rule, double h, struct arena *a)
+{
+    struct arena_mark mark = arena_mark(a);
+    struct state x = copy_of(m, s, a);
+    struct work w = {0};
+    double before = energy_of(m, s, a), room = 100 + 3 * fabs(before);
+    bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, &x, rule, h, STEPS, a, &w);
+    double after = good ? energy_of(m, &x, a) : NAN;
+    arena_release(a, mark);
+    return isfinite(after) && after < before + room;
+}
+
+/* By bisection of the logarithm, to 2%. 0: none of 1e-12 .. 1. */
+static double largest_step(const struct model *m, const struct state *s, enum step_rule rule, struct arena *a)
+{
+    double low = 1e-12, high = 0.1;
+    if (!is_stable(m, s, rule, low, a)) return 0;
+    while (high / low > 1.02) {
+        double h = sqrt(low * high);
+        if (is_stable(m, s, rule, h, a)) low = h;
+        else high = h;
+    }
+    return low;
+}
+
+static void own_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
+                    enum step_rule rule, double duration, const struct state *reference, struct arena *a)
+{
+    static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4"};
+    struct stability_row *x = row_add(r, subject, name[rule], "double");
+    x->step_s = largest_step(m, s, rule, a);
+    if (x->step_s == 0) {
+        text_copy(x->reason, sizeof x->reason, "no step is stable");
+        return;
+    }
+    double steps = ceil(2 * duration / x->step_s);
+    long evaluations = (long)steps * (rule == STEP_RK4 ? 4 : 1);
+    if (evaluations > MOST_EVALUATIONS) {
+        snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run", (double)evaluations);
+        x->status = STABILITY_DEGRADED;
+        return;
+    }
+    struct state end = copy_of(m, s, a);
+    struct work w = {0};
+    bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, &end, rule, duration / steps, (int)steps, a, &w);
+    double error = good ? fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu)) : NAN;
+    x->error = isfinite(error) ? error : NAN;
+    x->status = error <= 0.01 ? STABILITY_OK : isfinite(error) ? STABILITY_DEGRADED : STABILITY_FAILED;
+    double E = energy_of(m, reference, a);
+    if (good) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
+    snprintf(x->reason, sizeof x->reason, "%ld evaluations at half the largest stable step", evaluations);
+}
+
+static void library_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
+                        const char *stepper, double duration, const struct state *reference, struct arena *a)
+{
+    const struct trajectory_options o = {.stepper = stepper, .tolerance = 1e-6, .most_evaluations = MOST_EVALUATIONS};
+    struct stability_row *x = row_add(r, subject, stepper, "double");
+    struct trajectory_report t = {0};
+    struct state end = copy_of(m, s, a);
+    struct err e;
+    err_clear(&e);
+    if (!trajectory_advance(m, &end, duration, &o, a, &t, &e)) {
+        text_copy(x->reason, sizeof x->reason, e.text);
+        return;
+    }
+    double error = fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu));
+    x->error = isfinite(error) ? error : NAN;
+    x->status = error <= 1e-3 ? STABILITY_OK : error <= 0.1 ? STABILITY_DEGRADED : STABILITY_FAILED;
+    x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
+    double E = energy_of(m, reference, a);
+    x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
+    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6", t.evaluations);
+}
+
+void stability_motion(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
+                      bool damped, struct arena *scratch)
+{
+    static const char *const stepper[] = {"rkf45", "rk8pd", "msadams", "rk2imp", "rk4imp", "bsimp", "msbdf"};
+    double fast = largest_step(m, s, STEP_RK4, scratch);
+    if (m->nu > 40 || fast == 0) return; /* implicit steppers' dense Jacobians are for small systems */
+    /* Undamped: some twenty of the fastest oscillations. Damped: until the slow motion has been seen too. */
+    double duration = damped ? fmin(0.05 / m->second, 1e6 * fast) : 50 * fast;
+    struct trajectory_options tight = {.stepper = damped ? "bsimp" : "rk8pd", .tolerance = 1e-12};
+    struct state reference = copy_of(m, s, scratch);
+    struct err e;
+    err_clear(&e);
+    if (!trajectory_advance(m, &reference, duration, &tight, scratch, NULL, &e)) {
+        text_copy(row_add(r, subject, tight.stepper, "double")->reason, 120, e.text);
+        return;
+    }
+    for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++)
+        own_row(r, subject, m, s, (enum step_rule)rule, duration, &reference, scratch);
+    for (size_t k = 0; k < sizeof stepper / sizeof *stepper; k++)
+        library_row(r, subject, m, s, stepper[k], duration, &reference, scratch);
+}

@@ -1,0 +1,42 @@
+/* stability_scene.h - the scenes of the suite, and what its parts share; private to stability*.c. */
+#ifndef RUN_STABILITY_SCENE_H
+#define RUN_STABILITY_SCENE_H
+
+#include "mech/model.h"
+#include "run/stability.h"
+
+/* How the masses of a chain are spread. */
+enum spread { SPREAD_EVEN, SPREAD_HEAVY_TIP, SPREAD_LIGHT_TIP, SPREAD_UP, SPREAD_DOWN, SPREAD_RANDOM, SPREAD_ALTERNATING };
+
+struct scene {
+    const char *name;
+    struct model_spec spec;
+    enum spread spread;
+    double ratio;   /* largest over smallest mass */
+    double point;   /* factor of all inertias about centres of mass; 0: 1 */
+    double nudge;   /* added to every coordinate, alternating sign */
+    bool weightless, at_rest;
+    bool complete;  /* spec says everything: nothing is to be filled in */
+    bool moves;     /* stiff: steppers are tried on it too */
+};
+
+/* scene_list: the suite, (*n) scenes. */
+const struct scene *scene_list(int *n);
+
+/* scene_build: model and state; false with *e set. */
+bool scene_build(const struct scene *c, struct arena *a, struct model **m, struct state **s, struct err *e);
+
+/* row_add: a failed row without numbers. The pointer holds until the next is added. */
+struct stability_row *row_add(struct stability_report *r, const char *subject, const char *algorithm,
+                              const char *precision);
+
+/* row_grade: error and status; limits of `single` precision or of double. */
+void row_grade(struct stability_row *row, double error, bool single);
+
+/* stability_accelerations: rows of every forward algorithm. stability_motion: rows of the steppers. */
+void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
+                             const struct state *s, struct arena *scratch);
+void stability_motion(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
+                      bool damped, struct arena *scratch);
+
+#endif
