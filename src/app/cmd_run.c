@@ -5,6 +5,7 @@
 #include "app/verb.h"
 #include "base/check.h"
 #include "report/report.h"
+#include "run/model_file.h"
 #include "run/run.h"
 #include "store/store.h"
 
@@ -17,7 +18,8 @@ static const char doc[] =
 struct keep {
     struct store *store;
     struct err *error;
-    int invalid, deadlock;
+    int invalid, deadlock, redundant;
+    bool quiet;
 };
 
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
@@ -28,6 +30,9 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     if (r->status != RUN_OK)
         fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
                 r->text);
+    else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
+        fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
+                r->loop_rows - r->loop_rank, r->loop_rows);
     return store_put(k->store, spec, r, "", k->error);
 }
 
@@ -66,6 +71,7 @@ static bool print_table(struct store *s, const struct plan *p, bool json, struct
 static void say_unused(const struct plan *p)
 {
     for (int i = 0; i < p->nunused; i++) fprintf(stderr, "mimdsim: unused: %s\n", p->unused[i]);
+    model_file_warn(p->run, p->nrun, stderr);
 }
 
 static bool answer(const struct common *c, const struct plan *p, struct keep *k, struct err *e)
@@ -87,7 +93,7 @@ int cmd_run(int argc, char **argv)
     err_clear(&e);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e};
+    struct keep k = {.error = &e, .quiet = c.quiet};
     bool ok = plan_read(&p, c.arg[0], &o, &e) && answer(&c, &p, &k, &e);
     store_close(k.store);
     plan_free(&p);

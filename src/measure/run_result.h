@@ -76,6 +76,8 @@ struct run_result {
     struct error_check error[RUN_MAX_ERRORS];
 
     double measured_s;         /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
+    int loop_rows, loop_rank;  /* constraints of closed chains; the independent ones among them, -1: not asked for */
+    double drift_position, drift_velocity; /* largest violation of a loop at the end [model's units]; of loops only */
     int64_t messages, bytes;   /* sent, all ranks */
     int64_t events;            /* dispatched by the simulator */
     int64_t ties;              /* events that shared their time with the one before */

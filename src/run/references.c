@@ -68,12 +68,55 @@ static void check_forward(const struct kernel_job *job, struct arena *scratch, s
            references_tolerance(&job->spec->kernel, job->model->nbody));
 }
 
+/* The state at the end of the job's time steps by the serial integrator, begun at q + change. False: broke down. */
+static bool end_state(const struct kernel_job *job, double change, struct arena *scratch, struct state *end)
+{
+    const struct kernel_spec *k = &job->spec->kernel;
+    const struct model *m = job->model;
+    *end = *job->state;
+    end->q = TAKE(scratch, m->nq, double);
+    end->qd = TAKE(scratch, m->nu, double);
+    for (int i = 0; i < m->nq; i++) end->q[i] = job->state->q[i] * (1 + change) + change;
+    memcpy(end->qd, job->state->qd, (size_t)m->nu * sizeof(double));
+    struct work w = {0};
+    return dynamics_type_of(PRECISION_DOUBLE)
+        ->advance(m, end, k->step, k->step_size / m->second, k->steps, scratch, &w);
+}
+
+static void check_steps(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+{
+    const double change = 1e-8;
+    const int nq = job->model->nq, nu = job->model->nu;
+    struct state end, other;
+    const bool found = end_state(job, 0, scratch, &end) && end_state(job, change, scratch, &other);
+    double growth = 1;
+    if (found)
+        growth = fmax(growth, fmax(relative_error(other.q, end.q, nq), relative_error(other.qd, end.qd, nu)) / change);
+    const double tolerance = fmin(references_tolerance(&job->spec->kernel, job->model->nbody) * growth, 1e-2);
+    record(out, "q", "steps", found ? relative_error(job->q_end, end.q, nq) : NAN, tolerance);
+    record(out, "qd", "steps", found ? relative_error(job->qd_end, end.qd, nu) : NAN, tolerance);
+}
+
+void references_loops(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+{
+    if (!job->model || job->model->nrow == 0) return;
+    struct arena_mark mark = arena_mark(scratch);
+    struct state end = *job->state;
+    if (job->q_end) end.q = job->q_end;
+    if (job->qd_end) end.qd = job->qd_end;
+    dynamics_type_of(PRECISION_DOUBLE)->drift(job->model, &end, scratch, &out->drift_position, &out->drift_velocity);
+    out->loop_rows = job->model->nrow;
+    out->loop_rank = *job->loop_rank;
+    arena_release(scratch, mark);
+}
+
 void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
 {
     if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
     if (job->tau) check_inverse(job, scratch, out);
     if (job->qdd && job->spec->kernel.steps == 0) check_forward(job, scratch, out);
+    if (job->qdd && job->q_end) check_steps(job, scratch, out);
     arena_release(scratch, mark);
 }
 

@@ -9,8 +9,14 @@
 
 /* references_check: compare the job's answers with the serial ones: tau with RNEA, qdd with ABA (closed chains: with
  * the articulated-body algorithm's bordered system). Fills out->error; a relative error above the tolerance, or one
- * that is no number, makes the run RUN_INVALID with its text. Time-stepping jobs compare the end state. */
+ * that is no number, makes the run RUN_INVALID with its text. Jobs that step in time compare
+ * the state at the end with the serial integrator's, of the same rule and step; what may differ is what the forward
+ * dynamics may, grown as a small change of the first state grows on the way. */
 void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out);
+
+/* references_loops: how many loop constraints there are, how many are independent, and how far the state at the end of
+ * the run violates them. Without loops: nothing. */
+void references_loops(const struct kernel_job *job, struct arena *scratch, struct run_result *out);
 
 /* references_tolerance: the largest relative error of the accelerations that a correct program may show for `n`
  * bodies: the formulation's error growth (docs/accuracy.md), with two decades of room. */

@@ -44,6 +44,8 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
         if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
         if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
         if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
+        job->loop_rank = TAKE(a, 1, int);
+        *job->loop_rank = -1;
         if (spec->kernel.steps > 0) {
             job->q_end = TAKE(a, m->nq, double);
             job->qd_end = TAKE(a, m->nu, double);
@@ -75,6 +77,7 @@ static void verify(const struct kernel_job *job, const struct kernel_type *kerne
 {
     out->measured_s = largest_measured(job);
     if (out->status != RUN_OK) return;
+    references_loops(job, scratch, out);
     references_check(job, scratch, out);
     references_baselines(job, kernel, scratch, out);
 }

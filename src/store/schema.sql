@@ -45,6 +45,10 @@ CREATE TABLE run (
     text             TEXT NOT NULL,     -- why it is not ok
     makespan_ps      INTEGER NOT NULL,
     measured_s       REAL,              -- what a micro-benchmark's kernel measured, simulated time
+    loop_rows        INTEGER,           -- constraints of closed chains; NULL: no loops
+    loop_rank        INTEGER,           -- independent ones among them: fewer than loop_rows are redundant
+    drift_position   REAL,              -- largest violation of a loop when the run ends, in the model's units
+    drift_velocity   REAL,
     messages         INTEGER NOT NULL,
     sent_bytes       INTEGER NOT NULL,
     events           INTEGER NOT NULL,

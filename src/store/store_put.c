@@ -198,6 +198,10 @@ static void bind_result(struct binding *b, const struct run_result *r, char dige
     bind_text(b, r->text);
     bind_int(b, r->makespan_ps);
     bind_real(b, r->measured_s);
+    bind_int_if(b, r->loop_rows > 0, r->loop_rows);
+    bind_int_if(b, r->loop_rows > 0 && r->loop_rank >= 0, r->loop_rank);
+    bind_real(b, r->loop_rows > 0 ? r->drift_position : NAN);
+    bind_real(b, r->loop_rows > 0 ? r->drift_velocity : NAN);
     bind_int(b, r->messages);
     bind_int(b, r->bytes);
     bind_int(b, r->events);
