@@ -1,4 +1,5 @@
 /* common.c - the options that verbs share, by argp. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +7,7 @@
 #include "base/check.h"
 #include "base/json.h"
 
-enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR };
+enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT };
 
 static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
@@ -19,6 +20,7 @@ static const struct argp_option option_table[] = {
     {"level", KEY_LEVEL, "LEVEL", 0, "only this level: loggp, link, packet, flit or auto", 6},
     {"brief", KEY_BRIEF, NULL, 0, "statistics only", 6},
     {"compare", KEY_COMPARE, NULL, 0, "show what differs between two", 7},
+    {"format", KEY_FORMAT, "FORMAT", 0, "only this: picture, text, chrome, paje or csv (default: all but csv)", 8},
     {"json", KEY_JSON, NULL, 0, "answer with one JSON document on standard output", 5},
     {"quiet", 'q', NULL, 0, "no progress and no remarks on standard error", 5},
     {0},
@@ -26,14 +28,27 @@ static const struct argp_option option_table[] = {
 
 static unsigned group_of(int group)
 {
-    static const unsigned takes[] = {0, TAKES_PLAN, TAKES_STORE, TAKES_DIR, TAKES_JOBS, 0, TAKES_LEVEL, TAKES_COMPARE};
+    static const unsigned takes[] = {0, TAKES_PLAN,  TAKES_STORE,   TAKES_DIR,   TAKES_JOBS,
+                                     0, TAKES_LEVEL, TAKES_COMPARE, TAKES_FORMAT};
     return takes[group];
 }
 
 struct parse {
     struct common *common;
     int least, most;
+    struct err error;
 };
+
+/* Say what is wrong with the command line; argp then ends the process, unless a document is wanted first. */
+static error_t refuse(struct argp_state *state, const char *format, const char *arg)
+{
+    struct parse *p = state->input;
+    char text[512];
+    snprintf(text, sizeof text, format, arg);
+    err_set(&p->error, ERR_USAGE, "%s", text);
+    argp_error(state, "%s", text);
+    return EINVAL;
+}
 
 static void add_set(struct common *c, const char *text)
 {
@@ -42,12 +57,13 @@ static void add_set(struct common *c, const char *text)
     c->set[c->nset++] = text;
 }
 
-static void set_jobs(struct common *c, const char *arg, struct argp_state *state)
+static error_t set_jobs(struct common *c, const char *arg, struct argp_state *state)
 {
     char *end;
     long n = strtol(arg, &end, 10);
-    if (*end || end == arg || n < 1 || n > 256) argp_error(state, "--jobs: '%s' is not a number from 1 to 256", arg);
+    if (*end || end == arg || n < 1 || n > 256) return refuse(state, "--jobs: '%s' is not a number from 1 to 256", arg);
     c->jobs = (int)n;
+    return 0;
 }
 
 static error_t parse_option(int key, char *arg, struct argp_state *state)
@@ -63,13 +79,13 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case 'o':
         c->database = arg;
-        break;
+        c->database_given = true;
+        return arg[0] ? 0 : refuse(state, "--output: '%s' is not the name of a file", arg);
     case 'q':
         c->quiet = true;
         break;
     case 'j':
-        set_jobs(c, arg, state);
-        break;
+        return set_jobs(c, arg, state);
     case KEY_FORCE:
         c->force = true;
         break;
@@ -78,6 +94,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case KEY_LEVEL:
         c->level = arg;
+        break;
+    case KEY_FORMAT:
+        c->format = arg;
         break;
     case KEY_BRIEF:
         c->brief = true;
@@ -90,16 +109,48 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case ARGP_KEY_ARG:
         if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
-            argp_error(state, "unexpected argument '%s'", arg);
+            return refuse(state, "unexpected argument '%s'", arg);
         c->arg[c->narg++] = arg;
         break;
     case ARGP_KEY_END:
-        if (c->narg < p->least) argp_error(state, "an argument is missing");
-        break;
+        return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
     return 0;
+}
+
+/* The document of a failure. */
+static void print_error(const struct err *e)
+{
+    struct json j = json_make(stdout);
+    json_object(&j);
+    json_key(&j, "error");
+    json_object(&j);
+    json_key(&j, "exit_status");
+    json_int(&j, err_exit_status(e->kind));
+    json_key(&j, "file");
+    json_text(&j, e->file);
+    json_key(&j, "kind");
+    json_text(&j, err_word(e->kind));
+    json_key(&j, "line");
+    json_int(&j, e->line);
+    json_key(&j, "text");
+    json_text(&j, e->text);
+    json_end(&j);
+    json_end(&j);
+    json_finish(&j);
+}
+
+bool common_wants_json(int argc, char **argv)
+{
+    bool wants = false;
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-?") == 0 || strcmp(argv[i], "--usage") == 0)
+            return false;
+        wants = wants || strcmp(argv[i], "--json") == 0;
+    }
+    return wants;
 }
 
 void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
@@ -108,44 +159,31 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     memset(c, 0, sizeof *c);
     c->database = "mimdsim.db";
     c->directory = "figures";
+    c->kernel = catalogue_of_kernels();
     struct argp_option option[sizeof option_table / sizeof *option_table] = {{0}};
     int n = 0;
     for (const struct argp_option *o = option_table; o->name; o++)
         if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
-    struct parse p = {c, least, most};
+    struct parse p = {c, least, most, {0}};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
-    argp_parse(&argp, argc, argv, 0, NULL, &p);
+    bool document = common_wants_json(argc, argv);
+    if (argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p) == 0) return;
+    err_set(&p.error, ERR_USAGE, "unknown option, or one without its value; `%s --help` lists them", argv[0]);
+    print_error(&p.error);
+    exit(err_exit_status(ERR_USAGE));
 }
 
 struct plan_options common_plan(const struct common *c)
 {
-    return (struct plan_options){.machine = c->machine, .nset = c->nset, .set = c->set};
+    return (struct plan_options){
+        .machine = c->machine, .nset = c->nset, .set = c->set, .nkernel = c->kernel.n, .kernel = c->kernel.name};
 }
 
 int common_fail(const struct common *c, const struct err *e)
 {
-    int status = err_exit_status(e->kind);
-    if (c->json) {
-        struct json j = json_make(stdout);
-        json_object(&j);
-        json_key(&j, "error");
-        json_object(&j);
-        json_key(&j, "exit_status");
-        json_int(&j, status);
-        json_key(&j, "file");
-        json_text(&j, e->file);
-        json_key(&j, "kind");
-        json_text(&j, err_word(e->kind));
-        json_key(&j, "line");
-        json_int(&j, e->line);
-        json_key(&j, "text");
-        json_text(&j, e->text);
-        json_end(&j);
-        json_end(&j);
-        json_finish(&j);
-    }
+    if (c->json) print_error(e);
     err_print(e);
-    return status;
+    return err_exit_status(e->kind);
 }
 
 void common_print_pairs(const struct common *c, int n, const char *const *name, const char *const *title)

@@ -26,15 +26,19 @@ static void print_version(void)
     printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s\n", b.version, b.git, b.compiler, b.flags, run_fibers());
 }
 
-static int unknown_verb(const char *word)
+static int unknown_verb(int argc, char **argv)
 {
+    const char *word = argv[1];
+    const struct common c = {.json = common_wants_json(argc, argv)};
     const char *name[MOST_VERBS];
     int n = 0;
     for (const struct verb *v = verb_list; v->name; v++) name[n++] = v->name;
     const char *near = text_nearest(word, name, n);
-    fprintf(stderr, "mimdsim: '%s' is not a verb%s%s%s; 'mimdsim --help' lists them\n", word,
+    struct err e;
+    err_clear(&e);
+    err_set(&e, ERR_USAGE, "'%s' is not a verb%s%s%s; 'mimdsim --help' lists them", word,
             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-    return err_exit_status(ERR_USAGE);
+    return common_fail(&c, &e);
 }
 
 static int run_verb(const struct verb *v, int argc, char **argv)
@@ -63,5 +67,5 @@ int main(int argc, char **argv)
     }
     for (const struct verb *v = verb_list; v->name; v++)
         if (strcmp(argv[1], v->name) == 0) return run_verb(v, argc - 1, argv + 1);
-    return unknown_verb(argv[1]);
+    return unknown_verb(argc, argv);
 }

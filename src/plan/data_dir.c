@@ -138,12 +138,16 @@ static int add_names(const char *dir, const char *what, const char **names, int 
 {
     char path[2 * PATH_LENGTH];
     if (snprintf(path, sizeof path, "%s/%s", dir, what) >= (int)sizeof path) return n;
+    const char *ending = strcmp(what, "plots") == 0 ? ".sql" : ".yaml";
     DIR *d = opendir(path);
     if (d == NULL) return n;
     for (struct dirent *entry; n < MAX_NAMES && (entry = readdir(d)) != NULL;) {
         size_t length = strlen(entry->d_name);
-        if (entry->d_name[0] == '.' || length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
-        names[n++] = data_dir_stem(entry->d_name, a);
+        size_t end = strlen(ending);
+        if (entry->d_name[0] == '.' || length <= end || strcmp(entry->d_name + length - end, ending) != 0) continue;
+        char *stem = arena_text(a, entry->d_name);
+        stem[length - end] = '\0';
+        names[n++] = stem;
     }
     closedir(d);
     return n;
@@ -161,4 +165,15 @@ const char **data_dir_names(const char *what, struct arena *a, int *n)
         if (kept == 0 || strcmp(names[kept - 1], names[i]) != 0) names[kept++] = names[i];
     *n = kept;
     return names;
+}
+
+bool data_dir_has_figure(const char *name, const char *file, int line, struct arena *a, struct err *e)
+{
+    int n;
+    const char **names = data_dir_names("plots", a, &n);
+    for (int i = 0; i < n; i++)
+        if (strcmp(names[i], name) == 0) return true;
+    const char *near = text_nearest(name, names, n);
+    return err_set_at(e, ERR_DATA, file, line, "no figure '%.80s'%s%s%s; `mimdsim plot` lists them", name,
+                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }

@@ -9,8 +9,35 @@
 #include "plan/scenario_file.h"
 #include "spec/spec_fields.h"
 
-static bool fill(struct plan *p, const struct scenario *s, struct err *e)
+static bool kernels_exist(const struct setting_list *list, const struct plan_options *o, struct err *e)
 {
+    for (int i = 0; i < list->n; i++) {
+        const struct setting *s = &list->at[i];
+        bool known = strcmp(s->key, "kernel.name") != 0;
+        for (int k = 0; !known && k < o->nkernel; k++) known = strcmp(s->text, o->kernel[k]) == 0;
+        if (known) continue;
+        const char *near = text_nearest(s->text, o->kernel, o->nkernel);
+        return err_set_at(e, ERR_DATA, s->file, s->line,
+                          "no kernel is called '%.80s'%s%s%s; `mimdsim kernels` lists them", s->text,
+                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    }
+    return true;
+}
+
+/* Kernels are built in above this room, so their names come with the options. */
+static bool all_kernels_exist(const struct scenario *s, const struct plan_options *o, struct err *e)
+{
+    if (o == NULL || o->nkernel == 0) return true;
+    if (!kernels_exist(&s->base, o, e)) return false;
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->axis[i].npoint; j++)
+            if (!kernels_exist(&s->axis[i].point[j], o, e)) return false;
+    return kernels_exist(&s->set, o, e);
+}
+
+static bool fill(struct plan *p, const struct scenario *s, const struct plan_options *o, struct err *e)
+{
+    if (!all_kernels_exist(s, o, e)) return false;
     text_copy(p->name, sizeof p->name, s->stem);
     p->question = s->question;
     p->figure = s->figure;
@@ -24,7 +51,7 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
 {
     struct scenario s;
     *p = (struct plan){.arena = arena_create()};
-    if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, e)) return true;
+    if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
     plan_free(p);
     return false;
 }
@@ -47,7 +74,7 @@ static bool is_machine_tree(const struct yaml_node *root)
     return false;
 }
 
-bool plan_check_file(const char *path, struct err *e)
+bool plan_check_file(const char *path, const struct plan_options *o, struct err *e)
 {
     struct plan p = {.arena = arena_create()};
     struct scenario s;
@@ -60,7 +87,7 @@ bool plan_check_file(const char *path, struct err *e)
         fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
         text_free(&as_path);
     } else if (fine) {
-        fine = scenario_file_tree(&s, root, path, NULL, p.arena, e) && fill(&p, &s, e);
+        fine = scenario_file_tree(&s, root, path, NULL, p.arena, e) && fill(&p, &s, o, e);
     }
     plan_free(&p);
     return fine;

@@ -13,6 +13,8 @@ struct plan_options {
     const char *machine; /* --machine NAME or file, NULL: the scenario's */
     int nset;
     const char *const *set; /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
+    int nkernel;
+    const char *const *kernel; /* (nkernel) the kernels there are; none: any name will do */
 };
 
 struct plan {
@@ -34,8 +36,8 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
 /* plan_free: give everything back; accepts an empty plan. */
 void plan_free(struct plan *p);
 
-/* plan_check_file: validate a scenario or machine file (by its content) without running. */
-bool plan_check_file(const char *path, struct err *e);
+/* plan_check_file: validate a scenario or machine file (by its content) without running; `o` may be NULL. */
+bool plan_check_file(const char *path, const struct plan_options *o, struct err *e);
 
 /* Where one value of a resolved machine comes from. */
 struct origin {

@@ -134,6 +134,7 @@ static bool read_figures(struct top *t, const struct yaml_node *n)
     s->figure = TAKE(t->arena, n->nchild + 1, const char *);
     for (const struct yaml_node *f = n->child; f != NULL; f = f->next) {
         if (f->text == NULL || f->text[0] == '\0') return refuse(t, n, "expected a list such as [fig5, fig6]");
+        if (!data_dir_has_figure(f->text, s->path, f->line, t->arena, t->err)) return false;
         s->figure[s->nfigure++] = f->text;
     }
     return true;

@@ -361,10 +361,10 @@ static void check_tells_machines_from_scenarios(void **state)
     (void)state;
     struct err e;
     err_clear(&e);
-    assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300.yaml", &e));
-    assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300-mpt.yaml", &e));
-    assert_true(plan_check_file(MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", &e));
-    assert_false(plan_check_file(scratch_write(&scratch, "half.yaml", "schema_version: 1\ntitle: x\n"), &e));
+    assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300.yaml", NULL, &e));
+    assert_true(plan_check_file(MIMDSIM_SRCDIR "/machines/t3e-300-mpt.yaml", NULL, &e));
+    assert_true(plan_check_file(MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, &e));
+    assert_false(plan_check_file(scratch_write(&scratch, "half.yaml", "schema_version: 1\ntitle: x\n"), NULL, &e));
     assert_non_null(strstr(e.text, "topology.family is missing"));
 }
 

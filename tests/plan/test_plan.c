@@ -267,7 +267,7 @@ static void wrong_files_are_refused_with_line_and_reason(void **state)
         if (b->line != 0 && e.line != b->line) fail_msg("%s\nline %d: %s", b->text, e.line, e.text);
         if (e.line != 0) assert_string_equal(e.file, path);
         err_clear(&e);
-        assert_false(plan_check_file(path, &e));
+        assert_false(plan_check_file(path, NULL, &e));
     }
 }
 
@@ -366,7 +366,7 @@ static void every_scenario_that_we_ship_is_valid(void **state)
     for (int i = 0; i < n; i++) {
         char path[512];
         snprintf(path, sizeof path, "%s/scenarios/%s.yaml", MIMDSIM_SRCDIR, stem[i]);
-        if (!plan_check_file(path, &e)) fail_msg("%s:%d: %s", e.file, e.line, e.text);
+        if (!plan_check_file(path, NULL, &e)) fail_msg("%s:%d: %s", e.file, e.line, e.text);
         if (strlen(title[i]) < 10) fail_msg("%s asks no question", stem[i]);
         struct plan p = scratch_plan(stem[i], NULL, 0);
         if (p.nunused > 0) fail_msg("%s: %s", stem[i], p.unused[0]);
