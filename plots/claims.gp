@@ -9,8 +9,8 @@ pass = 0; open = 0; fail = 0
 stats data using (claim[int(column("y"))] = strcol("id").": ".strcol("statement"), \
     variant[int(column("x"))] = strcol("variant"), g = column("grade"), v = strcol("variant") eq "verdict", pass = pass + (v && g == 0), open = open + (v && g == 1), \
     fail = fail + (v && g == 2), 0) nooutput
-# at most 64 letters of a statement
-cut(s) = strlen(s) > 64 ? s[1:63]."…" : s
+# at most 74 letters of a statement
+cut(s) = strlen(s) > 74 ? s[1:73]."…" : s
 headline = "The claims of the paper"
 subline = sprintf("%d pass, %d not testable, %d fail; percentages: share of parameter samples in which a claim holds", pass, open, fail)
 is(grade, v) = column("grade") == grade ? v : NaN
@@ -18,12 +18,12 @@ array grade_name[3] = ["pass", "not testable", "fail"]
 array grade_colour[3] = ["#d5e8f3", "#f4f4f4", "#b0401a"]
 
 do for [format in formats] {
-    high = 220 + 26*claims
-    eval page(format, 1000, high); tiny = small(format)
+    high = 300 + 26*claims
+    eval page(format, 1200, high); tiny = small(format)
     set multiplot
     unset grid
     set lmargin at screen 0.40; set rmargin at screen 0.985
-    set tmargin at screen 1.0 - 76.0/high; set bmargin at screen 130.0/high
+    set tmargin at screen 1.0 - 76.0/high; set bmargin at screen 200.0/high
     set xrange [0.5:columns + 0.5]; set yrange [claims + 0.5:0.5]
     unset border
     set xtics scale 0 rotate by 35 right noenhanced font tiny; set ytics scale 0 noenhanced font tiny

@@ -1,13 +1,23 @@
--- The claims of the paper against serial baselines and machines: whether each holds, and in which share of the samples of
--- the uncertain machine parameters.
--- needs: mimdsim claims
-WITH claims AS (SELECT id, row_number() OVER (ORDER BY length(id), id) AS y FROM claim GROUP BY id),
-variants AS (SELECT variant, row_number() OVER (ORDER BY variant <> '', variant) AS x FROM claim GROUP BY variant)
+-- The claims of the paper against the serial baselines, with structured and with dense operators: whether each holds, and in
+-- which share of the samples of the uncertain machine parameters. The verdict is that of the variant nearest to the text.
+-- needs: mimdsim paper
+WITH wide AS (SELECT id, row_number() OVER (ORDER BY substr(id, 1, 1) <> 'C', length(id), id) AS y FROM claim GROUP BY id),
+-- claims without a serial baseline are shown by their main measure
+cell AS (
+    SELECT *, iif(variant = '', 0, iif(variant LIKE '%structured', 1, 2)) AS style,
+           CASE WHEN variant = '' THEN 'verdict'
+                WHEN variant IN ('structured', 'dense', 'time, structured', 'time, dense', 'P = 128, structured', 'P = 128, dense')
+                THEN 'without a baseline' ELSE replace(replace(variant, ', structured', ''), ', dense', '') END AS baseline
+    FROM claim WHERE variant = '' OR variant LIKE '%structured' OR variant LIKE '%dense'),
+shown AS (SELECT * FROM cell WHERE baseline IN ('verdict', 'without a baseline', 'fastest serial', 'rnea', 'rnea+aba', 'rnea+crba',
+                                                'rnea+cfa-paper', 'rnea+cfa-direct', 'parallel code on one processor')),
+place AS (SELECT style, baseline, row_number() OVER (ORDER BY style, baseline = 'without a baseline', baseline) AS x
+          FROM shown GROUP BY style, baseline)
 SELECT v.x, y.y, c.id, replace(c.statement, ',', ' –') AS statement,
-       iif(c.variant = '', 'verdict', replace(c.variant, ',', ' –')) AS variant, c.verdict,
+       CASE c.style WHEN 0 THEN 'verdict' WHEN 1 THEN 'structured: ' || c.baseline ELSE 'dense: ' || c.baseline END AS variant, c.verdict,
        CASE c.verdict WHEN 'pass' THEN 0 WHEN 'not-testable' THEN 1 ELSE 2 END AS grade,
        c.value, c.unit, c.threshold, c.value_low, c.value_high, c.share, c.samples,
        CASE WHEN c.share IS NOT NULL THEN format('%d %%', round(100 * c.share)) WHEN c.verdict = 'pass' THEN 'yes'
             WHEN c.verdict = 'fail' THEN 'no' ELSE '–' END AS mark
-FROM claim c JOIN claims y ON y.id = c.id JOIN variants v ON v.variant = c.variant
+FROM shown c JOIN wide y ON y.id = c.id JOIN place v ON v.style = c.style AND v.baseline = c.baseline
 ORDER BY y.y, v.x;

@@ -1,12 +1,13 @@
 -- Figure 5: where the time of each stage goes at n = P = 16 and 128 on the Cray T3E. Means over the ranks: over all
 -- stages they add up to the makespan. With contention (the finest level of the network that is stored).
--- needs: mimdsim run scenarios/speedup-t3e.yaml
+-- needs: mimdsim paper fig5
 WITH chosen AS (
     SELECT id, row_number() OVER (PARTITION BY P ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
                                   level = 'link' DESC, level <> 'loggp' DESC, precision = 'double' DESC, id DESC) AS choice
     FROM run
     WHERE status = 'ok' AND machine LIKE 't3e%' AND kernel = 'dynamics' AND n = P AND P IN (16, 128)
-          AND base = 'fixed' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0)
+          AND base = 'fixed' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0
+          AND placement = 'linear' AND solver <> 'partition')
 SELECT v.P, v.stage, v.name, v.compute_mean_ps / 1e6 AS compute_us, v.send_mean_ps / 1e6 AS send_us,
        v.recv_mean_ps / 1e6 AS receive_us, v.wait_mean_ps / 1e6 AS wait_us,
        v.contention_mean_ps / 1e6 AS contention_us, v.total_mean_ps / 1e6 AS total_us,

@@ -1,12 +1,13 @@
 -- Figure 6 for the paper's four machines side by side: speedup of the complete dynamics for n = P, over the same code on
 -- one processor, the fastest serial code, and each serial code.
--- needs: mimdsim run scenarios/fig6-machines.yaml
+-- needs: mimdsim paper fig6-machines
 WITH point AS (
     SELECT *, CASE WHEN machine LIKE 't3e%' THEN 1 WHEN machine LIKE 'paragon%' THEN 2
                    WHEN machine LIKE 'origin%' THEN 3 WHEN machine LIKE 'quad-ppro%' THEN 4 END AS panel
     FROM v_speedup
     WHERE kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
-          AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),
+          AND solver <> 'partition' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0
+          AND run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario <> 'paper-scaling')),
 -- one variant of each machine: the one with the paper's own message software comes first by name
 chosen AS (
     SELECT *, row_number() OVER (PARTITION BY panel, baseline, n

@@ -1,13 +1,14 @@
 -- Figure 6: speedup of the complete parallel dynamics for n = P on the Cray T3E, one curve per serial baseline, and the
 -- degree of parallelism f that each point has by Amdahl's law, 1/S = (1 - f) + f/P; how much longer the run takes with
 -- contention (the finest level of the network that is stored) than without (loggp).
--- needs: mimdsim run scenarios/speedup-t3e.yaml
+-- needs: mimdsim paper fig6
 WITH point AS (
     SELECT *, row_number() OVER (PARTITION BY baseline, n, level = 'loggp'
                                  ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
                                           level = 'link' DESC, precision = 'double' DESC, run_id DESC) AS choice
     FROM v_speedup
-    WHERE machine LIKE 't3e%' AND kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
+    WHERE run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario NOT IN ('paper-scaling', 'fig9', 'fig9-machines'))
+          AND machine LIKE 't3e%' AND kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
           AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),
 finest AS (
     SELECT * FROM point a WHERE choice = 1

@@ -1,12 +1,13 @@
 -- Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies a processor on the Cray T3E: over the
 -- same code on one processor, and over the fastest serial code; below, the degree of parallelism f of each point.
--- needs: mimdsim run scenarios/fig9.yaml
+-- needs: mimdsim paper fig9
 WITH point AS (
     SELECT *, row_number() OVER (PARTITION BY baseline, n, P
                                  ORDER BY level <> 'loggp' DESC, level = 'link' DESC, formulation = 'paper' DESC,
                                           operators = 'structured' DESC, precision = 'double' DESC, run_id DESC) AS choice
     FROM v_speedup
-    WHERE machine LIKE 't3e%' AND kernel = 'dynamics' AND P > 1 AND n % P = 0 AND base = 'fixed'
+    WHERE run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario <> 'paper-scaling')
+          AND machine LIKE 't3e%' AND kernel = 'dynamics' AND P > 1 AND (n > P OR solver = 'partition') AND n % P = 0 AND base = 'fixed'
           AND baseline IN ('parallel code on one processor', 'fastest serial')
           AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),
 -- the eight smallest ratios of which there is a curve

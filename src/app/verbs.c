@@ -3,7 +3,10 @@
 
 const struct verb verb_list[] = {
     {"run", "run a scenario, store every run, print the table", cmd_run},
+    {"paper", "reproduce the paper: runs, figures, claims, report", cmd_paper},
+    {"claims", "judge the claims of the paper by a database", cmd_claims},
     {"plot", "draw a figure from a database", cmd_plot},
+    {"timeline", "who computes, sends and waits when, as picture, text or trace", cmd_timeline},
     {"explain", "what a scenario will run, what it will cost", cmd_explain},
     {"check", "validate files without running", cmd_check},
     {"machines", "list machines; show one with its sources; compare two", cmd_machines},

@@ -3,6 +3,7 @@
 #define REPORT_REPORT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "base/err.h"
@@ -14,6 +15,10 @@
  *   Returns false with ERR_NO_INPUT (no such figure: nearest name; no rows for it: what to run first), ERR_CREATE, or
  *   ERR_UNAVAILABLE (gnuplot missing; the CSV and the script are there all the same). */
 bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e);
+
+/* report_figure_run: the same of the one run `run_id`: NAME.sql finds it bound to ?1; the files are called `as`. */
+bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,
+                       const char *dir, struct err *e);
 
 /* report_figures: the names of all figures in data_dir/plots, sorted; returns how many; names owned by the caller
  * (free each and the array). */

@@ -24,6 +24,8 @@ struct figure {
     struct store *s;
     const char *plots;      /* folder of the descriptions */
     const char *name;
+    const char *as;         /* the results' name */
+    const char *run;        /* the run to show, NULL: the description chooses */
     const char *dir;        /* folder of the results */
     struct text run_ids;    /* JSON array of the runs shown, for its provenance */
     int64_t nrow;           /* of the first table */
@@ -108,14 +110,14 @@ static void remember_run(void *context, int64_t id)
 static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow, struct err *e)
 {
     struct text path = {0};
-    text_add(&path, "%s/%s%s%s.csv", f->dir, f->name, *table ? "." : "", table);
+    text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
     FILE *out = fopen(path.s, "w");
     if (out == NULL) {
         err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
         text_free(&path);
         return false;
     }
-    bool ok = csv_write(f->s, sql, 0, NULL, out, remember_run, &f->run_ids, nrow, e);
+    bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run, &f->run_ids, nrow, e);
     if (!ok) err_in(e, f->name);
     if (fclose(out) != 0 && ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
     if (!ok) unlink(path.s);
@@ -209,10 +211,10 @@ static bool write_script(struct figure *f, struct err *e)
 {
     struct text script = {0}, source = {0}, path = {0};
     bool ok = provenance(f, &source, e);
-    add_assignment(&script, "figure", f->name);
+    add_assignment(&script, "figure", f->as);
     add_assignment(&script, "provenance", source.s ? source.s : "");
     ok = ok && add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
-    text_add(&path, "%s/%s.gp", f->dir, f->name);
+    text_add(&path, "%s/%s.gp", f->dir, f->as);
     FILE *out = ok ? fopen(path.s, "w") : NULL;
     if (ok && out == NULL) ok = err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
     if (out != NULL) {
@@ -231,7 +233,7 @@ static void remove_images(const struct figure *f)
     static const char *const suffix[] = {".png", ".svg"};
     for (int i = 0; i < 2; i++) {
         struct text path = {0};
-        text_add(&path, "%s/%s%s", f->dir, f->name, suffix[i]);
+        text_add(&path, "%s/%s%s", f->dir, f->as, suffix[i]);
         unlink(path.s);
         text_free(&path);
     }
@@ -269,19 +271,20 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     remove_images(f);
     bool ok = write_tables(f, sql, e);
     if (ok && f->nrow == 0) ok = no_rows(f, sql, e);
-    text_add(&script, "%s.gp", f->name);
+    text_add(&script, "%s.gp", f->as);
     ok = ok && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
     if (!ok) remove_images(f);
     text_free(&script);
     return ok;
 }
 
-bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
+static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run, const char *as,
+                        const char *dir, struct err *e)
 {
     char *plots = joined(data_dir, "/plots", ""), *file = joined(name, ".sql", "");
     char *stem = strchr(name, '/') == NULL ? figure_stem(plots, file) : NULL;
     char *path = joined(plots, "/", file);
-    struct figure f = {.s = s, .plots = plots, .name = name, .dir = dir};
+    struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
     struct text sql = {0};
     bool ok = stem != NULL || no_such_figure(data_dir, name, e);
     ok = ok && text_read_file(&sql, path, e) && make_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
@@ -292,4 +295,17 @@ bool report_figure(struct store *s, const char *data_dir, const char *name, cons
     free(file);
     free(path);
     return ok;
+}
+
+bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
+{
+    return make_figure(s, data_dir, name, NULL, name, dir, e);
+}
+
+bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,
+                       const char *dir, struct err *e)
+{
+    char id[24];
+    snprintf(id, sizeof id, "%lld", (long long)run_id);
+    return make_figure(s, data_dir, name, id, as, dir, e);
 }

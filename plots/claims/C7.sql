@@ -1,0 +1,23 @@
+-- statement: More bodies a processor lift the speedup slightly and lower the degree of parallelism.
+-- test: S(n/P = 16) > S(n/P = 1) and f(n/P = 16) < f(n/P = 1) at every P >= 16
+-- unit: f(n/P = 16) - f(n/P = 1) at the largest P
+-- designated: fastest serial, structured
+-- Rows 'speedup only' test the first half alone.
+WITH point AS (
+    SELECT v.P, v.n / v.P AS ratio, v.baseline || ', ' || v.operators AS variant, v.speedup, v.parallel_fraction AS f
+    FROM v_speedup v JOIN run r ON r.id = v.run_id
+    WHERE v.machine = 't3e-300' AND v.kernel = 'dynamics' AND v.formulation = 'paper' AND v.base = 'fixed'
+          AND v.solver = 'partition' AND v.n % v.P = 0 AND v.P >= 16 AND v.level = 'link' AND v.precision = 'double'
+          AND r.placement = 'linear' AND ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0),
+pair AS (
+    SELECT a.variant, a.P, a.speedup AS s1, b.speedup AS s16, a.f AS f1, b.f AS f16
+    FROM point a JOIN point b ON b.P = a.P AND b.variant = a.variant AND a.ratio = 1 AND b.ratio = 16),
+last AS (SELECT * FROM pair GROUP BY variant HAVING P = max(P)),
+every AS (SELECT variant, min(s16 > s1) AS lifted, min(f16 < f1) AS lowered FROM pair GROUP BY variant)
+SELECT variant, f16 - f1 AS value, 0.0 AS threshold, lifted AND lowered AS holds,
+       format('S %.2f to %.2f, f %.3f to %.3f at P = %d', s1, s16, f1, f16, P) AS note
+FROM last JOIN every USING (variant)
+UNION ALL
+SELECT 'speedup only: ' || variant, s16 / s1, 1.0, lifted, format('S %.2f to %.2f at P = %d', s1, s16, P)
+FROM last JOIN every USING (variant) WHERE variant IN ('fastest serial, structured', 'fastest serial, dense')
+ORDER BY 1;

@@ -1,0 +1,26 @@
+/* cmd_claims.c - mimdsim claims: the claims of the paper, judged by what a database holds. */
+#include "app/verb.h"
+#include "report/claims.h"
+#include "store/store.h"
+
+static const char doc[] = "Judge the claims of the paper by the runs in DB (default paper.db) and print the table.\n\n"
+                          "Example: mimdsim claims paper.db --json\n\v"
+                          "A claim that fails is a result, not an error: the exit status is 0 when all could be judged.";
+
+int cmd_claims(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, 0, "[DB]", doc, 0, 1);
+    const char *path = c.narg ? c.arg[0] : "paper.db";
+    struct err e;
+    err_clear(&e);
+    struct claim_rules rules = {0};
+    struct store *s = store_open(path, STORE_READ, &e); /* a database that is not there is not made */
+    bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
+    store_close(s);
+    s = ok ? store_open(path, STORE_WRITE, &e) : NULL;
+    ok = ok && s && claims_decide(&rules, s, &e) && claims_print(s, c.json, stdout, &e);
+    store_close(s);
+    claims_free(&rules);
+    return ok ? 0 : common_fail(&c, &e);
+}

@@ -1,0 +1,178 @@
+/* cmd_paper.c - mimdsim paper: every run, figure and claim of the paper, and the report of them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/parameters.h"
+#include "app/sampling.h"
+#include "app/verb.h"
+#include "base/check.h"
+#include "base/progress.h"
+#include "report/claims.h"
+#include "report/document.h"
+#include "report/report.h"
+#include "run/run.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Reproduce the evaluation of the paper: run its scenarios into paper.db, sample the uncertain machine parameters,\n"
+    "draw the figures, judge the claims, and write paper.md and paper.html beside the folder of figures.\n\n"
+    "Example: mimdsim paper\n"
+    "         mimdsim paper fig7         one figure with its runs\n\v"
+    "What is stored already is not run again unless --force.";
+
+enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
+
+struct paper {
+    const struct common *common;
+    const char *database;
+    struct store *store;
+    struct err *e;
+    struct claim_rules rules;
+    int nplan;
+    struct plan plan[MOST_PLANS];
+};
+
+static bool add_plan(struct paper *p, const char *name)
+{
+    CHECK(p->nplan < MOST_PLANS);
+    struct plan_options o = common_plan(p->common);
+    return plan_read(&p->plan[p->nplan++], name, &o, p->e);
+}
+
+/* All scenarios of the paper, or those asked for. */
+static bool add_plans(struct paper *p)
+{
+    for (int i = 0; i < p->common->narg; i++)
+        if (!add_plan(p, p->common->arg[i])) return false;
+    if (p->common->narg) return true;
+    const char **stem, **title;
+    int n;
+    struct arena *a = arena_create();
+    bool ok = plan_list("scenarios", a, &stem, &title, &n, p->e);
+    for (int i = 0; ok && i < n; i++)
+        if (strncmp(stem[i], "fig", 3) == 0 || strncmp(stem[i], "paper-", 6) == 0) ok = add_plan(p, stem[i]);
+    arena_destroy(a);
+    return ok;
+}
+
+static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
+{
+    struct paper *p = context;
+    if (r->status != RUN_OK)
+        fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name, spec->model.nbody,
+                spec->nrank, r->text);
+    return store_put(p->store, spec, r, "", p->e);
+}
+
+/* The runs of all scenarios as one campaign. */
+static bool run_plans(struct paper *p)
+{
+    int n = 0, at = 0;
+    for (int i = 0; i < p->nplan; i++) n += p->plan[i].nrun;
+    struct run_spec *spec = calloc((size_t)n + 1, sizeof *spec);
+    bool *skip = calloc((size_t)n + 1, sizeof *skip);
+    CHECK(spec && skip);
+    for (int i = 0; i < p->nplan; i++)
+        for (int k = 0; k < p->plan[i].nrun; k++, at++) {
+            spec[at] = p->plan[i].run[k];
+            skip[at] = !p->common->force && store_has(p->store, &spec[at]);
+        }
+    bool ok = run_campaign(spec, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    free(spec);
+    free(skip);
+    return ok;
+}
+
+/* A figure that cannot be drawn for want of gnuplot has its CSV; the others go on. */
+static bool draw(struct paper *p, const char *name)
+{
+    struct err e;
+    err_clear(&e);
+    if (report_figure(p->store, plan_data_dir(), name, p->common->directory, &e)) return true;
+    if (e.kind == ERR_UNAVAILABLE) {
+        err_print(&e);
+        return true;
+    }
+    *p->e = e;
+    return false;
+}
+
+static bool draw_all(struct paper *p, struct progress *progress)
+{
+    int done = 0;
+    for (int i = 0; i < p->nplan; i++)
+        for (int k = 0; k < p->plan[i].nfigure; k++) {
+            if (!draw(p, p->plan[i].figure[k])) return false;
+            progress_show(progress, ++done);
+        }
+    return p->common->narg || draw(p, "claims");
+}
+
+static bool draw_figures(struct paper *p)
+{
+    int n = 1;
+    for (int i = 0; i < p->nplan; i++) n += p->plan[i].nfigure;
+    struct progress progress = progress_make("figures", n, p->common->quiet);
+    bool ok = draw_all(p, &progress);
+    progress_end(&progress);
+    return ok;
+}
+
+static bool judge(struct paper *p)
+{
+    return claims_read(&p->rules, plan_data_dir(), p->e) &&
+           sampling_run(p->common, &p->rules, SAMPLING_SAMPLES, p->store, p->e) &&
+           claims_decide(&p->rules, p->store, p->e);
+}
+
+/* All figures that the plans ask for, in order, and the claims. */
+static int figure_names(const struct paper *p, const char **name)
+{
+    int n = 0;
+    name[n++] = "claims";
+    for (int i = 0; i < p->nplan; i++)
+        for (int k = 0; k < p->plan[i].nfigure && n < MOST_FIGURES; k++) name[n++] = p->plan[i].figure[k];
+    return n;
+}
+
+static bool write_documents(struct paper *p, double began)
+{
+    const char *name[MOST_FIGURES];
+    struct arena *a = arena_create();
+    struct document d = {.store = p->store, .data_dir = plan_data_dir(), .figures = p->common->directory, .figure = name};
+    d.nfigure = figure_names(p, name);
+    bool ok = parameters_gather(p->plan, p->nplan, a, &d.parameter, &d.nparameter, p->e);
+    d.host_s = host_seconds() - began;
+    ok = ok && document_write(&d, p->e);
+    arena_destroy(a);
+    return ok;
+}
+
+static bool answer(struct paper *p, double began)
+{
+    bool whole = p->common->narg == 0;
+    p->store = store_open(p->database, STORE_WRITE, p->e);
+    if (!p->store || !add_plans(p) || !run_plans(p)) return false;
+    if (whole && !judge(p)) return false;
+    if (!draw_figures(p)) return false;
+    if (!whole) return true;
+    return write_documents(p, began) && claims_print(p->store, p->common->json, stdout, p->e);
+}
+
+int cmd_paper(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_STORE | TAKES_DIR | TAKES_JOBS, "[FIGURE...]", doc, 0, 16);
+    struct err e;
+    err_clear(&e);
+    double began = host_seconds();
+    struct paper p = {.common = &c, .database = c.database_given ? c.database : "paper.db", .e = &e};
+    bool ok = answer(&p, began);
+    store_close(p.store);
+    claims_free(&p.rules);
+    for (int i = 0; i < p.nplan; i++) plan_free(&p.plan[i]);
+    if (ok && !c.quiet)
+        fprintf(stderr, "mimdsim: %s, %s/%s in %.1f s\n", p.database, c.directory,
+                c.narg ? "" : ", paper.md, paper.html", host_seconds() - began);
+    return ok ? 0 : common_fail(&c, &e);
+}

@@ -1,0 +1,151 @@
+/* cmd_timeline.c - mimdsim timeline: who computes, sends and waits when, in one run. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/verb.h"
+#include "base/check.h"
+#include "report/report.h"
+#include "report/trace.h"
+#include "run/run.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Show the timeline of one run: of run number RUN of the database DB (default: the first that has one), or of the first "
+    "point of SCENARIO, which is run for it.\n\n"
+    "Example: mimdsim timeline scenarios/fig8.yaml\n"
+    "         mimdsim timeline paper.db 140 --format chrome\n\v"
+    "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), timeline.json (Chrome trace "
+    "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans, pictures 20000, since viewers fail "
+    "on more; what is left out is told.";
+
+enum { PICTURE_SPANS = 20000 };
+
+struct shown {
+    const struct common *common;
+    struct err *e;
+    struct arena *arena;
+    struct store *store;   /* where the picture finds the run */
+    int64_t run_id;
+    struct run_result result;
+    char title[160];
+};
+
+static bool is_database(const char *path)
+{
+    char head[16] = "";
+    FILE *f = fopen(path, "rb");
+    bool yes = f && fread(head, 1, sizeof head, f) == sizeof head && memcmp(head, "SQLite format 3", 16) == 0;
+    if (f) fclose(f);
+    return yes;
+}
+
+static bool take_first(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    struct shown *t = context;
+    (void)ncolumn;
+    (void)name;
+    t->run_id = value[0].integer;
+    snprintf(t->title, sizeof t->title, "%s", value[1].text ? value[1].text : "");
+    return false;
+}
+
+static bool from_database(struct shown *t)
+{
+    const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
+    const char *const param[] = {wanted};
+    t->store = store_open(t->common->arg[0], STORE_READ, t->e);
+    if (!t->store ||
+        !store_query(t->store, "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P) FROM run"
+                               " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))", 1, param, NULL, take_first, t, t->e))
+        return false;
+    if (!t->run_id)
+        return err_set(t->e, ERR_NO_INPUT, wanted ? "there is no run %s in %s" : "no run%s of %s has a timeline; record it with "
+                       "`record: {spans: true}`", wanted ? wanted : "", t->common->arg[0]);
+    return trace_read(t->store, t->run_id, t->arena, &t->result, t->e);
+}
+
+/* The first point of a scenario, with its spans, into a passing store. */
+static bool from_scenario(struct shown *t)
+{
+    struct plan plan = {0};
+    struct plan_options o = common_plan(t->common);
+    if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
+    struct run_spec spec = plan.run[0];
+    spec.record.spans = true;
+    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name, spec.machine.name, spec.model.nbody, spec.nrank);
+    if (plan.nrun > 1 && !t->common->quiet)
+        fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
+    bool ok = run_one(&spec, t->arena, &t->result, t->e);
+    t->store = ok ? store_open("timeline", STORE_MEMORY, t->e) : NULL;
+    ok = ok && t->store && store_put(t->store, &spec, &t->result, "", t->e);
+    if (ok) t->run_id = store_run_id(t->store, &spec);
+    plan_free(&plan);
+    return ok;
+}
+
+static bool make_folder(const char *dir, struct err *e)
+{
+    return mkdir(dir, 0777) == 0 || errno == EEXIST || err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
+}
+
+static bool write_trace(struct shown *t, enum trace_format format, const char *ending)
+{
+    char path[512] = "standard output";
+    int64_t left_out = 0;
+    struct trace_options o = {.title = t->title};
+    FILE *out = stdout;
+    if (ending) {
+        if (!make_folder(t->common->directory, t->e)) return false;
+        snprintf(path, sizeof path, "%s/timeline.%s", t->common->directory, ending);
+        out = fopen(path, "w");
+        if (!out) return err_set(t->e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
+    }
+    bool ok = trace_write(&t->result, format, &o, out, &left_out, t->e);
+    if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
+    if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
+    if (ok && left_out > 0)
+        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are left out, since viewers fail on more than %d\n", path,
+                (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
+    return ok;
+}
+
+static bool draw_picture(struct shown *t)
+{
+    if (t->result.nspan > PICTURE_SPANS) {
+        fprintf(stderr, "mimdsim: no picture: %lld spans are more than the %d that can be told apart in one\n",
+                (long long)t->result.nspan, PICTURE_SPANS);
+        return true;
+    }
+    bool ok = report_figure_run(t->store, plan_data_dir(), "fig8", t->run_id, "timeline", t->common->directory, t->e);
+    if (ok && !t->common->quiet) fprintf(stderr, "mimdsim: %s/timeline.png\n", t->common->directory);
+    return ok;
+}
+
+static bool show(struct shown *t)
+{
+    static const char *const ending[] = {[TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
+    const char *word = t->common->format;
+    enum trace_format format;
+    if (!word)
+        return write_trace(t, TRACE_TEXT, NULL) && write_trace(t, TRACE_CHROME, "json") && write_trace(t, TRACE_PAJE, "paje") &&
+               draw_picture(t);
+    if (strcmp(word, "picture") == 0) return draw_picture(t);
+    if (!trace_format_find(word, &format))
+        return err_set(t->e, ERR_USAGE, "--format: '%s' is none of picture, text, chrome, paje, csv", word);
+    return write_trace(t, format, format == TRACE_TEXT ? NULL : ending[format]);
+}
+
+int cmd_timeline(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_DIR | TAKES_FORMAT, "SCENARIO|DB [RUN]", doc, 1, 2);
+    struct err e;
+    err_clear(&e);
+    struct shown t = {.common = &c, .e = &e, .arena = arena_create()};
+    bool ok = (is_database(c.arg[0]) ? from_database(&t) : from_scenario(&t)) && show(&t);
+    store_close(t.store);
+    arena_destroy(t.arena);
+    return ok ? 0 : common_fail(&c, &e);
+}

@@ -1,0 +1,13 @@
+/* parameters.h - the numbers of the machines that plans use, as text for a report. */
+#ifndef APP_PARAMETERS_H
+#define APP_PARAMETERS_H
+
+#include "base/arena.h"
+#include "plan/plan.h"
+#include "report/document.h"
+
+/* parameters_gather: every value with a source of every machine in the plans, in memory of `a`; *n of them. */
+bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out, int *n,
+                       struct err *e);
+
+#endif

@@ -1,0 +1,45 @@
+/* claims.h - the claims of the paper as questions to the database: plots/claims/ID.sql, one file a claim.
+ *
+ * A file begins with "-- statement:", "-- test:", "-- unit:" and "-- designated:" lines; its query gives one row for each
+ * variant of the claim: (variant, value, threshold, holds, note), `holds` 1, 0 or NULL (cannot be told). The designated
+ * variant is the claim's own verdict. The same files judge the stored runs and every sample of the uncertain machine
+ * parameters. */
+#ifndef REPORT_CLAIMS_H
+#define REPORT_CLAIMS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "store/store.h"
+
+struct claim_rule {
+    const char *id; /* the file's stem */
+    const char *statement, *test, *unit, *designated;
+    const char *sql;
+};
+
+struct claim_rules {
+    struct arena *arena; /* owned; everything below lives in it */
+    int n;
+    struct claim_rule *rule; /* (n) by id: C1, C2, ... C10, then indicators */
+};
+
+/* claims_read: every file of data_dir/plots/claims. Returns false with ERR_NO_INPUT when there is none, ERR_DATA when
+ * a header line is missing; *c is then empty. */
+bool claims_read(struct claim_rules *c, const char *data_dir, struct err *e);
+void claims_free(struct claim_rules *c);
+
+/* claims_sample: judge all variants by the runs in `from` and keep values and verdicts as sample number `sample` of
+ * `into` (table claim_sample), in one transaction. */
+bool claims_sample(const struct claim_rules *c, struct store *from, struct store *into, int sample, struct err *e);
+
+/* claims_decide: judge the runs of `s` and fill its table claim anew, with ranges and shares of the samples there. */
+bool claims_decide(const struct claim_rules *c, struct store *s, struct err *e);
+
+/* claims_print: the table claim for people, or (json) an array with one object a claim: id, statement, test, verdict,
+ * value, share, variants. */
+bool claims_print(struct store *s, bool json, FILE *out, struct err *e);
+
+#endif

@@ -1,0 +1,30 @@
+/* document.h - the report on the paper, paper.md and paper.html, out of the database alone. */
+#ifndef REPORT_DOCUMENT_H
+#define REPORT_DOCUMENT_H
+
+#include <stdbool.h>
+
+#include "base/err.h"
+#include "store/store.h"
+
+/* One number of a machine, as text for people. */
+struct document_parameter {
+    const char *machine, *key, *value, *range, *evidence, *source;
+};
+
+struct document {
+    struct store *store;
+    const char *data_dir;   /* holds plots/ */
+    const char *figures;    /* folder of the pictures; the report is written beside it */
+    int nfigure;
+    const char *const *figure; /* (nfigure) names, in order */
+    int nparameter;
+    const struct document_parameter *parameter;
+    double host_s;          /* how long the command took */
+};
+
+/* document_write: claims that fail first, then the table of claims, the figures, the machines, accuracy, what was left
+ * out, time and provenance. Returns false with ERR_CREATE, ERR_IO or ERR_DATA. */
+bool document_write(const struct document *d, struct err *e);
+
+#endif
