@@ -6,14 +6,16 @@
 #include "kernel/scan.h"
 #include "kernel/tags.h"
 
-void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
-                  const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep)
+void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const struct row_layout *layout,
+                  int rank, int m, bool keep)
 {
+    const int largest = layout->largest;
     b->rows.used = false;
-    b->size = size;
-    b->nrow = nrow;
-    b->lo = block_first(nrow, nrank, rank);
-    b->hi = block_first(nrow, nrank, rank + 1);
+    b->layout = layout;
+    b->size = layout->size;
+    b->nrow = layout->nrow;
+    b->lo = layout->first[rank];
+    b->hi = layout->first[rank + 1];
     b->m = m;
     b->keep = keep;
     b->d_stride = packed_size(largest);
@@ -23,9 +25,10 @@ void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *s
     const int rows = b->hi - b->lo;
     enum solver method = spec->solver;
     if (method == SOLVER_PARTITION) method = spec->part_solver == PART_CR ? SOLVER_CR : SOLVER_PCR_SYMMETRIC;
-    reduction_carve(&b->reduction, c, spec, method, interface, rank, nrank, largest, m, keep);
+    reduction_carve(&b->reduction, c, spec, method, layout, rank, m, keep);
     b->left = CARVE(c, largest * m, real);
-    const bool all_rows = nrow > nrank && (spec->solver == SOLVER_PCR || spec->solver == SOLVER_PCR_SYMMETRIC);
+    const bool all_rows =
+        layout->nrow > layout->nrank && (spec->solver == SOLVER_PCR || spec->solver == SOLVER_PCR_SYMMETRIC);
     if (method == SOLVER_THOMAS) blocks_serial_carve(b, c, rank);
     if (all_rows) blocks_rows_carve(b, c);
     if (rows == 1 && !all_rows) { /* the reduction's own row, nothing is copied */
@@ -107,7 +110,7 @@ static void couple(struct blocks *b, struct work *w)
         comm_send(comm, k - 1, TAG_INTERFACE, b->message, n * (int64_t)sizeof(real));
     }
     if (k + 1 < P) {
-        const int theirs = block_first(b->nrow, P, k + 2) - b->hi;
+        const int theirs = b->layout->first[k + 2] - b->hi;
         const int n = cr * c + (theirs > 1 ? block_update_size(c, m) : 0);
         comm_recv(comm, k + 1, TAG_INTERFACE, b->message, n * (int64_t)sizeof(real));
         transpose(cr, c, b->message, reduction_right(&b->reduction));
@@ -184,7 +187,7 @@ void blocks_resolve(struct blocks *b, struct work *w)
     if (rows > 1) memcpy(red->r, blocks_row_r(b, last), (size_t)(c * m) * sizeof(real));
     work_report(comm, w);
     if (k > 0 && rows > 1) comm_send(comm, k - 1, TAG_INTERFACE, b->message, cs * m * (int64_t)sizeof(real));
-    if (k + 1 < P && block_first(b->nrow, P, k + 2) - b->hi > 1) {
+    if (k + 1 < P && b->layout->first[k + 2] - b->hi > 1) {
         comm_recv(comm, k + 1, TAG_INTERFACE, b->message, c * m * (int64_t)sizeof(real));
         dense_subtract(c * m, red->r, b->message, w);
         work_report(comm, w);

@@ -25,6 +25,7 @@ struct blocks_rows {
 /* The memory carved may be used for something else before blocks_solve: nothing in it is kept until then. */
 struct blocks {
     struct comm *comm;
+    const struct row_layout *layout;
     const unsigned char *size; /* (nrow of the whole system) orders */
     int nrow, lo, hi;          /* rows in all; own rows */
     int m;                     /* right-hand sides */
@@ -41,29 +42,22 @@ struct blocks {
     real *x, *gathered;         /* and its solution (nrow x 6 m); messages of rows */
 };
 
-/* block_first: first row of rank k of nrank when nrow rows are split evenly, larger blocks first. */
-static inline int block_first(int nrow, int nrank, int k)
+/* row_owner: the rank that owns row i. */
+static inline int row_owner(const struct row_layout *l, int i)
 {
-    const int rest = nrow % nrank;
-    return k * (nrow / nrank) + (k < rest ? k : rest);
+    int low = 0, high = l->nrank;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (l->first[middle] <= i) low = middle;
+        else high = middle;
+    }
+    return low;
 }
 
-/* block_owner: the rank that owns row i. */
-static inline int block_owner(int nrow, int nrank, int i)
-{
-    const int q = nrow / nrank, rest = nrow % nrank, cut = rest * (q + 1);
-    return i < cut ? i / (q + 1) : rest + (i - cut) / q;
-}
-
-/* blocks_carve: room for rank `rank`'s rows.
- *
- *   size       in  (nrow) orders of all rows
- *   interface  in  (nrank) orders of the last row of each block
- *   largest    in  the largest order
- *   m, keep    in  right-hand sides; whether further ones will follow */
+/* blocks_carve: room for rank `rank`'s rows with m right-hand sides; keep: further ones will follow. */
 #define blocks_carve REAL_NAME(blocks_carve)
-void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const unsigned char *size,
-                  const unsigned char *interface, int nrow, int rank, int nrank, int largest, int m, bool keep);
+void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const struct row_layout *layout,
+                  int rank, int m, bool keep);
 
 /* blocks_row_D, _L, _r: where the parts of own row i go before blocks_solve: D packed, L (c_i x c_{i-1}), r (c_i x m).
  */

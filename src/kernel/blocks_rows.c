@@ -60,11 +60,11 @@ static int numbers(const struct blocks *b, int from, int to, int d, bool again)
 /* send_side: own rows' parts for the rows at distance `d` (signed), one message per owner. */
 static void send_side(struct blocks *b, int d, const real *out, const int *at, int tag)
 {
-    const int P = comm_size(b->comm), k = comm_rank(b->comm);
+    const int k = comm_rank(b->comm);
     int i = b->lo > -d ? b->lo : -d;
     const int end = b->hi + d < b->nrow ? b->hi : b->nrow - d;
     while (i < end) {
-        const int owner = block_owner(b->nrow, P, i + d), stop = block_first(b->nrow, P, owner + 1) - d;
+        const int owner = row_owner(b->layout, i + d), stop = b->layout->first[owner + 1] - d;
         const int to = stop < end ? stop : end;
         if (owner != k)
             comm_send(b->comm, owner, tag, out + at[i - b->lo],
@@ -78,7 +78,7 @@ static void send_side(struct blocks *b, int d, const real *out, const int *at, i
 static void receive_side(struct blocks *b, int d, const real *out, const int *out_at, real *in, int *at, int tag,
                          bool again)
 {
-    const int P = comm_size(b->comm), k = comm_rank(b->comm), distance = d < 0 ? -d : d;
+    const int k = comm_rank(b->comm), distance = d < 0 ? -d : d;
     const int begin = b->lo > -d ? b->lo : -d, end = b->hi + d < b->nrow ? b->hi : b->nrow - d;
     int n = 0;
     for (int i = b->lo; i <= b->hi; i++) {
@@ -86,7 +86,7 @@ static void receive_side(struct blocks *b, int d, const real *out, const int *ou
         if (i >= begin && i < end) n += numbers(b, i + d, i, distance, again);
     }
     for (int i = begin; i < end;) {
-        const int owner = block_owner(b->nrow, P, i + d), stop = block_first(b->nrow, P, owner + 1) - d;
+        const int owner = row_owner(b->layout, i + d), stop = b->layout->first[owner + 1] - d;
         const int to = stop < end ? stop : end, from = at[i - b->lo], size = at[to - b->lo] - from;
         if (owner != k) {
             comm_recv(b->comm, owner, tag, in + from, size * (int64_t)sizeof(real));

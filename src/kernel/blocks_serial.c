@@ -15,7 +15,11 @@ void blocks_serial_carve(struct blocks *b, struct carve *c, int rank)
     }
     real *D = CARVE(c, (size_t)b->nrow * BLOCK_PACKED, real), *L = CARVE(c, (size_t)b->nrow * BLOCK_FULL, real);
     b->x = CARVE(c, (size_t)b->nrow * BLOCK_MAX * b->m, real);
-    const int most = b->hi - b->lo + 1; /* the largest block and the row before it */
+    int most = 0; /* a message holds the largest block and the row before it */
+    for (int k = 0; k < b->layout->nrank; k++) {
+        const int rows = b->layout->first[k + 1] - b->layout->first[k] + 1;
+        most = rows > most ? rows : most;
+    }
     b->gathered = CARVE(c, most * (b->d_stride + b->l_stride + b->r_stride), real);
     b->whole = (struct block_tridiag){.nrow = b->nrow, .size = b->size, .D = D, .L = L};
 }
@@ -97,7 +101,7 @@ static void solve_whole(struct blocks *b, bool again, struct work *w)
     pack(b, b->lo, b->hi, &own, again, b->gathered);
     unpack(b, b->lo, b->hi, &to, again, b->gathered);
     for (int k = 1; k < P; k++) {
-        const int from = block_first(b->nrow, P, k), end = block_first(b->nrow, P, k + 1);
+        const int from = b->layout->first[k], end = b->layout->first[k + 1];
         comm_recv(comm, k, TAG_GATHER, b->gathered, numbers(b, from, end, again) * (int64_t)sizeof(real));
         to = whole_place(b, from);
         const int n = unpack(b, from, end, &to, again, b->gathered);
@@ -109,7 +113,7 @@ static void solve_whole(struct blocks *b, bool again, struct work *w)
         for (size_t i = 0; i < (size_t)b->nrow * BLOCK_MAX * (size_t)b->m; i++) b->x[i] = (real)__builtin_nan("");
     work_report(comm, w);
     for (int k = 1; k < P; k++) {
-        const int from = block_first(b->nrow, P, k) - 1, end = block_first(b->nrow, P, k + 1);
+        const int from = b->layout->first[k] - 1, end = b->layout->first[k + 1];
         const struct place at = whole_place(b, from);
         const int n = pack(b, from, end, &at, true, b->gathered);
         w->bytes += (uint64_t)n * sizeof(real);

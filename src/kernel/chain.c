@@ -26,25 +26,48 @@ static bool picks_columns(enum model_joint joint)
     return joint != JOINT_HELICAL && joint != JOINT_UNIVERSAL && joint != JOINT_SLOT && joint != JOINT_POINT_PLANE;
 }
 
+/* weight: of a body in a balanced partition: its share of the sweeps, of the assembly and of the elimination. */
+static int64_t weight(int c)
+{
+    return 900 + dense_factor_flops(c) + dense_triangular_flops(c, 2 * c + 1) + 2 * dense_symmetric_flops(c, c) +
+           dense_product_flops(c, c + 4, c);
+}
+
+/* split: first body of every rank: equal numbers, larger blocks first, or nearly equal weights. */
+static int *split(const unsigned char *size, int n, int nrank, bool balanced, struct arena *a)
+{
+    int *first = TAKE(a, nrank + 1, int);
+    if (nrank > n) return first;
+    for (int k = 0; k <= nrank; k++) first[k] = k * (n / nrank) + (k < n % nrank ? k : n % nrank);
+    if (!balanced) return first;
+    int64_t total = 0, sum = 0;
+    for (int i = 0; i < n; i++) total += weight(size[i]);
+    for (int i = 0, k = 1; k < nrank; k++) {
+        while (i < n - (nrank - k) && (sum + weight(size[i]) / 2) * nrank < total * k) sum += weight(size[i++]);
+        if (i <= first[k - 1]) sum += weight(size[i++]); /* every rank has a body */
+        first[k] = i;
+    }
+    return first;
+}
+
 struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a)
 {
     const struct model *model = job->model;
+    const int n = model->nbody, nrank = job->nrank;
     struct chain_shared *s = TAKE(a, 1, struct chain_shared);
-    unsigned char *size = TAKE(a, model->nbody, unsigned char), *interface = TAKE(a, job->nrank, unsigned char);
-    s->body = bodies_make(model, a);
-    for (int i = 0; i < model->nbody; i++) {
-        size[i] = (unsigned char)(6 - s->body[i].d);
-        if (size[i] > s->largest) s->largest = size[i];
-    }
-    for (int k = 0; k < job->nrank && job->nrank <= model->nbody; k++)
-        interface[k] = size[block_first(model->nbody, job->nrank, k + 1) - 1];
+    unsigned char *size = TAKE(a, n, unsigned char), *interface = TAKE(a, nrank, unsigned char);
     bool picked = true;
-    for (int i = 0; i < model->nbody; i++) picked = picked && picks_columns(s->body[i].joint);
+    s->body = bodies_make(model, a);
+    s->layout = (struct row_layout){.nrow = n, .nrank = nrank, .size = size, .interface = interface};
+    for (int i = 0; i < n; i++) {
+        size[i] = (unsigned char)(6 - s->body[i].d);
+        if (size[i] > s->layout.largest) s->layout.largest = size[i];
+        picked = picked && picks_columns(s->body[i].joint);
+    }
+    s->layout.first = split(size, n, nrank, job->spec->kernel.partition == PARTITION_BALANCED, a);
+    for (int k = 0; k < nrank; k++) interface[k] = size[s->layout.first[k + 1] - 1];
     s->pose_bytes = picked ? offsetof(struct body_pose, s.col) : sizeof(struct body_pose);
     s->subspace_bytes = picked ? offsetof(struct subspace, col) : sizeof(struct subspace);
-    s->size = size;
-    s->interface = interface;
-    s->ncolumn = 1 + model->nrow;
     for (int i = 0; i < 6; i++)
         s->base[i] = (real)job->state->base_acceleration[i] - (i < 3 ? 0 : (real)model->gravity[i - 3]);
     return s;
@@ -53,7 +76,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
 void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge, bool forces)
 {
     const struct chain_shared *s = job->shared;
-    const int n = job->model->nbody, lo = block_first(n, job->nrank, rank), hi = block_first(n, job->nrank, rank + 1);
+    const int n = job->model->nbody, lo = s->layout.first[rank], hi = s->layout.first[rank + 1];
     const int room = hi - lo + (edge && hi < n ? 1 : 0);
     ch->job = job;
     ch->shared = s;
@@ -153,7 +176,7 @@ static void scan_up(struct chain *ch, real *x, bool first, int tag)
 {
     struct comm *c = ch->comm;
     const int k = comm_rank(c), P = comm_size(c), m = ch->hi - ch->lo;
-    const int next = k + 1 < P ? block_first(ch->n, P, k + 2) - ch->hi : 0;
+    const int next = k + 1 < P ? ch->shared->layout.first[k + 2] - ch->hi : 0;
     const int shift = TAG_SHIFT + tag / TAG_STEP;
     real end[6], before[6];
     if (first) begin_composites(ch);

@@ -10,6 +10,7 @@
 
 #include "kernel/carve.h"
 #include "kernel/kernel.h"
+#include "kernel/reduction.h"
 #include "kernel/scan.h"
 #include "mech/body.h"
 #include "mech/model.h"
@@ -17,10 +18,7 @@
 /* What all ranks share, made by prepare; read-only. */
 struct chain_shared {
     const struct body *body;           /* (nbody) constants */
-    const unsigned char *size;         /* (nbody) constraints of each joint */
-    const unsigned char *interface;    /* (nrank) constraints of the last joint of each block */
-    int largest;                       /* largest number of constraints of a joint */
-    int ncolumn;                       /* right-hand sides of the constraint system: 1 + rows of all loops */
+    struct row_layout layout;          /* bodies over ranks; constraints of each joint */
     size_t pose_bytes, subspace_bytes; /* room for a pose, a subspace: columns only if some joint needs them */
     real base[6];                      /* acceleration of the base minus gravity */
 };

@@ -108,6 +108,13 @@ static void interface(const struct run_spec *spec, const struct outline *o, doub
     }
 }
 
+/* even_owner: the rank that owns row i of an even split, larger blocks first. */
+static int even_owner(int nrow, int nrank, int i)
+{
+    const int q = nrow / nrank, rest = nrow % nrank, cut = rest * (q + 1);
+    return i < cut ? i / (q + 1) : rest + (i - cut) / q;
+}
+
 /* rows: reduction of all rows of all ranks (5.4 b): what crosses ranks, step by step. */
 static void rows(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
 {
@@ -123,7 +130,7 @@ static void rows(const struct run_spec *spec, const struct outline *o, struct ke
         all.triples += n > 2 * d ? n - 2 * d : 0;
         int from = -1, to = -1;
         for (int i = 0; i + d < n; i++) {
-            const int a = block_owner(n, P, i), b = block_owner(n, P, i + d);
+            const int a = even_owner(n, P, i), b = even_owner(n, P, i + d);
             if (a == b) continue;
             const double right = i >= d ? 1 : 0, left = i + 2 * d < n ? 1 : 0; /* updates that carry a coupling */
             const double numbers = textbook ? 2 * (3 * c * c + c) : 2 * (packed + c) + (right + left) * c * c;

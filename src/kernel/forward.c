@@ -35,8 +35,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     scan_carve(&ch->scan, c, ch->dense, spec->composites_incoming, rank, job->nrank);
     const size_t after = c->used;
     if (!refine) c->used = before;
-    blocks_carve(&f->blocks, c, spec, s->size, s->interface, ch->n, rank, job->nrank, s->largest, 1,
-                 spec->inner_refinements > 0 || refine);
+    blocks_carve(&f->blocks, c, spec, &s->layout, rank, 1, spec->inner_refinements > 0 || refine);
     if (c->used < after) c->used = after;
 }
 

@@ -12,14 +12,15 @@ static int steps(int n)
 }
 
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
-                     const unsigned char *size, int rank, int nrank, int largest, int m, bool keep)
+                     const struct row_layout *layout, int rank, int m, bool keep)
 {
-    s->size = size;
+    const int largest = layout->largest;
+    s->size = layout->interface;
     s->method = method;
     s->hybrid_levels = spec->hybrid_levels;
     s->m = m;
     s->largest = largest;
-    s->c = size[rank];
+    s->c = layout->interface[rank];
     s->keep = keep;
     const bool textbook = method == SOLVER_PCR;
     const int update =
@@ -32,7 +33,7 @@ void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_s
     s->out_a = CARVE(c, update, real);
     s->out_b = CARVE(c, update, real);
     s->factor_size = block_factor_size(largest, largest, largest);
-    s->factor = CARVE(c, s->factor_size * (keep ? steps(nrank) + 1 : 1), real);
+    s->factor = CARVE(c, s->factor_size * (keep ? steps(layout->nrank) + 1 : 1), real);
 }
 
 void reduction_break(struct reduction *s, int nl, int nu)

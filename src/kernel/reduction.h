@@ -18,6 +18,15 @@
 #include "linalg/real.h"
 #include "spec/kernel_spec.h"
 
+/* How a block tridiagonal system lies on the ranks; read-only, shared by all of them. */
+struct row_layout {
+    int nrow, nrank;
+    int largest;                    /* largest order of a row */
+    const int *first;               /* (nrank + 1) first row of each rank; nrow at the end */
+    const unsigned char *size;      /* (nrow) orders */
+    const unsigned char *interface; /* (nrank) orders of the last row of each rank */
+};
+
 struct reduction {
     struct comm *comm;
     const unsigned char *size; /* (nrank) order of every rank's interface row */
@@ -39,12 +48,10 @@ struct reduction {
     bool broken;     /* a pivot was not positive: answers are not numbers */
 };
 
-/* reduction_carve: room for a rank's row.
- *
- *   largest  largest order of any row; m right-hand sides; keep: see above */
+/* reduction_carve: room for rank `rank`'s interface row with m right-hand sides; keep: see above. */
 #define reduction_carve REAL_NAME(reduction_carve)
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
-                     const unsigned char *size, int rank, int nrank, int largest, int m, bool keep);
+                     const struct row_layout *layout, int rank, int m, bool keep);
 
 /* reduction_left, reduction_right: where L (c x c_{k-1}) and U (c x c_{k+1}) are to be put before reduction_run. */
 static inline real *reduction_left(const struct reduction *s) { return s->in_a + block_update_size(s->c, s->m); }

@@ -52,6 +52,7 @@ static void every_solver_and_variant(void **state)
                     s.kernel.part_solver = variant & 2 ? PART_CR : PART_PCR;
                     s.kernel.operators = variant & 2 ? OPERATORS_DENSE : OPERATORS_STRUCTURED;
                     s.kernel.composites_incoming = !(variant & 4);
+                    s.kernel.partition = variant & 1 ? PARTITION_BALANCED : PARTITION_BLOCK;
                     check(&s, 1e-13, 1e-9);
                 }
 }
