@@ -5,7 +5,7 @@ SELECT 'f > 0.97 from P of about 45 (C2) only for dense operators over the same 
            iif((SELECT count(*) FROM claim WHERE id = 'C2' AND variant <> '' AND share > 0
                     AND variant <> 'parallel code on one processor, dense') = 0, 'confirmed in part', 'refuted')) AS verdict,
        ifnull((SELECT 'over the same code, dense: ' || note || iif(value IS NULL, '', format('; crossed at P = %d', value)) ||
-                      ifnull(format('; in %d %% of the samples from 33 to 64', round(100 * share)), '')
+                      iif(share IS NULL, '', format('; in %d %% of the samples from 33 to 64', round(100 * share)))
                FROM claim WHERE id = 'C2' AND variant = 'parallel code on one processor, dense'), 'not judged') ||
        ifnull('; other variants that reach it in some samples: ' ||
               (SELECT group_concat(variant, ', ') FROM claim WHERE id = 'C2' AND variant <> '' AND share > 0

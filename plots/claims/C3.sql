@@ -29,7 +29,8 @@ shared_ends AS (
     SELECT variant, max(CASE P WHEN 128 THEN speedup END) AS last, max(CASE WHEN P < 128 THEN speedup END) AS best
     FROM shared GROUP BY variant)
 SELECT variant, last / best AS value, 1.0 AS threshold, iif(last >= best, 0, free_last >= free_best) AS holds,
-       format('contention makes the run at 128 %.1f %% longer', 100 * (free_last / last - 1)) AS note
+       format('contention makes the run at 128 %.1f %% longer, a drop needs more than %.0f %%', 100 * (free_last / last - 1),
+              100 * (free_last / best - 1)) AS note
 FROM ends
 UNION ALL
 SELECT variant, last / best, 1.0, last < best,

@@ -49,9 +49,9 @@ static bool contradictions(struct chapter *c)
                             "with structured and with dense operators; its own verdict is that of the variant nearest to the "
                             "text, the fastest serial Newton-Euler code. Nothing is tuned to a claim.");
     return store_select(c->d->store,
-                        "SELECT id, statement, test, format('%.4g', value), unit, note,"
+                        "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
                         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), NULL),"
-                        " format('%d %%', round(100 * share)) FROM claim WHERE variant = '' AND verdict = 'fail'" IN_ORDER,
+                        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))) FROM claim WHERE variant = '' AND verdict = 'fail'" IN_ORDER,
                         0, NULL, tell_claim, c, c->e);
 }
 
@@ -74,9 +74,9 @@ static bool claims(struct chapter *c)
     page_heading(c->page, 2, "The claims");
     page_paragraph(c->page, "Share: the part of the samples in which a claim holds. Each sample draws every machine parameter "
                             "that has a published range anew, log-uniformly, and runs the simulator again.");
-    return table(c, "SELECT id, verdict, format('%.4g', value) AS value, threshold, unit,"
+    return table(c, "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
                     " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-                    " ifnull(format('%d %%', round(100 * share)), '') AS share, samples, statement, test"
+                    " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples, statement, test"
                     " FROM claim WHERE variant = ''" IN_ORDER,
                  "No claim has been judged.");
 }
@@ -94,9 +94,9 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
     page_paragraph(c->page, t.s);
     text_free(&t);
     return page_table(c->page, c->d->store,
-                      "SELECT variant, verdict, format('%.4g', value) AS value,"
+                      "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
                       " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-                      " ifnull(format('%d %%', round(100 * share)), '') AS share, note FROM claim"
+                      " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
                       " WHERE id = ?1 AND variant <> '' ORDER BY variant", 1, value, "No run is stored that could tell.", c->e);
 }
 
