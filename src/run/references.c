@@ -140,6 +140,19 @@ static void add_fastest(struct run_result *out, int first)
     out->baseline[out->nbaseline++] = fastest;
 }
 
+/* How often a run computes the accelerations. */
+static uint64_t evaluations(const struct kernel_spec *k)
+{
+    const uint64_t steps = (uint64_t)k->steps;
+    if (steps == 0) return 1;
+    return k->step == STEP_RK4 ? 4 * steps : k->step == STEP_KDK ? steps + 1 : steps;
+}
+
+static void repeat(struct work *w, uint64_t times)
+{
+    w->flop *= times, w->div *= times, w->sqrt *= times, w->trig *= times, w->bytes *= times, w->call *= times;
+}
+
 /* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
 static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
                        struct arena *scratch, struct run_result *out)
@@ -156,10 +169,12 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     }
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
-        if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS) continue;
+        if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !(job->spec->keep & KEEP_BASELINE))
+            continue;
         struct work w = {0};
         if (!t->forward(job->model, job->state, methods[i], scratch, answer, NULL, NULL, &w)) continue;
         if (dense) dense_tally_forward(job->model, methods[i], &w);
+        repeat(&w, evaluations(&job->spec->kernel));
         work_add(&w, &inverse);
         char name[40];
         snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "", forward_method_name(methods[i]));
