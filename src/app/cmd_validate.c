@@ -2,11 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/published.h"
 #include "app/verb.h"
-#include "base/check.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "run/netcheck.h"
@@ -53,7 +51,7 @@ static void judge(const struct published *p, struct outcome *o)
 }
 
 /* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
-static bool measure(const struct common *c, const struct published *p, struct outcome *o, struct arena *a, struct err *e)
+static bool measure(const struct published *p, struct outcome *o, struct arena *a, struct err *e)
 {
     struct machine_spec m;
     struct plan_options options = {.nset = p->nset, .set = p->set};
@@ -65,7 +63,6 @@ static bool measure(const struct common *c, const struct published *p, struct ou
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
     judge(p, o);
-    (void)c;
     return true;
 }
 
@@ -169,7 +166,7 @@ static bool go_through(const struct common *c, const struct published *p, int n,
     for (int i = 0; i < n; i++) {
         struct outcome o;
         if (strcmp(name, "all") != 0 && strcmp(name, p[i].machine) != 0) continue;
-        if (!measure(c, &p[i], &o, a, e) || !keep(s, &p[i], &o, e)) return false;
+        if (!measure(&p[i], &o, a, e) || !keep(s, &p[i], &o, e)) return false;
         count(t, &p[i], &o);
         if (c->json) json_row(&j, &p[i], &o);
         else print_row(&p[i], &o);
@@ -219,8 +216,8 @@ static bool validate_machines(const struct common *c, struct arena *a, struct ta
     return ok;
 }
 
-/* One table a file: mean of |error| in percent, in brackets the worst with its sign; a group without answers has a
- * dash. */
+/* One table a file: mean of |error| in percent, in brackets the worst with its sign, and how many cases the level could
+ * run where not all; a dash where none. */
 static void network_table(const struct netcheck *n)
 {
     const char *slash = strrchr(n->path, '/');
@@ -241,14 +238,13 @@ static void network_table(const struct netcheck *n)
         for (int l = 0; l < NETCHECK_LEVELS; l++) {
             struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
             if (t.cases == 0) printf(" - |");
+            else if (t.skipped) printf(" %.1f (%+.0f), %d cases |", 100 * t.mean, 100 * t.worst, t.cases);
             else printf(" %.1f (%+.0f) |", 100 * t.mean, 100 * t.worst);
         }
         putchar('\n');
     }
     putchar('\n');
 }
-
-static void network_json(const struct netcheck *n, struct json *j) { netcheck_json_object(n, j); }
 
 static bool validate_network(const struct common *c, struct arena *a, struct err *e)
 {
@@ -270,7 +266,7 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
     struct json j = json_make(stdout);
     if (c->json) json_array(&j);
     for (int i = 0; i < n; i++) {
-        if (c->json) network_json(&checks[i], &j);
+        if (c->json) netcheck_json_object(&checks[i], &j);
         else network_table(&checks[i]);
     }
     if (c->json) {

@@ -32,6 +32,7 @@ int cmd_paper(int argc, char **argv);
 int cmd_claims(int argc, char **argv);
 int cmd_timeline(int argc, char **argv);
 int cmd_netcheck(int argc, char **argv);
+int cmd_links(int argc, char **argv); /* the most loaded links */
 int cmd_validate(int argc, char **argv);     /* SQL */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 int cmd_accuracy(int argc, char **argv);  /* error against run time */

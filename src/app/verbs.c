@@ -14,6 +14,7 @@ const struct verb verb_list[] = {
     {"kernels", "list kernels", cmd_kernels},
     {"verify", "hold every algorithm against reference vectors", cmd_verify},
     {"validate", "machines beside published figures, networks beside references", cmd_validate},
+    {"links", "the most loaded links of a run", cmd_links},
     {"netcheck", "hold the network levels against reference answers", cmd_netcheck},
     {"accuracy", "error against run time: network, arithmetic, integration", cmd_accuracy},
     {"stability", "stiff and extreme cases against every algorithm", cmd_stability},

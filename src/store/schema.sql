@@ -330,6 +330,17 @@ SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, 
 FROM run r JOIN stage s ON s.run_id = r.id
 WHERE r.status = 'ok';
 
+-- The ten links of each run that were busy longest; a port of a node has no router at one end.
+CREATE VIEW v_link_top AS
+SELECT run_id, scenario, machine, topology, level, kernel, n, P, place, link, from_router, to_router, node, messages,
+       sent_bytes, busy_ps, busy_share, queue_ps
+FROM (SELECT r.id AS run_id, r.scenario, r.machine, r.topology, r.level, r.kernel, r.n, r.P, l.link, l.from_router,
+             l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps,
+             1.0 * l.busy_ps / nullif(r.makespan_ps, 0) AS busy_share, l.queue_ps,
+             row_number() OVER (PARTITION BY r.id ORDER BY l.busy_ps DESC, l.queue_ps DESC, l.link) AS place
+      FROM link_load l JOIN run r ON r.id = l.run_id)
+WHERE place <= 10;
+
 -- Proof that nothing is lost: over all ranks and stages the parts add up to P times the makespan, to the picosecond.
 CREATE VIEW v_accounting AS
 SELECT r.id AS run_id, r.scenario, r.n, r.P, r.makespan_ps, r.P * r.makespan_ps AS expected_ps,

@@ -1,0 +1,48 @@
+# linkmap.gp - heat map of link load on a mesh or torus: one panel a direction, one cell a router, its outgoing link.
+data = figure.".csv"
+stats data using "panel" nooutput
+panels = int(STATS_max)
+stats data using "x" nooutput
+wide = STATS_max + 1
+stats data using "y" nooutput
+high = STATS_max + 1
+stats data using "busy_share" nooutput
+top = STATS_max > 0 ? STATS_max : 1
+array direction[panels]
+do for [i=1:panels] { direction[i] = "" }
+stats data using (direction[int(column("panel"))] = strcol("direction"), \
+    headline = sprintf("Link load of %s on %s, P = %d", strcol("kernel"), strcol("machine"), column("P")), \
+    subline = sprintf("%s %s, network level %s; each cell a router's outgoing link", strcol("topology"), strcol("dims"), strcol("level")), 0) nooutput
+of(p, v) = column("panel") == p ? v : NaN
+rows = int((panels + 1)/2)
+set palette defined (0 "#f7fbff", 0.25 "#c6dbef", 0.5 "#56b4e9", 0.75 "#0072b2", 1 "#08306b")
+set cbrange [0:top]
+set xrange [-0.5:wide - 0.5]; set yrange [-0.5:high - 0.5]
+set xtics autofreq; set ytics autofreq
+unset grid
+set style fill solid 1.0 noborder
+do for [format in formats] {
+    tall = 140 + 190*rows
+    eval page(format, 860, tall); tiny = small(format)
+    set multiplot
+    eval title_at(format, 1.0 - 20.0/tall); eval foot(format)
+    do for [p=1:panels] {
+        column_of = int((p - 1) % 2)
+        row_of = int((p - 1)/2)
+        set lmargin at screen (column_of == 0 ? 0.08 : 0.51); set rmargin at screen (column_of == 0 ? 0.44 : 0.87)
+        set tmargin at screen 1.0 - (78.0 + 190*row_of + 12)/tall
+        set bmargin at screen 1.0 - (78.0 + 190*row_of + 150)/tall
+        set title direction[p] offset 0,-0.8
+        set xlabel (row_of == rows - 1 ? "x" : "") offset 0,0.4
+        set ylabel (column_of == 0 ? (high > wide ? "other coordinates" : "y") : "") offset 0.6,0
+        if (p == 2) {
+            set colorbox user origin screen 0.895,(0.2) size screen 0.022,0.6
+            set cblabel "share of the run in use" offset 0.4,0
+            set format cb "%.2g"
+        } else { unset colorbox }
+        plot data using (of(p, column("x"))):"y":(0.47):(0.45):"busy_share" with boxxyerror linewidth 0 fillcolor palette
+        unset label 97; unset label 98; unset label 99
+    }
+    unset multiplot
+    unset output
+}
