@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/flag.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "report/report.h"
@@ -13,7 +14,8 @@ static const char doc[] =
     "Run every point of SCENARIO, store each in the database, and print the table.\n\n"
     "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
     "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
-    "the exit status is then 1; a deadlock ends with 70.";
+    "the exit status is then 1; a deadlock ends with 70.\n\n"
+    "--keep-all: compute too what the scene does not need (mimdsim explain lists it); the results are the same.";
 
 struct keep {
     struct store *store;
@@ -21,6 +23,18 @@ struct keep {
     int invalid, deadlock, redundant;
     bool quiet;
 };
+
+/* What the run left out, as a list for its row. */
+static void list_omissions(const struct run_spec *spec, struct text *out)
+{
+    struct run_estimate estimate;
+    struct err e;
+    err_clear(&e);
+    if (!run_explain(spec, &estimate, &e)) return;
+    for (int i = 0; i < estimate.nomission; i++)
+        if (!(spec->keep & estimate.omission[i].keep))
+            text_add(out, "%s%s: %s", out->length > 0 ? "; " : "", estimate.omission[i].what, estimate.omission[i].why);
+}
 
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
@@ -33,7 +47,11 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
-    return store_put(k->store, spec, r, "", k->error);
+    struct text left_out = {0};
+    list_omissions(spec, &left_out);
+    bool ok = store_put(k->store, spec, r, left_out.s ? left_out.s : "", k->error);
+    text_free(&left_out);
+    return ok;
 }
 
 static bool *stored_already(struct store *s, const struct plan *p, bool force)
@@ -88,13 +106,17 @@ static bool answer(const struct common *c, const struct plan *p, struct keep *k,
 int cmd_run(int argc, char **argv)
 {
     struct common c;
+    bool keep_all = take_flag(&argc, argv, "--keep-all");
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO", doc, 1, 1);
     struct err e;
     err_clear(&e);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e, .quiet = c.quiet};
-    bool ok = plan_read(&p, c.arg[0], &o, &e) && answer(&c, &p, &k, &e);
+    bool ok = plan_read(&p, c.arg[0], &o, &e);
+    for (int i = 0; ok && keep_all && i < p.nrun; i++) p.run[i].keep = KEEP_ALL;
+    c.force = c.force || keep_all; /* the same results, but not the same row */
+    ok = ok && answer(&c, &p, &k, &e);
     store_close(k.store);
     plan_free(&p);
     if (!ok) return common_fail(&c, &e);

@@ -75,6 +75,8 @@ struct run_result {
     int nerror;
     struct error_check error[RUN_MAX_ERRORS];
 
+    double residual;           /* largest constraint residual that a rank saw, relative; NaN: no forward dynamics */
+    double condition;          /* lower bound of the block-scaled system's condition, from its pivots; 0: not known */
     double measured_s;         /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
     int loop_rows, loop_rank;  /* constraints of closed chains; the independent ones among them, -1: not asked for */
     double drift_position, drift_velocity; /* largest violation of a loop at the end [model's units]; of loops only */

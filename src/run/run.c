@@ -9,7 +9,9 @@
 #include "base/progress.h"
 #include "kernel/kernel.h"
 #include "mech/model.h"
+#include "run/omission.h"
 #include "run/references.h"
+#include "run/trust.h"
 #include "vp/world.h"
 
 struct launch {
@@ -40,7 +42,9 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
         struct model *m = model_build(&spec->model, a, e);
         if (!m) return false;
         job->model = m;
-        job->state = state_make(m, &spec->model, a);
+        struct state *state = state_make(m, &spec->model, a);
+        if (spec->keep & KEEP_EXTERNAL) state_fext_need(state, m, a);
+        job->state = state;
         if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
         if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
         if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
@@ -51,6 +55,7 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
             job->qd_end = TAKE(a, m->nu, double);
         }
         job->residual = TAKE(a, spec->nrank, double);
+        job->condition = TAKE(a, spec->nrank, double);
     } else {
         job->measured = TAKE(a, spec->nrank, double);
     }
@@ -77,6 +82,7 @@ static void verify(const struct kernel_job *job, const struct kernel_type *kerne
 {
     out->measured_s = largest_measured(job);
     if (out->status != RUN_OK) return;
+    trust_check(job, out);
     references_loops(job, scratch, out);
     references_check(job, scratch, out);
     references_baselines(job, kernel, scratch, out);
@@ -98,8 +104,10 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
                                   &l,
                                   kernel->nstage,
                                   kernel->stage_name,
-                                  kernel->largest_message ? kernel->largest_message(&job) : -1};
-        ok = world_run(&spec->machine, &load, &spec->record, spec->seed + (uint64_t)spec->rep, a, out, e);
+                                  omission_largest_message(spec, kernel, &job)};
+        struct machine_spec machine = omission_machine(spec);
+        struct record_spec record = omission_record(spec);
+        ok = world_run(&machine, &load, &record, spec->seed + (uint64_t)spec->rep, a, out, e);
     }
     if (ok && job.model) {
         out->nbody = job.model->nbody;
@@ -131,6 +139,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->messages = k.messages;
         out->bytes = k.bytes;
         out->flops = k.flops;
+        omission_list(spec, kernel, m, out);
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
         double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;

@@ -28,6 +28,7 @@ struct run_estimate {
     struct omission {
         char what[48], why[96];
         bool exact; /* proof class: bit-identical; otherwise bounded */
+        unsigned keep;           /* KEEP_* that brings it back; 0: nothing does */
     } omission[16];
 };
 

@@ -15,6 +15,10 @@ struct record_spec {
     bool links;  /* per-link busy time and queueing */
 };
 
+/* What is computed although nothing asks for it (run's --keep-all): to show that leaving it out changes no result. */
+enum keep_bit { KEEP_START_EVENTS = 1, KEEP_SPANS = 2, KEEP_LINKS = 4, KEEP_BASELINE = 8, KEEP_CONTENTION = 16,
+            KEEP_EXTERNAL = 32, KEEP_ALL = 63 };
+
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
     struct machine_spec machine;
@@ -26,6 +30,7 @@ struct run_spec {
     int rep;                 /* repetition number, 0-based */
     char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
     const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
+    unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */
 };
 
 /* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes. Where not, all

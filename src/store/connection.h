@@ -17,12 +17,13 @@
       "INSERT INTO run (config_hash, seed, rep, scenario, machine, topology, level, placement, kernel, formulation,"   \
       " solver, part_solver, operators, precision, model, base, joint, n, nu, P, compute_noise_cv, background_load,"   \
       " status, text, makespan_ps, measured_s, loop_rows, loop_rank, drift_position, drift_velocity,"                  \
+      " residual, condition,"                                                                                          \
       " messages, sent_bytes, events, ties, switches, digest,"                                                         \
       " accounting_error_ps,"                                                                                          \
       " finish_min_ps, finish_max_ps, rank_compute_min_ps, rank_compute_max_ps, links, host_s, host_total_s,"          \
       " host_peak_bytes, stack_peak_bytes, left_out, config_text, build_id, created_utc) VALUES"                       \
       " (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"  \
-      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                                \
+      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                                \
     X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
     X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
     X(SETTING_ADD, "INSERT INTO setting (key, value) VALUES (?1, ?2)")                                                 \

@@ -49,6 +49,8 @@ CREATE TABLE run (
     loop_rank        INTEGER,           -- independent ones among them: fewer than loop_rows are redundant
     drift_position   REAL,              -- largest violation of a loop when the run ends, in the model's units
     drift_velocity   REAL,
+    residual         REAL,              -- largest relative residual of the constraints, as the kernel sees it
+    condition        REAL,              -- lower bound of the condition of the block-scaled system
     messages         INTEGER NOT NULL,
     sent_bytes       INTEGER NOT NULL,
     events           INTEGER NOT NULL,

@@ -202,6 +202,8 @@ static void bind_result(struct binding *b, const struct run_result *r, char dige
     bind_int_if(b, r->loop_rows > 0 && r->loop_rank >= 0, r->loop_rank);
     bind_real(b, r->loop_rows > 0 ? r->drift_position : NAN);
     bind_real(b, r->loop_rows > 0 ? r->drift_velocity : NAN);
+    bind_real(b, r->residual);
+    bind_real(b, r->condition > 0 ? r->condition : NAN);
     bind_int(b, r->messages);
     bind_int(b, r->bytes);
     bind_int(b, r->events);

@@ -1,0 +1,40 @@
+/* flag.c - see flag.h. */
+#include "app/flag.h"
+
+#include <string.h>
+
+static void drop(int *argc, char **argv, int at, int n)
+{
+    for (int i = at; i + n <= *argc; i++) argv[i] = argv[i + n];
+    *argc -= n;
+}
+
+bool take_flag(int *argc, char **argv, const char *name)
+{
+    bool found = false;
+    for (int i = 1; i < *argc;) {
+        if (strcmp(argv[i], "--") == 0) break;
+        if (strcmp(argv[i], name) == 0) drop(argc, argv, i, 1), found = true;
+        else i++;
+    }
+    return found;
+}
+
+const char *take_value(int *argc, char **argv, const char *name)
+{
+    const char *value = NULL;
+    size_t length = strlen(name);
+    for (int i = 1; i < *argc;) {
+        if (strcmp(argv[i], "--") == 0) break;
+        if (strncmp(argv[i], name, length) == 0 && argv[i][length] == '=') {
+            value = argv[i] + length + 1;
+            drop(argc, argv, i, 1);
+        } else if (strcmp(argv[i], name) == 0) {
+            value = i + 1 < *argc ? argv[i + 1] : "";
+            drop(argc, argv, i, i + 1 < *argc ? 2 : 1);
+        } else {
+            i++;
+        }
+    }
+    return value;
+}

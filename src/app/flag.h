@@ -1,0 +1,16 @@
+/* flag.h - the options that a single verb has, taken out of its arguments before the common ones are read. */
+#ifndef APP_FLAG_H
+#define APP_FLAG_H
+
+#include <stdbool.h>
+
+#include "base/err.h"
+
+/* take_flag: remove every `name` ("--keep-all") from argv[1..]; whether there was one. */
+bool take_flag(int *argc, char **argv, const char *name);
+
+/* take_value: remove "NAME X" or "NAME=X" from argv[1..]; X, the last one, or NULL when there is none. A missing X is
+ * "". */
+const char *take_value(int *argc, char **argv, const char *name);
+
+#endif
