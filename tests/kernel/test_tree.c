@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <stdio.h>
 
 #include "evaluation.h"
 #include "kernel/tree_plan.h"
@@ -103,6 +104,32 @@ static void a_four_bar_has_three_redundant_constraints(void **state)
     }
 }
 
+static void loops_of_all_kinds(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"closed_floatring_n0013", "closed_fourbar_rot",   "closed_platform_3x3R",
+                                        "closed_slidercrank",     "closed_two_4R_point3", "closed_two_6R_weld6"};
+    for (int k = 0; k < 6; k++)
+        for (int P = 1; P <= 13; P += 3)
+            for (int variant = 0; variant < 4; variant++) {
+                struct arena *a = arena_create();
+                struct err e = {0};
+                struct run_spec s = evaluation_spec("dynamics", 1, P);
+                s.model.generator = MODEL_VECTOR;
+                snprintf(s.model.path, sizeof s.model.path, MIMDSIM_SRCDIR "/tests/data/vectors/%s.json", files[k]);
+                s.kernel.formulation = variant & 1 ? FORMULATION_DIRECT : FORMULATION_PAPER;
+                s.kernel.inner_refinements = variant >> 1;
+                const struct model *m = model_build(&s.model, a, &e);
+                if (!m) fail_msg("%s", e.text);
+                if (P <= m->nbody) {
+                    const struct evaluation v = evaluate_model(&s, m, state_make(m, &s.model, a), a);
+                    if (!(v.tau_error < 1e-13 && v.qdd_error < 1e-10))
+                        fail_msg("%s P %d: tau %.1e qdd %.1e", files[k], P, v.tau_error, v.qdd_error);
+                }
+                arena_destroy(a);
+            }
+}
+
 /* depth: of a piece. */
 static int depth(const struct tree_plan *p, int k) { return p->parent[k] < 0 ? 0 : 1 + depth(p, p->parent[k]); }
 
@@ -160,6 +187,7 @@ int main(void)
         cmocka_unit_test(large_trees),
         cmocka_unit_test(refinement_reaches_the_last_digits),
         cmocka_unit_test(closed_chains),
+        cmocka_unit_test(loops_of_all_kinds),
         cmocka_unit_test(a_four_bar_has_three_redundant_constraints),
         cmocka_unit_test(pieces_are_connected_and_balanced),
         cmocka_unit_test(contraction_takes_logarithmically_many_rounds),
