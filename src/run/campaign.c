@@ -136,13 +136,19 @@ static bool start_worker(struct campaign *c, struct err *e)
     return true;
 }
 
-static bool give_order(struct campaign *c, struct worker *w)
+static bool died(const struct campaign *c, int index, struct err *e)
+{
+    return err_set(e, ERR_INTERNAL, "the worker process of run %d of %d (%s, n = %d, P = %d) died", index + 1, c->nspec,
+                   c->spec[index].kernel.name, c->spec[index].model.nbody, c->spec[index].nrank);
+}
+
+static bool give_order(struct campaign *c, struct worker *w, struct err *e)
 {
     while (c->next < c->nspec && c->skip && c->skip[c->next]) c->next++;
     w->busy = c->next < c->nspec ? c->next : -1;
     if (w->busy < 0) return true;
     c->next++;
-    return write_all(w->orders, &w->busy, sizeof w->busy);
+    return write_all(w->orders, &w->busy, sizeof w->busy) || died(c, w->busy, e);
 }
 
 /* Hand over what is next in plan order, as far as it is there. */
@@ -174,17 +180,15 @@ static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
     int index = w->busy;
     c->arena[index] = arena_create();
     c->slot[index] = TAKE(c->arena[index], 1, struct answer);
-    if (!receive_answer(w->answers, c->slot[index], c->arena[index]))
-        return err_set(e, ERR_INTERNAL, "the worker process of run %d of %d (%s, n = %d, P = %d) died", index + 1,
-                       c->nspec, c->spec[index].kernel.name, c->spec[index].model.nbody, c->spec[index].nrank);
+    if (!receive_answer(w->answers, c->slot[index], c->arena[index])) return died(c, index, e);
     CHECK(c->slot[index]->index == index);
-    return give_order(c, w) && hand_over(c, e);
+    return give_order(c, w, e) && hand_over(c, e);
 }
 
 static bool serve(struct campaign *c, struct err *e)
 {
     for (int i = 0; i < c->nworker; i++)
-        if (!give_order(c, &c->worker[i])) return err_set(e, ERR_INTERNAL, "a worker process died at its start");
+        if (!give_order(c, &c->worker[i], e)) return false;
     while (c->handed < c->nspec) {
         struct pollfd p[MOST_WORKERS];
         for (int i = 0; i < c->nworker; i++)

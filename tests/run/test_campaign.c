@@ -1,0 +1,171 @@
+/* test_campaign.c - many runs on worker processes: the same rows whatever their number, and a death is told. */
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "plan/plan.h"
+#include "run/run.h"
+
+enum { MOST_RUNS = 32 };
+
+struct rows {
+    int n, last; /* stop after `last` rows; 0: never */
+    bool kills;  /* kill all workers at the first row */
+    uint64_t digest[MOST_RUNS], stages[MOST_RUNS];
+    int64_t makespan_ps[MOST_RUNS], finish_ps[MOST_RUNS], busy_ps[MOST_RUNS];
+    int nrank[MOST_RUNS];
+};
+
+/* FNV-1a over the bytes of an array. */
+static uint64_t hash(const void *data, size_t n)
+{
+    uint64_t h = 14695981039346656037u;
+    for (const unsigned char *p = data; n--; p++) h = (h ^ *p) * 1099511628211u;
+    return h;
+}
+
+static void kill_workers(void)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/proc/self/task/%d/children", (int)getpid());
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    for (int pid; fscanf(f, "%d", &pid) == 1;) kill(pid, SIGKILL);
+    fclose(f);
+}
+
+static bool keep(void *context, const struct run_spec *spec, const struct run_result *r)
+{
+    struct rows *k = context;
+    int i = k->n++;
+    assert_true(i < MOST_RUNS);
+    assert_int_equal(spec->nrank, r->nrank);
+    k->digest[i] = r->digest;
+    k->makespan_ps[i] = r->makespan_ps;
+    k->nrank[i] = r->nrank;
+    k->stages[i] = hash(r->stage, (size_t)(r->nrank * r->nstage) * sizeof *r->stage);
+    k->finish_ps[i] = r->finish_ps[r->nrank - 1];
+    for (int l = 0; l < r->nlink; l++) k->busy_ps[i] += r->link[l].busy_ps;
+    if (k->kills && i == 0) kill_workers();
+    return k->n != k->last;
+}
+
+static struct plan speedup(void)
+{
+    struct plan p;
+    struct err e;
+    err_clear(&e);
+    if (!plan_read(&p, MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", NULL, &e)) fail_msg("%s", e.text);
+    assert_int_equal(p.nrun, 28);
+    return p;
+}
+
+static struct rows campaign(const struct plan *p, const bool *skip, int workers)
+{
+    struct rows rows = {0};
+    struct err e;
+    err_clear(&e);
+    if (!run_campaign(p->run, p->nrun, skip, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+    return rows;
+}
+
+static void rows_do_not_depend_on_the_number_of_workers(void **unused)
+{
+    (void)unused;
+    struct plan p = speedup();
+    struct rows one = campaign(&p, NULL, 1);
+    assert_int_equal(one.n, p.nrun);
+    for (int i = 0; i < p.nrun; i++) assert_int_equal(one.nrank[i], p.run[i].nrank);
+    assert_true(one.busy_ps[0] > 0); /* links are recorded and travel with the result */
+    for (int workers = 2; workers <= 3; workers++) {
+        struct rows many = campaign(&p, NULL, workers);
+        assert_memory_equal(&many, &one, sizeof one);
+    }
+    plan_free(&p);
+}
+
+static void what_is_skipped_is_not_run_and_the_rest_keeps_its_order(void **unused)
+{
+    (void)unused;
+    struct plan p = speedup();
+    struct rows all = campaign(&p, NULL, 1);
+    bool skip[MOST_RUNS] = {[0] = true, [5] = true, [6] = true, [27] = true};
+    for (int workers = 1; workers <= 3; workers += 2) {
+        struct rows some = campaign(&p, skip, workers);
+        assert_int_equal(some.n, 24);
+        for (int i = 0, k = 0; i < 28; i++)
+            if (!skip[i]) assert_true(some.digest[k++] == all.digest[i]);
+    }
+    memset(skip, true, sizeof skip);
+    assert_int_equal(campaign(&p, skip, 3).n, 0);
+    plan_free(&p);
+}
+
+static void who_takes_the_rows_may_stop(void **unused)
+{
+    (void)unused;
+    struct plan p = speedup();
+    for (int workers = 1; workers <= 3; workers++) {
+        struct rows rows = {.last = 4};
+        struct err e;
+        err_clear(&e);
+        assert_false(run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e));
+        assert_int_equal(rows.n, 4);
+    }
+    plan_free(&p);
+}
+
+static void a_run_that_cannot_be_made_is_told_after_those_before_it(void **unused)
+{
+    (void)unused;
+    struct plan p = speedup();
+    p.run[6].nrank = p.run[6].model.nbody + 1;
+    for (int workers = 1; workers <= 3; workers++) {
+        struct rows rows = {0};
+        struct err e;
+        err_clear(&e);
+        assert_false(run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e));
+        assert_int_equal(e.kind, ERR_CONFIG);
+        assert_int_equal(rows.n, 6);
+    }
+    plan_free(&p);
+}
+
+static void a_worker_that_dies_is_told(void **unused)
+{
+    (void)unused;
+    struct plan p = speedup();
+    for (int i = 1; i < p.nrun; i++) { /* so long that the first row is there while others still run */
+        p.run[i] = p.run[13];
+        p.run[i].machine.network.level = LEVEL_FLIT;
+    }
+    for (int workers = 2; workers <= 4; workers++) {
+        struct rows rows = {.kills = true};
+        struct err e;
+        err_clear(&e);
+        assert_false(run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e));
+        assert_int_equal(e.kind, ERR_INTERNAL);
+        assert_non_null(strstr(e.text, "died"));
+        assert_true(rows.n >= 1 && rows.n < p.nrun);
+    }
+    plan_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_do_not_depend_on_the_number_of_workers),
+        cmocka_unit_test(what_is_skipped_is_not_run_and_the_rest_keeps_its_order),
+        cmocka_unit_test(who_takes_the_rows_may_stop),
+        cmocka_unit_test(a_run_that_cannot_be_made_is_told_after_those_before_it),
+        cmocka_unit_test(a_worker_that_dies_is_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

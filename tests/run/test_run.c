@@ -1,0 +1,275 @@
+/* test_run.c - one run: accounted for to the picosecond, held against serial answers, refused when it is wrong. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "kernel/kernel.h"
+#include "mech/dynamics_table.h"
+#include "mech/model.h"
+#include "plan/plan.h"
+#include "run/references.h"
+#include "run/run.h"
+
+enum { MOST_SETTINGS = 8 };
+
+/* The only run of the benchmark scenario with these settings, "key=value", ended by NULL. */
+static struct run_spec spec_with(struct plan *p, const char *const *setting)
+{
+    struct plan_options o = {.set = setting};
+    struct err e;
+    err_clear(&e);
+    while (setting[o.nset]) o.nset++;
+    if (!plan_read(p, MIMDSIM_SRCDIR "/scenarios/speedup-t3e.yaml", &o, &e)) fail_msg("%s", e.text);
+    return p->run[0];
+}
+
+#define SPEC(p, ...) spec_with((p), (const char *const[MOST_SETTINGS]){__VA_ARGS__, NULL})
+
+static struct run_result run(const struct run_spec *spec, struct arena *a)
+{
+    struct run_result r;
+    struct err e;
+    err_clear(&e);
+    if (!run_one(spec, a, &r, &e)) fail_msg("%s", e.text);
+    return r;
+}
+
+static void expect_accounted(const struct run_result *r)
+{
+    int64_t messages = 0;
+    assert_true(r->makespan_ps > 0);
+    for (int rank = 0; rank < r->nrank; rank++) {
+        int64_t sum = 0;
+        for (int stage = 0; stage < r->nstage; stage++) {
+            const struct stage_time *t = &r->stage[(int64_t)rank * r->nstage + stage];
+            assert_true(t->compute_ps >= 0 && t->send_ps >= 0 && t->recv_ps >= 0);
+            assert_true(t->wait_ps >= 0 && t->contention_ps >= 0);
+            sum += t->compute_ps + t->send_ps + t->recv_ps + t->wait_ps + t->contention_ps;
+            messages += t->messages;
+        }
+        assert_true(sum == r->makespan_ps);
+        assert_true(r->finish_ps[rank] <= r->makespan_ps);
+    }
+    assert_true(messages == r->messages && messages > 0);
+}
+
+static void every_level_accounts_for_every_picosecond(void **unused)
+{
+    (void)unused;
+    static const char *const level[] = {"level=loggp", "level=link", "level=packet", "level=flit", "level=auto"};
+    for (int i = 0; i < 5; i++) {
+        for (int n = 6; n <= 13; n += 7) {
+            char bodies[16];
+            struct plan p;
+            snprintf(bodies, sizeof bodies, "n=%d", n);
+            struct run_spec spec = SPEC(&p, level[i], bodies);
+            struct arena *a = arena_create();
+            struct run_result r = run(&spec, a), again = run(&spec, a);
+            assert_int_equal(r.status, RUN_OK);
+            assert_int_equal(r.nrank, n);
+            expect_accounted(&r);
+            assert_true(r.digest == again.digest && r.makespan_ps == again.makespan_ps);
+            arena_destroy(a);
+            plan_free(&p);
+        }
+    }
+}
+
+static void contention_is_never_charged_without_links(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=16");
+    struct arena *a = arena_create();
+    struct run_result r = run(&spec, a);
+    for (int i = 0; i < r.nrank * r.nstage; i++) assert_int_equal(r.stage[i].contention_ps, 0);
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+/* Answers of the serial programs in a job, to be spoilt. */
+static struct kernel_job serial_job(const struct run_spec *spec, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    struct kernel_job job = {.spec = spec, .nrank = spec->nrank};
+    struct model *m = model_build(&spec->model, a, &e);
+    assert_non_null(m);
+    job.model = m;
+    job.state = state_make(m, &spec->model, a);
+    job.tau = TAKE(a, m->nu, double);
+    job.qdd = TAKE(a, m->nu, double);
+    struct work w = {0};
+    const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
+    t->inverse(m, job.state, a, job.tau, &w);
+    assert_true(t->forward(m, job.state, FORWARD_CRBA, a, job.qdd, NULL, NULL, &w));
+    return job;
+}
+
+static struct run_result checked(const struct kernel_job *job, struct arena *a)
+{
+    struct run_result r = {.status = RUN_OK};
+    references_check(job, a, &r);
+    return r;
+}
+
+static void a_wrong_number_makes_the_run_invalid(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=12");
+    struct arena *a = arena_create();
+    struct kernel_job job = serial_job(&spec, a);
+    struct run_result r = checked(&job, a);
+    assert_int_equal(r.status, RUN_OK);
+    assert_int_equal(r.nerror, 2);
+    assert_true(r.error[1].relative > 0 && r.error[1].relative < 1e-10); /* CRBA beside ABA */
+    for (int i = 0; i < 12; i++) {
+        double good = job.qdd[i], good_tau = job.tau[i], largest = 0;
+        for (int k = 0; k < 12; k++) largest = fmax(largest, fabs(job.qdd[k]));
+        job.qdd[i] += 1e-6 * largest;
+        r = checked(&job, a);
+        assert_int_equal(r.status, RUN_INVALID);
+        assert_non_null(strstr(r.text, "qdd differs from aba"));
+        assert_true(fabs(r.error[1].relative / 1e-6 - 1) < 1e-3);
+        job.qdd[i] = NAN;
+        assert_int_equal(checked(&job, a).status, RUN_INVALID);
+        job.qdd[i] = good;
+        job.tau[i] = -2 * good_tau - 1;
+        r = checked(&job, a);
+        assert_int_equal(r.status, RUN_INVALID);
+        assert_non_null(strstr(r.text, "tau differs from rnea"));
+        job.tau[i] = good_tau;
+    }
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+static void rounding_beyond_the_tolerance_makes_a_real_run_invalid(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=float", "kernel.formulation=paper");
+    struct arena *a = arena_create();
+    struct run_result r = run(&spec, a);
+    assert_int_equal(r.status, RUN_INVALID);
+    assert_non_null(strstr(r.text, "differs from"));
+    expect_accounted(&r);
+    plan_free(&p);
+    spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=quad", "kernel.formulation=paper");
+    r = run(&spec, a);
+    assert_int_equal(r.status, RUN_OK);
+    assert_true(r.error[1].relative < 1e-11);
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+static const struct baseline *baseline_of(const struct run_result *r, const char *name)
+{
+    for (int i = 0; i < r->nbaseline; i++)
+        if (strcmp(r->baseline[i].name, name) == 0) return &r->baseline[i];
+    fail_msg("no baseline '%s'", name);
+    return NULL;
+}
+
+static void baselines_are_all_the_work_and_the_fastest_of_the_serial_codes(void **unused)
+{
+    (void)unused;
+    static const char *const serial[] = {"rnea+aba", "rnea+crba", "rnea+cfa-paper", "rnea+cfa-direct"};
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=24");
+    struct arena *a = arena_create();
+    struct run_result r = run(&spec, a);
+    struct work all = {0};
+    for (int i = 0; i < r.nrank * r.nstage; i++) work_add(&all, &r.stage[i].work);
+    const struct baseline *itself = baseline_of(&r, "parallel code on one processor");
+    assert_memory_equal(&itself->work, &all, sizeof all);
+    int64_t fastest = INT64_MAX;
+    for (int i = 0; i < 4; i++) {
+        const struct baseline *b = baseline_of(&r, serial[i]);
+        if (b->time_ps < fastest) fastest = b->time_ps;
+    }
+    assert_true(baseline_of(&r, "fastest serial")->time_ps == fastest);
+    assert_true(baseline_of(&r, "rnea")->time_ps < fastest && fastest < itself->time_ps);
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+static void near(const char *what, double estimated, double counted)
+{
+    if (fabs(estimated - counted) > 0.2 * counted) fail_msg("%s: estimated %g, counted %g", what, estimated, counted);
+}
+
+static void estimates_are_within_a_fifth_of_what_is_counted(void **unused)
+{
+    (void)unused;
+    static const char *const points[][3] = {{"n=3"},
+                                            {"n=16"},
+                                            {"n=45"},
+                                            {"n=128"},
+                                            {"n=96", "ranks=12"},
+                                            {"n=32", "kernel.formulation=direct"},
+                                            {"n=32", "kernel=inverse"},
+                                            {"n=32", "kernel=forward"}};
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
+        struct plan p;
+        struct run_spec spec = SPEC(&p, "level=loggp", points[i][0], points[i][1] ? points[i][1] : "seed=1");
+        struct arena *a = arena_create();
+        struct run_result r = run(&spec, a);
+        struct run_estimate x;
+        struct err e;
+        err_clear(&e);
+        assert_true(run_explain(&spec, &x, &e));
+        double flops = 0;
+        for (int k = 0; k < r.nrank * r.nstage; k++) flops += (double)r.stage[k].work.flop;
+        near("messages", x.messages, (double)r.messages);
+        near("bytes", x.bytes, (double)r.bytes);
+        near("flops", x.flops, flops);
+        assert_int_equal(x.nbody, spec.model.nbody);
+        arena_destroy(a);
+        plan_free(&p);
+    }
+}
+
+static void what_cannot_run_is_refused(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=4");
+    struct arena *a = arena_create();
+    struct run_result r;
+    struct err e;
+    err_clear(&e);
+    spec.nrank = 5;
+    assert_false(run_one(&spec, a, &r, &e));
+    assert_int_equal(e.kind, ERR_CONFIG);
+    assert_non_null(strstr(e.text, "5 processors for 4 bodies"));
+    err_clear(&e);
+    spec.nrank = 4;
+    strcpy(spec.kernel.name, "dynamo");
+    assert_false(run_one(&spec, a, &r, &e));
+    assert_int_equal(e.kind, ERR_CONFIG);
+    assert_non_null(strstr(e.text, "dynamo"));
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_level_accounts_for_every_picosecond),
+        cmocka_unit_test(contention_is_never_charged_without_links),
+        cmocka_unit_test(a_wrong_number_makes_the_run_invalid),
+        cmocka_unit_test(rounding_beyond_the_tolerance_makes_a_real_run_invalid),
+        cmocka_unit_test(baselines_are_all_the_work_and_the_fastest_of_the_serial_codes),
+        cmocka_unit_test(estimates_are_within_a_fifth_of_what_is_counted),
+        cmocka_unit_test(what_cannot_run_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
