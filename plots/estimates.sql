@@ -24,7 +24,10 @@ SELECT 'a shared machine, noise or scattered placement could make the drop of C3
                WHERE id = 'C3' AND variant <> '' AND variant NOT LIKE '%,%'), 'not judged')
 UNION ALL
 SELECT 'more bodies a processor lift S but do not lower f: the second half of C7 is not reproduced',
-       CASE (SELECT max(verdict = 'pass') FROM claim WHERE id = 'C7' AND variant NOT LIKE 'speedup only%' AND variant <> '')
-            WHEN 0 THEN 'confirmed' WHEN 1 THEN 'refuted' ELSE 'not judged' END,
+       CASE (SELECT max(verdict = 'pass') FROM claim WHERE id = 'C7' AND variant NOT LIKE '%: %' AND variant <> '')
+            WHEN 0 THEN iif(EXISTS (SELECT 1 FROM claim WHERE id = 'C7' AND variant LIKE 'same n: %' AND verdict = 'pass'),
+                            'confirmed at the same P; at the same n the claim holds', 'confirmed')
+            WHEN 1 THEN 'refuted' ELSE 'not judged' END,
        ifnull((SELECT group_concat(variant || ': ' || note, '; ') FROM claim WHERE id = 'C7'
-               AND variant IN ('fastest serial, structured', 'parallel code on one processor, dense')), 'not judged');
+               AND variant IN ('fastest serial, structured', 'parallel code on one processor, dense',
+                               'same n: fastest serial, structured', 'same n: parallel code on one processor, dense')), 'not judged');
