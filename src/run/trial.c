@@ -62,7 +62,8 @@ static double worst(const double *x, int n)
 {
     double largest = 0;
     for (int i = 0; i < n; i++)
-        if (!(x[i] <= largest)) largest = x[i];
+        if (isnan(x[i])) return x[i];
+        else if (x[i] > largest) largest = x[i];
     return largest;
 }
 

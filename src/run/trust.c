@@ -10,7 +10,8 @@ static double worst(const double *x, int n)
 {
     double largest = 0;
     for (int i = 0; x && i < n; i++)
-        if (!(x[i] <= largest)) largest = x[i];
+        if (isnan(x[i])) return x[i];
+        else if (x[i] > largest) largest = x[i];
     return largest;
 }
 

@@ -1,0 +1,61 @@
+#!/usr/bin/env bats
+# accuracy.bats - the verbs that tell how wrong and how stable each way is, through the real program.
+
+load helper
+
+scenario() {
+    printf '%s\n' 'schema_version: 1' 'question: Small?' 'machine: t3e-300' \
+        'model: {generator: serial-chain}' 'kernel: dynamics' 'ranks: n' 'n: 4' "$@" >small.yaml
+}
+
+@test "accuracy stores three ladders, draws them and ends with a line each" {
+    scenario
+    works mimdsim accuracy small.yaml --within 2%
+    stdout_says 'network (n=P=4, makespan within 0.02)'
+    stdout_says 'integration (n=P=4, state within 1e-06)'
+    sql_is mimdsim.db 'SELECT count(DISTINCT ladder), count(DISTINCT scenario) FROM ladder' '3|1'
+    sql_is mimdsim.db "SELECT count(*) FROM ladder WHERE ladder = 'network' AND method = 'flit' AND relative_error <> 0" 0
+    sql_is mimdsim.db "SELECT count(*) > 0 FROM ladder WHERE status = 'failed' AND text <> ''" 1
+    sql_is mimdsim.db 'SELECT count(*) FROM ladder_choice WHERE relative_error <= tolerance AND cost_ratio > 0' 4
+    [ -s figures/accuracy.png ]
+    [ -s figures/accuracy.csv ]
+}
+
+@test "accuracy answers in JSON and refuses what is no tolerance" {
+    scenario
+    works mimdsim accuracy small.yaml --json
+    json_is_valid
+    json_is '$.choices[0].ladder' network
+    fails_with 64 mimdsim accuracy small.yaml --within huh
+    stderr_says "'huh' is not a positive number"
+    fails_with 64 mimdsim accuracy small.yaml --within=-1
+}
+
+@test "stability grades the scenes of a scenario, draws and stores them" {
+    scenario
+    works mimdsim stability small.yaml
+    stdout_says ' ok, '
+    sql_is mimdsim.db "SELECT status, relative_error < 1e-13 FROM stability WHERE algorithm = 'aba' AND precision = 'double'" 'ok|1'
+    sql_is mimdsim.db "SELECT count(*) > 10, count(residual) > 10 FROM stability" '1|1'
+    [ -s figures/stability.png ]
+    works mimdsim stability small.yaml --json
+    json_is_valid
+}
+
+@test "what is left out is stored with the row, and keeping it changes nothing" {
+    scenario 'level: auto'
+    works mimdsim run small.yaml --quiet
+    sql_is mimdsim.db "SELECT left_out LIKE '%external forces%timeline%', residual < 1e-9, condition > 1 FROM run" '1|1|1'
+    before=$(sql mimdsim.db 'SELECT status, residual, condition FROM run')
+    works mimdsim run small.yaml --keep-all --quiet
+    sql_is mimdsim.db "SELECT left_out LIKE '%timeline%' FROM run" 0
+    [ "$(sql mimdsim.db 'SELECT status, residual, condition FROM run')" = "$before" ]
+}
+
+@test "explain measures what leaving out saves" {
+    scenario
+    works mimdsim explain small.yaml --measure
+    stdout_says 'left out (exact): external forces'
+    stdout_says 'events that start messages'
+    stdout_says 'saves'
+}
