@@ -221,3 +221,39 @@ refused() {
     fails_with 74 mimdsim query mimdsim.db 'DELETE FROM run'
     sql_is mimdsim.db 'SELECT count(*) FROM run' 1
 }
+
+@test "an unknown kernel is refused where it is written, with the nearest, before anything runs" {
+    scenario
+    refused 65 "--set: no kernel is called 'dynamcis'; did you mean 'dynamics'?" --set kernel=dynamcis
+    scenario 'sweep:' '  kernel.name: [dynamics, invers]'
+    sed -i '/^kernel:/d' small.yaml
+    refused 65 "small.yaml:8: no kernel is called 'invers'; did you mean 'inverse'?"
+}
+
+@test "an unknown figure in a scenario is refused with its line and the nearest" {
+    scenario 'figures: [fig6, fgi5]'
+    refused 65 "small.yaml:8: no figure 'fgi5'; did you mean 'fig5'?"
+}
+
+@test "another version of the format, and none, are refused" {
+    scenario
+    sed -i '1s/1/2/' small.yaml
+    refused 65 "small.yaml:1: schema_version: '2': this program reads version 1"
+    scenario
+    sed -i 1d small.yaml
+    refused 65 "schema_version is missing"
+}
+
+@test "an empty name of a database is a wrong option" {
+    scenario
+    fails_with 64 mimdsim run small.yaml -o ''
+    stderr_says "--output: '' is not the name of a file"
+}
+
+@test "a wrong number ends with status 1, is told, and its row says invalid" {
+    scenario
+    fails_with 1 mimdsim run small.yaml --quiet --set n=128 --set kernel.precision=float
+    stderr_says "differs from"
+    sql_is mimdsim.db 'SELECT status, text LIKE "%differs from%" FROM run' 'invalid|1'
+    sql_is mimdsim.db 'SELECT min(passed) FROM error_check' 0
+}
