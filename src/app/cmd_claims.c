@@ -3,9 +3,10 @@
 #include "report/claims.h"
 #include "store/store.h"
 
-static const char doc[] = "Judge the claims of the paper by the runs in DB (default paper.db) and print the table.\n\n"
-                          "Example: mimdsim claims paper.db --json\n\v"
-                          "A claim that fails is a result, not an error: the exit status is 0 when all could be judged.";
+static const char doc[] =
+    "Judge the claims of the paper by the runs in DB (default paper.db) and print the table.\n\n"
+    "Example: mimdsim claims paper.db --json\n\v"
+    "A claim that fails is a result, not an error: the exit status is 0 when all could be judged.";
 
 int cmd_claims(int argc, char **argv)
 {

@@ -139,7 +139,8 @@ static bool write_documents(struct paper *p, double began)
 {
     const char *name[MOST_FIGURES];
     struct arena *a = arena_create();
-    struct document d = {.store = p->store, .data_dir = plan_data_dir(), .figures = p->common->directory, .figure = name};
+    struct document d = {
+        .store = p->store, .data_dir = plan_data_dir(), .figures = p->common->directory, .figure = name};
     d.nfigure = figure_names(p, name);
     bool ok = parameters_gather(p->plan, p->nplan, a, &d.parameter, &d.nparameter, p->e);
     d.host_s = host_seconds() - began;

@@ -11,14 +11,16 @@
 #include "run/run.h"
 #include "store/store.h"
 
-static const char doc[] =
-    "Show the timeline of one run: of run number RUN of the database DB (default: the first that has one), or of the first "
-    "point of SCENARIO, which is run for it.\n\n"
-    "Example: mimdsim timeline scenarios/fig8.yaml\n"
-    "         mimdsim timeline paper.db 140 --format chrome\n\v"
-    "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), timeline.json (Chrome trace "
-    "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans, pictures 20000, since viewers fail "
-    "on more; what is left out is told.";
+static const char doc[] = "Show the timeline of one run: of run number RUN of the database DB (default: the first that "
+                          "has one), or of the first "
+                          "point of SCENARIO, which is run for it.\n\n"
+                          "Example: mimdsim timeline scenarios/fig8.yaml\n"
+                          "         mimdsim timeline paper.db 140 --format chrome\n\v"
+                          "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
+                          "timeline.json (Chrome trace "
+                          "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans, pictures "
+                          "20000, since viewers fail "
+                          "on more; what is left out is told.";
 
 enum { PICTURE_SPANS = 20000 };
 
@@ -26,7 +28,7 @@ struct shown {
     const struct common *common;
     struct err *e;
     struct arena *arena;
-    struct store *store;   /* where the picture finds the run */
+    struct store *store; /* where the picture finds the run */
     int64_t run_id;
     struct run_result result;
     char title[160];
@@ -56,13 +58,17 @@ static bool from_database(struct shown *t)
     const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
     const char *const param[] = {wanted};
     t->store = store_open(t->common->arg[0], STORE_READ, t->e);
-    if (!t->store ||
-        !store_query(t->store, "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P) FROM run"
-                               " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))", 1, param, NULL, take_first, t, t->e))
+    if (!t->store || !store_query(t->store,
+                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P) FROM run"
+                                  " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))",
+                                  1, param, NULL, take_first, t, t->e))
         return false;
     if (!t->run_id)
-        return err_set(t->e, ERR_NO_INPUT, wanted ? "there is no run %s in %s" : "no run%s of %s has a timeline; record it with "
-                       "`record: {spans: true}`", wanted ? wanted : "", t->common->arg[0]);
+        return err_set(t->e, ERR_NO_INPUT,
+                       wanted ? "there is no run %s in %s"
+                              : "no run%s of %s has a timeline; record it with "
+                                "`record: {spans: true}`",
+                       wanted ? wanted : "", t->common->arg[0]);
     return trace_read(t->store, t->run_id, t->arena, &t->result, t->e);
 }
 
@@ -74,7 +80,8 @@ static bool from_scenario(struct shown *t)
     if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
     struct run_spec spec = plan.run[0];
     spec.record.spans = true;
-    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name, spec.machine.name, spec.model.nbody, spec.nrank);
+    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name, spec.machine.name,
+             spec.model.nbody, spec.nrank);
     if (plan.nrun > 1 && !t->common->quiet)
         fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
     bool ok = run_one(&spec, t->arena, &t->result, t->e);
@@ -87,7 +94,8 @@ static bool from_scenario(struct shown *t)
 
 static bool make_folder(const char *dir, struct err *e)
 {
-    return mkdir(dir, 0777) == 0 || errno == EEXIST || err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
+    return mkdir(dir, 0777) == 0 || errno == EEXIST ||
+           err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
 }
 
 static bool write_trace(struct shown *t, enum trace_format format, const char *ending)
@@ -106,8 +114,8 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
     if (ok && left_out > 0)
-        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are left out, since viewers fail on more than %d\n", path,
-                (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
+        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are left out, since viewers fail on more than %d\n",
+                path, (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
     return ok;
 }
 
@@ -129,8 +137,8 @@ static bool show(struct shown *t)
     const char *word = t->common->format;
     enum trace_format format;
     if (!word)
-        return write_trace(t, TRACE_TEXT, NULL) && write_trace(t, TRACE_CHROME, "json") && write_trace(t, TRACE_PAJE, "paje") &&
-               draw_picture(t);
+        return write_trace(t, TRACE_TEXT, NULL) && write_trace(t, TRACE_CHROME, "json") &&
+               write_trace(t, TRACE_PAJE, "paje") && draw_picture(t);
     if (strcmp(word, "picture") == 0) return draw_picture(t);
     if (!trace_format_find(word, &format))
         return err_set(t->e, ERR_USAGE, "--format: '%s' is none of picture, text, chrome, paje, csv", word);

@@ -40,8 +40,8 @@ static const char *range_text(const struct origin *o, struct arena *a)
     return s;
 }
 
-bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out, int *n,
-                       struct err *e)
+bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out,
+                       int *n, struct err *e)
 {
     const char *name[MOST_MACHINES];
     struct origin *origin[MOST_MACHINES];
@@ -58,8 +58,8 @@ bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, cons
         for (int k = 0; k < norigin[i]; k++) {
             const struct origin *o = &origin[i][k];
             if (!*o->evidence) continue;
-            p[(*n)++] = (struct document_parameter){arena_text(a, name[i]), o->key, o->value, range_text(o, a), o->evidence,
-                                                    o->source};
+            p[(*n)++] = (struct document_parameter){arena_text(a, name[i]), o->key,      o->value,
+                                                    range_text(o, a),       o->evidence, o->source};
         }
     *out = p;
     return true;

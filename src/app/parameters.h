@@ -7,7 +7,7 @@
 #include "report/document.h"
 
 /* parameters_gather: every value with a source of every machine in the plans, in memory of `a`; *n of them. */
-bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out, int *n,
-                       struct err *e);
+bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out,
+                       int *n, struct err *e);
 
 #endif

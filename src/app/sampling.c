@@ -24,7 +24,7 @@ struct uncertain {
 };
 
 struct scene {
-    const char *name;    /* of the scenario */
+    const char *name; /* of the scenario */
     char machine[64];
 };
 
@@ -37,12 +37,12 @@ struct sampler {
     int nscene, nuncertain, nsample;
     struct scene *scene;
     struct uncertain *uncertain;
-    double *drawn;              /* (nsample x nuncertain) */
-    struct plan *plan;          /* (nsample x nscene) */
-    struct run_spec *spec;      /* all of them, sample by sample */
-    int nspec, *sample_of;      /* (nspec) */
-    struct store *passing;      /* results of the sample in progress */
-    int kept;                   /* specs handed over so far */
+    double *drawn;         /* (nsample x nuncertain) */
+    struct plan *plan;     /* (nsample x nscene) */
+    struct run_spec *spec; /* all of them, sample by sample */
+    int nspec, *sample_of; /* (nspec) */
+    struct store *passing; /* results of the sample in progress */
+    int kept;              /* specs handed over so far */
 };
 
 static bool is_drawn(const struct origin *o, const struct field *f)
@@ -70,7 +70,8 @@ static bool add_machine(struct sampler *p, const char *machine)
         const struct field *f = field_find_full(full.s, &table);
         text_free(&full);
         if (f && is_drawn(&origin[i], f))
-            u[p->nuncertain++] = (struct uncertain){arena_text(p->arena, machine), origin[i].key, f, origin[i].min, origin[i].max};
+            u[p->nuncertain++] =
+                (struct uncertain){arena_text(p->arena, machine), origin[i].key, f, origin[i].min, origin[i].max};
     }
     return true;
 }
@@ -176,7 +177,8 @@ static bool are_stored(const struct sampler *p, const char *hex)
     char stored[65] = "";
     struct err ignored;
     err_clear(&ignored);
-    return store_select(p->store, "SELECT value FROM meta WHERE key = 'samples'", 0, NULL, take_text, stored, &ignored) &&
+    return store_select(p->store, "SELECT value FROM meta WHERE key = 'samples'", 0, NULL, take_text, stored,
+                        &ignored) &&
            strcmp(stored, hex) == 0;
 }
 
@@ -236,7 +238,8 @@ static bool run_samples(struct sampler *p)
     identity(p, hex);
     if (!p->common->force && are_stored(p, hex)) return true;
     if (!p->common->quiet)
-        fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample, p->nuncertain, p->nspec);
+        fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample, p->nuncertain,
+                p->nspec);
     static const char *const name[] = {"key", "value"};
     const struct store_value value[] = {store_text("samples"), store_text(hex)};
     return clear_tables(p) &&

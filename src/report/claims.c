@@ -9,7 +9,8 @@
 #include "base/check.h"
 #include "base/text.h"
 
-/* --- the files ----------------------------------------------------------------------------------------------------- */
+/* --- the files -----------------------------------------------------------------------------------------------------
+ */
 
 static bool is_claim_file(const char *name)
 {
@@ -58,7 +59,8 @@ static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder,
         r->unit = header_line(a, r->sql, "unit");
         r->designated = header_line(a, r->sql, "designated");
         if (!r->statement || !r->test || !r->unit || !r->designated)
-            ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, unit: and designated: lines");
+            ok = err_set_at(e, ERR_DATA, path.s, 1,
+                            "a claim begins with -- statement:, test:, unit: and designated: lines");
     }
     text_free(&path);
     text_free(&sql);
@@ -75,7 +77,8 @@ bool claims_read(struct claim_rules *c, const char *data_dir, struct err *e)
     c->rule = TAKE(c->arena, n > 0 ? n : 1, struct claim_rule);
     bool ok = true;
     for (int i = 0; i < n; i++) {
-        if (ok && is_claim_file(entry[i]->d_name)) ok = read_rule(&c->rule[c->n++], c->arena, folder.s, entry[i]->d_name, e);
+        if (ok && is_claim_file(entry[i]->d_name))
+            ok = read_rule(&c->rule[c->n++], c->arena, folder.s, entry[i]->d_name, e);
         free(entry[i]);
     }
     free(entry);
@@ -92,7 +95,8 @@ void claims_free(struct claim_rules *c)
     *c = (struct claim_rules){0};
 }
 
-/* --- judging -------------------------------------------------------------------------------------------------------- */
+/* --- judging --------------------------------------------------------------------------------------------------------
+ */
 
 /* One row of a claim's query. */
 struct judgement {
@@ -121,7 +125,9 @@ static bool judge_row(void *context, int ncolumn, const char *const *name, const
     (void)name;
     if (ncolumn != 5 || value[0].kind != STORE_TEXT)
         return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, note)", g->rule->id);
-    struct judgement j = {.variant = value[0].text, .value = as_real(value[1]), .threshold = as_real(value[2]),
+    struct judgement j = {.variant = value[0].text,
+                          .value = as_real(value[1]),
+                          .threshold = as_real(value[2]),
                           .holds = value[3].kind == STORE_INT ? store_int(value[3].integer != 0) : store_null(),
                           .note = value[4].kind == STORE_TEXT ? value[4].text : ""};
     return g->tell(g->context, g->rule, &j);
@@ -134,7 +140,8 @@ static bool judge(const struct claim_rule *rule, struct store *s, judgement_fn *
     return e->kind == ERR_NONE;
 }
 
-/* --- samples -------------------------------------------------------------------------------------------------------- */
+/* --- samples --------------------------------------------------------------------------------------------------------
+ */
 
 struct sampling {
     struct store *into;
@@ -146,7 +153,8 @@ static bool keep_sample(void *context, const struct claim_rule *rule, const stru
 {
     struct sampling *p = context;
     static const char *const name[] = {"id", "variant", "sample", "value", "holds"};
-    const struct store_value value[] = {store_text(rule->id), store_text(j->variant), store_int(p->sample), j->value, j->holds};
+    const struct store_value value[] = {store_text(rule->id), store_text(j->variant), store_int(p->sample), j->value,
+                                        j->holds};
     return store_insert(p->into, "claim_sample", 5, name, value, p->e);
 }
 
@@ -162,7 +170,8 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
     return store_commit(into, e);
 }
 
-/* --- verdicts ------------------------------------------------------------------------------------------------------- */
+/* --- verdicts -------------------------------------------------------------------------------------------------------
+ */
 
 /* One claim in the making: its designated row, and where else it holds. */
 struct deciding {
@@ -195,16 +204,28 @@ static const char *verdict_of(struct store_value holds)
 static bool put_claim(struct deciding *d, const struct claim_rule *rule, const char *variant, const struct judgement *j,
                       const char *note)
 {
-    static const char *const name[] = {"id", "variant", "statement", "test", "unit", "value", "threshold", "value_low",
-                                       "value_high", "samples", "share", "verdict", "note"};
+    static const char *const name[] = {"id",        "variant",    "statement", "test",  "unit",    "value", "threshold",
+                                       "value_low", "value_high", "samples",   "share", "verdict", "note"};
     const char *const key[] = {rule->id, *variant ? variant : rule->designated};
     struct spread p = {store_int(0), store_null(), store_null(), store_null()};
-    if (!store_query(d->s, "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample WHERE id = ?1 "
-                           "AND variant = ?2", 2, key, NULL, take_spread, &p, d->e))
+    if (!store_query(d->s,
+                     "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample WHERE id = ?1 "
+                     "AND variant = ?2",
+                     2, key, NULL, take_spread, &p, d->e))
         return false;
-    const struct store_value value[] = {store_text(rule->id), store_text(variant), store_text(rule->statement),
-                                        store_text(rule->test), store_text(rule->unit), j->value, j->threshold, p.low,
-                                        p.high, p.count, p.share, store_text(verdict_of(j->holds)), store_text(note)};
+    const struct store_value value[] = {store_text(rule->id),
+                                        store_text(variant),
+                                        store_text(rule->statement),
+                                        store_text(rule->test),
+                                        store_text(rule->unit),
+                                        j->value,
+                                        j->threshold,
+                                        p.low,
+                                        p.high,
+                                        p.count,
+                                        p.share,
+                                        store_text(verdict_of(j->holds)),
+                                        store_text(note)};
     return store_insert(d->s, "claim", 13, name, value, d->e);
 }
 
@@ -236,7 +257,8 @@ static void add_elsewhere(struct deciding *d, struct text *note)
 
 static bool decide(const struct claim_rule *rule, struct store *s, struct err *e)
 {
-    struct deciding d = {.s = s, .e = e, .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
+    struct deciding d = {
+        .s = s, .e = e, .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
     bool ok = judge(rule, s, decide_row, &d, e);
     struct text note = {0};
     if (!d.found) text_add(&d.own_note, "no run is stored that could tell; `mimdsim paper` makes them");

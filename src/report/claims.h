@@ -1,9 +1,9 @@
 /* claims.h - the claims of the paper as questions to the database: plots/claims/ID.sql, one file a claim.
  *
- * A file begins with "-- statement:", "-- test:", "-- unit:" and "-- designated:" lines; its query gives one row for each
- * variant of the claim: (variant, value, threshold, holds, note), `holds` 1, 0 or NULL (cannot be told). The designated
- * variant is the claim's own verdict. The same files judge the stored runs and every sample of the uncertain machine
- * parameters. */
+ * A file begins with "-- statement:", "-- test:", "-- unit:" and "-- designated:" lines; its query gives one row for
+ * each variant of the claim: (variant, value, threshold, holds, note), `holds` 1, 0 or NULL (cannot be told). The
+ * designated variant is the claim's own verdict. The same files judge the stored runs and every sample of the uncertain
+ * machine parameters. */
 #ifndef REPORT_CLAIMS_H
 #define REPORT_CLAIMS_H
 

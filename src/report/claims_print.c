@@ -59,8 +59,10 @@ bool claims_print(struct store *s, bool json, FILE *out, struct err *e)
     if (!json) return report_query(s, table_sql, 0, NULL, false, out, e);
     struct listing l = {.j = json_make(out)};
     char sql[512];
-    snprintf(sql, sizeof sql, "SELECT variant, verdict, value, threshold, value_low, value_high, samples, share, note,"
-                              " id, statement, test, unit FROM claim%s", order);
+    snprintf(sql, sizeof sql,
+             "SELECT variant, verdict, value, threshold, value_low, value_high, samples, share, note,"
+             " id, statement, test, unit FROM claim%s",
+             order);
     json_array(&l.j);
     bool ok = store_query(s, sql, 0, NULL, NULL, json_claim, &l, e);
     close_claim(&l);

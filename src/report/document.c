@@ -21,7 +21,8 @@ static bool table(struct chapter *c, const char *sql, const char *empty)
     return page_table(c->page, c->d->store, sql, 0, NULL, empty, c->e);
 }
 
-/* --- what contradicts the paper ------------------------------------------------------------------------------------ */
+/* --- what contradicts the paper ------------------------------------------------------------------------------------
+ */
 
 static bool tell_claim(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -44,15 +45,18 @@ static bool tell_claim(void *context, int ncolumn, const char *const *name, cons
 static bool contradictions(struct chapter *c)
 {
     page_heading(c->page, 2, "Where the model contradicts the paper");
-    page_paragraph(c->page, "The paper prints no numbers beside its figures, its machines were shared with others, and its "
-                            "serial baseline is not fully defined. Each claim is therefore tested for every serial baseline, "
-                            "with structured and with dense operators; its own verdict is that of the variant nearest to the "
-                            "text, the fastest serial Newton-Euler code. Nothing is tuned to a claim.");
-    return store_select(c->d->store,
-                        "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
-                        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), NULL),"
-                        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))) FROM claim WHERE variant = '' AND verdict = 'fail'" IN_ORDER,
-                        0, NULL, tell_claim, c, c->e);
+    page_paragraph(c->page,
+                   "The paper prints no numbers beside its figures, its machines were shared with others, and its "
+                   "serial baseline is not fully defined. Each claim is therefore tested for every serial baseline, "
+                   "with structured and with dense operators; its own verdict is that of the variant nearest to the "
+                   "text, the fastest serial Newton-Euler code. Nothing is tuned to a claim.");
+    return store_select(
+        c->d->store,
+        "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), NULL),"
+        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))) FROM claim WHERE variant = '' AND verdict = "
+        "'fail'" IN_ORDER,
+        0, NULL, tell_claim, c, c->e);
 }
 
 static bool estimates(struct chapter *c)
@@ -60,25 +64,30 @@ static bool estimates(struct chapter *c)
     struct text path = {0}, sql = {0};
     text_add(&path, "%s/plots/estimates.sql", c->d->data_dir);
     page_heading(c->page, 2, "First estimates, confirmed or refuted");
-    page_paragraph(c->page, "Before the simulator there was an analytic estimate of the claims. This is what became of it.");
+    page_paragraph(c->page,
+                   "Before the simulator there was an analytic estimate of the claims. This is what became of it.");
     bool ok = text_read_file(&sql, path.s, c->e) && table(c, sql.s, "No claim has been judged.");
     text_free(&path);
     text_free(&sql);
     return ok;
 }
 
-/* --- all claims ----------------------------------------------------------------------------------------------------- */
+/* --- all claims -----------------------------------------------------------------------------------------------------
+ */
 
 static bool claims(struct chapter *c)
 {
     page_heading(c->page, 2, "The claims");
-    page_paragraph(c->page, "Share: the part of the samples in which a claim holds. Each sample draws every machine parameter "
-                            "that has a published range anew, log-uniformly, and runs the simulator again.");
-    return table(c, "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
-                    " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-                    " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples, statement, test"
-                    " FROM claim WHERE variant = ''" IN_ORDER,
-                 "No claim has been judged.");
+    page_paragraph(c->page,
+                   "Share: the part of the samples in which a claim holds. Each sample draws every machine parameter "
+                   "that has a published range anew, log-uniformly, and runs the simulator again.");
+    return table(
+        c,
+        "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
+        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples, statement, test"
+        " FROM claim WHERE variant = ''" IN_ORDER,
+        "No claim has been judged.");
 }
 
 static bool tell_variants(void *context, int ncolumn, const char *const *name, const char *const *value)
@@ -93,21 +102,25 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
     text_add(&t, "Test: %s. Value: %s.", value[2], value[3]);
     page_paragraph(c->page, t.s);
     text_free(&t);
-    return page_table(c->page, c->d->store,
-                      "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
-                      " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-                      " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
-                      " WHERE id = ?1 AND variant <> '' ORDER BY variant", 1, value, "No run is stored that could tell.", c->e);
+    return page_table(
+        c->page, c->d->store,
+        "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
+        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
+        " WHERE id = ?1 AND variant <> '' ORDER BY variant",
+        1, value, "No run is stored that could tell.", c->e);
 }
 
 static bool variants(struct chapter *c)
 {
     page_heading(c->page, 2, "Each claim for each baseline");
     return store_select(c->d->store, "SELECT id, statement, test, unit FROM claim WHERE variant = ''" IN_ORDER, 0, NULL,
-                        tell_variants, c, c->e) && c->e->kind == ERR_NONE;
+                        tell_variants, c, c->e) &&
+           c->e->kind == ERR_NONE;
 }
 
-/* --- figures -------------------------------------------------------------------------------------------------------- */
+/* --- figures --------------------------------------------------------------------------------------------------------
+ */
 
 /* The comment that opens NAME.sql, without its technical lines. */
 static void caption(const char *sql, struct text *out)
@@ -141,14 +154,16 @@ static bool figures(struct chapter *c)
     return true;
 }
 
-/* --- machines, accuracy, the rest ----------------------------------------------------------------------------------- */
+/* --- machines, accuracy, the rest -----------------------------------------------------------------------------------
+ */
 
 static bool machines(struct chapter *c)
 {
     static const char *const head[] = {"key", "value", "range", "evidence", "source"};
     page_heading(c->page, 2, "The machines");
-    page_paragraph(c->page, "Evidence: P published and read again, PR published but recalled, D derived, E estimated. A value "
-                            "with a range is one of the uncertain parameters.");
+    page_paragraph(c->page,
+                   "Evidence: P published and read again, PR published but recalled, D derived, E estimated. A value "
+                   "with a range is one of the uncertain parameters.");
     const char *machine = "";
     for (int i = 0; i < c->d->nparameter; i++) {
         const struct document_parameter *p = &c->d->parameter[i];
@@ -168,33 +183,45 @@ static bool machines(struct chapter *c)
 static bool numerics(struct chapter *c)
 {
     page_heading(c->page, 2, "Accuracy of the numerics");
-    page_paragraph(c->page, "The simulated processors compute real numbers; each run's answer is compared with that of a serial "
-                            "code. Relative errors, largest over the runs.");
-    if (!table(c, "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, max(n) AS largest_n,"
-                  " format('%.1e', max(relative_error)) AS largest_error, format('%.1e', max(tolerance)) AS largest_tolerance,"
-                  " count(*) - sum(passed) AS failed FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
-               "No run is stored."))
+    page_paragraph(c->page,
+                   "The simulated processors compute real numbers; each run's answer is compared with that of a serial "
+                   "code. Relative errors, largest over the runs.");
+    if (!table(
+            c,
+            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, max(n) AS largest_n,"
+            " format('%.1e', max(relative_error)) AS largest_error, format('%.1e', max(tolerance)) AS "
+            "largest_tolerance,"
+            " count(*) - sum(passed) AS failed FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
+            "No run is stored."))
         return false;
-    page_paragraph(c->page, "Time is accounted for to the picosecond: computing, sending, receiving, waiting and contention of "
-                            "all ranks add up to P times the run time.");
-    return table(c, "SELECT count(*) AS runs, sum(difference_ps <> 0) AS runs_that_do_not_add_up,"
-                    " max(abs(difference_ps)) AS largest_difference_ps FROM v_accounting", "No run is stored.");
+    page_paragraph(c->page,
+                   "Time is accounted for to the picosecond: computing, sending, receiving, waiting and contention of "
+                   "all ranks add up to P times the run time.");
+    return table(c,
+                 "SELECT count(*) AS runs, sum(difference_ps <> 0) AS runs_that_do_not_add_up,"
+                 " max(abs(difference_ps)) AS largest_difference_ps FROM v_accounting",
+                 "No run is stored.");
 }
 
 static bool omissions(struct chapter *c)
 {
     page_heading(c->page, 2, "What was left out");
-    if (!table(c, "SELECT 'runs that did not end well' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), '') AS which"
-                  "  FROM run WHERE status <> 'ok'"
-                  " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
-                  "  ifnull(format('n from %d to %d', min(n), max(n)), '') FROM run r WHERE status = 'ok' AND kernel = 'dynamics'"
-                  "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
-                  " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
-                  "  WHERE level = 'loggp' GROUP BY level"
-                  " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' || level, count(*),"
-                  "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
-                  " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not stored', count(*), '' FROM run"
-                  "  WHERE links = 0", "Nothing."))
+    if (!table(c,
+               "SELECT 'runs that did not end well' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
+               "'') AS which"
+               "  FROM run WHERE status <> 'ok'"
+               " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
+               "  ifnull(format('n from %d to %d', min(n), max(n)), '') FROM run r WHERE status = 'ok' AND kernel = "
+               "'dynamics'"
+               "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
+               " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
+               "  WHERE level = 'loggp' GROUP BY level"
+               " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' || level, count(*),"
+               "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
+               " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not stored', count(*), '' "
+               "FROM run"
+               "  WHERE links = 0",
+               "Nothing."))
         return false;
     return table(c, "SELECT scenario, what, why, class, bound FROM omission ORDER BY scenario, what",
                  "No further omission is recorded.");
@@ -204,26 +231,32 @@ static bool effort(struct chapter *c)
 {
     struct text t = {0};
     page_heading(c->page, 2, "How long it took");
-    text_add(&t, "The command that wrote this report took %.1f s, runs that were stored before not counted.", c->d->host_s);
+    text_add(&t, "The command that wrote this report took %.1f s, runs that were stored before not counted.",
+             c->d->host_s);
     page_paragraph(c->page, t.s);
     text_free(&t);
-    return table(c, "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
-                    " format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS in_all_s,"
-                    " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
-                    " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
-                    " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run", "No run is stored.");
+    return table(c,
+                 "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
+                 " format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS in_all_s,"
+                 " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
+                 " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
+                 " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run",
+                 "No run is stored.");
 }
 
 static bool provenance(struct chapter *c)
 {
     page_heading(c->page, 2, "Provenance");
-    if (!table(c, "SELECT 'mimdsim ' || version AS program, git, compiler, flags, count(*) AS runs,"
-                  " min(created_utc) AS first_run, max(created_utc) AS last_run FROM v_provenance GROUP BY 1, 2, 3, 4",
+    if (!table(c,
+               "SELECT 'mimdsim ' || version AS program, git, compiler, flags, count(*) AS runs,"
+               " min(created_utc) AS first_run, max(created_utc) AS last_run FROM v_provenance GROUP BY 1, 2, 3, 4",
                "No run is stored."))
         return false;
-    return table(c, "SELECT scenario, count(*) AS runs, group_concat(DISTINCT machine) AS machines,"
-                    " substr(min(config_hash), 1, 12) || ' ... ' || substr(max(config_hash), 1, 12) AS configurations,"
-                    " min(digest) || ' ... ' || max(digest) AS digests FROM run GROUP BY scenario", "No run is stored.");
+    return table(c,
+                 "SELECT scenario, count(*) AS runs, group_concat(DISTINCT machine) AS machines,"
+                 " substr(min(config_hash), 1, 12) || ' ... ' || substr(max(config_hash), 1, 12) AS configurations,"
+                 " min(digest) || ' ... ' || max(digest) AS digests FROM run GROUP BY scenario",
+                 "No run is stored.");
 }
 
 static bool chapters(struct chapter *c)
@@ -243,8 +276,8 @@ bool document_write(const struct document *d, struct err *e)
     if (slash) text_add(&folder, "%.*s", slash == figures_folder ? 1 : (int)(slash - figures_folder), figures_folder);
     else text_add(&folder, ".");
     struct chapter c = {d, &page, e};
-    bool ok = page_open(&page, folder.s, "paper", "Parallel multibody dynamics on MIMD machines: the evaluation reproduced",
-                        figures_folder, e) &&
+    bool ok = page_open(&page, folder.s, "paper",
+                        "Parallel multibody dynamics on MIMD machines: the evaluation reproduced", figures_folder, e) &&
               chapters(&c);
     ok = page_close(&page, e) && ok;
     text_free(&folder);

@@ -14,13 +14,13 @@ struct document_parameter {
 
 struct document {
     struct store *store;
-    const char *data_dir;   /* holds plots/ */
-    const char *figures;    /* folder of the pictures; the report is written beside it */
+    const char *data_dir; /* holds plots/ */
+    const char *figures;  /* folder of the pictures; the report is written beside it */
     int nfigure;
     const char *const *figure; /* (nfigure) names, in order */
     int nparameter;
     const struct document_parameter *parameter;
-    double host_s;          /* how long the command took */
+    double host_s; /* how long the command took */
 };
 
 /* document_write: claims that fail first, then the table of claims, the figures, the machines, accuracy, what was left

@@ -10,13 +10,16 @@
 static const char style[] =
     "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n"
-    "body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1a1a1a; max-width: 62em; margin: 2em auto; padding: 0 1em }\n"
+    "body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1a1a1a; max-width: 62em; margin: 2em auto; "
+    "padding: 0 1em }\n"
     "h1, h2, h3 { line-height: 1.25; font-weight: 600 } h2 { margin-top: 2.2em; border-bottom: 1px solid #ccc }\n"
     "table { border-collapse: collapse; margin: 1em 0; font-size: 0.8em; display: block; overflow-x: auto }\n"
     "th, td { text-align: left; vertical-align: top; padding: 0.25em 0.7em; border-bottom: 1px solid #ddd }\n"
-    "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: #b0401a; color: #fff }\n"
+    "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: #b0401a; color: #fff "
+    "}\n"
     "td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }\n"
-    "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: 0.85em; color: #444 }\n"
+    "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: 0.85em; color: #444 "
+    "}\n"
     "</style>\n";
 
 static FILE *make_file(const char *folder, const char *name, const char *ending, struct err *e)
@@ -49,7 +52,8 @@ static void escape_md(FILE *md, const char *s, bool cell)
     }
 }
 
-bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures, struct err *e)
+bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures,
+               struct err *e)
 {
     *p = (struct page){.figures = figures};
     p->md = make_file(folder, name, "md", e);
@@ -191,8 +195,9 @@ void page_figure(struct page *p, const char *name, const char *caption)
         fputs("\n\n", p->md);
     } else {
         page_paragraph(p, caption);
-        page_paragraph(p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its numbers are in the CSV "
-                          "file of the same name.");
+        page_paragraph(
+            p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its numbers are in the CSV "
+               "file of the same name.");
     }
     text_free(&path);
     text_free(&svg);

@@ -9,17 +9,19 @@
 #include "store/store.h"
 
 struct page {
-    FILE *md, *html;      /* owned */
-    const char *figures;  /* folder of the pictures */
-    int columns;          /* of the table being written */
+    FILE *md, *html;     /* owned */
+    const char *figures; /* folder of the pictures */
+    int columns;         /* of the table being written */
 };
 
 /* page_open: make folder/NAME.md and folder/NAME.html; `figures` is borrowed. Returns false with ERR_CREATE. */
-bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures, struct err *e);
+bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures,
+               struct err *e);
 
 /* page_close: end both files; false with ERR_IO when writing failed. Accepts a page that was never opened. */
 bool page_close(struct page *p, struct err *e);
 
+/* page_heading, page_paragraph: one heading of that level (1 is the largest), one paragraph; markup is escaped. */
 void page_heading(struct page *p, int level, const char *text);
 void page_paragraph(struct page *p, const char *text);
 

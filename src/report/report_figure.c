@@ -22,13 +22,13 @@
 /* One figure in the making. */
 struct figure {
     struct store *s;
-    const char *plots;      /* folder of the descriptions */
+    const char *plots; /* folder of the descriptions */
     const char *name;
-    const char *as;         /* the results' name */
-    const char *run;        /* the run to show, NULL: the description chooses */
-    const char *dir;        /* folder of the results */
-    struct text run_ids;    /* JSON array of the runs shown, for its provenance */
-    int64_t nrow;           /* of the first table */
+    const char *as;      /* the results' name */
+    const char *run;     /* the run to show, NULL: the description chooses */
+    const char *dir;     /* folder of the results */
+    struct text run_ids; /* JSON array of the runs shown, for its provenance */
+    int64_t nrow;        /* of the first table */
 };
 
 static char *joined(const char *a, const char *b, const char *c)
@@ -170,11 +170,14 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
     char hash[65];
     text_add(&f->run_ids, "]");
     const char *const ids[] = {f->run_ids.s};
-    bool ok = store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM v_provenance "
-                                 "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1", 1, ids, add_source,
-                           &sources, e) &&
-              store_select(f->s, "SELECT config_hash FROM run WHERE id IN (SELECT value FROM json_each(?1)) "
-                                 "ORDER BY config_hash, seed, rep", 1, ids, add_hash, &hashes, e);
+    bool ok = store_select(f->s,
+                           "SELECT DISTINCT version || ' (' || git || ')' FROM v_provenance "
+                           "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1",
+                           1, ids, add_source, &sources, e) &&
+              store_select(f->s,
+                           "SELECT config_hash FROM run WHERE id IN (SELECT value FROM json_each(?1)) "
+                           "ORDER BY config_hash, seed, rep",
+                           1, ids, add_hash, &hashes, e);
     size_t nrun = hashes.length / 64;
     if (ok && nrun == 1) text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
     else if (ok && nrun > 1) {

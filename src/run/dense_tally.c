@@ -7,12 +7,12 @@
 static uint64_t product(int a, int b, int k) { return (uint64_t)(a * k * (2 * b - 1)); }
 
 enum {
-    PLACE = 58 + 396,         /* joint transform, expanded and multiplied by the tree's */
-    SCAN = 66 + 6,            /* X v + w */
-    BIAS = 220,               /* velocity-dependent acceleration */
-    MOVED_INERTIA = 792,      /* S^T I S, two products of 6x6 matrices */
-    GYROSCOPIC = 222,         /* velocity-dependent force */
-    INVERTED_INERTIA = 432    /* of a 6x6 matrix */
+    PLACE = 58 + 396,      /* joint transform, expanded and multiplied by the tree's */
+    SCAN = 66 + 6,         /* X v + w */
+    BIAS = 220,            /* velocity-dependent acceleration */
+    MOVED_INERTIA = 792,   /* S^T I S, two products of 6x6 matrices */
+    GYROSCOPIC = 222,      /* velocity-dependent force */
+    INVERTED_INERTIA = 432 /* of a 6x6 matrix */
 };
 
 /* Newton-Euler: place, velocity, acceleration, load, force, projection. 14 operator calls. */
@@ -26,7 +26,8 @@ static uint64_t newton_euler(int d)
 static uint64_t articulated(int d)
 {
     const uint64_t velocity = PLACE + 6 * (uint64_t)d + SCAN + BIAS + MOVED_INERTIA + GYROSCOPIC;
-    const uint64_t reduce = product(6, 6, d) + product(d, 6, d) + 12 * (uint64_t)d + product(6, d, d) + product(6, d, 6) + 36;
+    const uint64_t reduce =
+        product(6, 6, d) + product(d, 6, d) + 12 * (uint64_t)d + product(6, d, d) + product(6, d, 6) + 36;
     const uint64_t inwards = SCAN + product(6, d, 1) + 6 + 2 * product(6, 6, 6) + 36 + SCAN;
     return velocity + reduce + inwards + SCAN + 24 * (uint64_t)d + product(d, d, 1);
 }
