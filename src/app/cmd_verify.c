@@ -1,4 +1,5 @@
 /* cmd_verify.c - mimdsim verify: every algorithm against reference vectors computed by other people's programs. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,15 +114,28 @@ static void print_all(const struct request *r, const struct verify_report *repor
     verify_print_summary(stdout, report, r->nfile);
 }
 
-static bool verify_all(const struct request *r, struct verify_report *report, struct arena *a, struct err *e)
+/* A file that cannot be used is a failed case without rows; the others are verified all the same. Returns the exit
+ * status of the first such file, 0: none. */
+static int verify_all(const struct request *r, struct verify_report *report, struct arena *a)
 {
     struct progress p = progress_make("cases", r->nfile, r->common.quiet);
+    int status = 0;
     for (int i = 0; i < r->nfile; i++) {
-        if (!verify_file(r->file[i], &r->options, a, &report[i], e)) return false;
+        struct err e;
+        err_clear(&e);
+        if (!verify_file(r->file[i], &r->options, a, &report[i], &e)) {
+            const char *text = arena_text(a, e.text);
+            err_print(&e);
+            report[i] = (struct verify_report){.path = r->file[i], .name = r->file[i], .group = "",
+                                               .peer_id_name = "", .peer_fd_name = "", .floor_id = NAN,
+                                               .floor_fd = NAN, .peer_id = NAN, .peer_fd = NAN};
+            snprintf(report[i].text, sizeof report[i].text, "cannot be used: %s", text);
+            if (status == 0) status = err_exit_status(e.kind);
+        }
         progress_show(&p, i + 1);
     }
     progress_end(&p);
-    return true;
+    return status;
 }
 
 int cmd_verify(int argc, char **argv)
@@ -130,16 +144,12 @@ int cmd_verify(int argc, char **argv)
     CHECK(r.file);
     static const struct argp argp = {.options = options, .parser = parse, .args_doc = "FILE.json...", .doc = doc};
     argp_parse(&argp, argc, argv, 0, NULL, &r);
-    struct err e;
-    err_clear(&e);
     struct arena *a = arena_create();
     struct verify_report *report = TAKE(a, r.nfile, struct verify_report);
-    bool ok = verify_all(&r, report, a, &e);
-    int failed = 0;
-    for (int i = 0; ok && i < r.nfile; i++) failed += !report[i].passed;
-    if (ok) print_all(&r, report);
+    int status = verify_all(&r, report, a), failed = 0;
+    for (int i = 0; i < r.nfile; i++) failed += !report[i].passed;
+    print_all(&r, report);
     arena_destroy(a);
     free(r.file);
-    if (!ok) return common_fail(&r.common, &e);
-    return failed ? err_exit_status(ERR_CHECK) : 0;
+    return status ? status : failed ? err_exit_status(ERR_CHECK) : 0;
 }

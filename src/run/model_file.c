@@ -26,7 +26,7 @@ static bool begins_with(const char *path, const char *word)
 
 bool model_file_is(const char *path)
 {
-    return ends_in(path, ".urdf") || (ends_in(path, ".json") && begins_with(path, "dynref"));
+    return ends_in(path, ".urdf") || (ends_in(path, ".json") && !begins_with(path, "schema_version"));
 }
 
 static void print_warnings(const struct urdf_robot *robot, FILE *out)
