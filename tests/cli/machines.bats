@@ -1,0 +1,170 @@
+#!/usr/bin/env bats
+# machines.bats - machines against published figures, network levels against references, link loads, deadlock.
+
+load helper
+
+NET=$MIMDSIM_SRCDIR/tests/data/net
+
+@test "all published figures used for calibration are met, and stored" {
+    works mimdsim validate all --quiet
+    stdout_says "0 fail"
+    sql_is mimdsim.db "SELECT count(*) > 100, sum(verdict = 'fail') FROM check_point WHERE suite = 'machines'" '1|0'
+    # what was read in a publication and used: within 10 %, recalled figures within 20 %
+    sql_is mimdsim.db "SELECT count(*) FROM check_point WHERE verdict = 'pass'
+        AND abs(relative_error) > iif(class = 'P', 0.1, 0.2) AND class <> 'E'" 0
+    sql_is mimdsim.db "SELECT count(DISTINCT subject) >= 20 FROM check_point" 1
+    works mimdsim validate all --quiet
+    sql_is mimdsim.db "SELECT count(*) FROM check_point" "$(($(wc -l <"$MIMDSIM_DATA/machines/published.csv") - 1))"
+}
+
+@test "the table of docs/machines.md is what validate finds" {
+    works mimdsim validate all --quiet
+    sql mimdsim.db "SELECT printf('| %s | %s | %s | %.6g | %s | %s | %s | %s |', subject, quantity, at, reference,
+        iif(value IS NULL, '-', printf('%.5g', value)), unit,
+        iif(relative_error IS NULL, '-', printf('%+.1f', 100 * relative_error)),
+        class || iif(verdict = 'pass', '', ', ' || verdict)) FROM check_point ORDER BY id" | sort >found
+    grep -E ' [EOR][0-9]{3}[a-d]? \|' "$MIMDSIM_SRCDIR/docs/machines.md" | sort >written
+    diff written found
+}
+
+@test "the tables of docs/network.md are what the levels answer" {
+    works mimdsim validate network "$NET"/makespan.json "$NET"/makespan_sensitivity.json "$NET"/collectives.json \
+        "$NET"/hand_cases.json --quiet
+    printf '%s\n' "$output" >found
+    sed -n '/^### Every group/,/^## 5/p' "$MIMDSIM_SRCDIR/docs/network.md" | grep '^[`|]' >written
+    grep '^[`|]' found | diff written -
+}
+
+@test "a single machine, as JSON" {
+    works mimdsim validate t3e-300 --json --quiet
+    json_is_valid
+    json_is '$[0].machine' t3e-300
+    json_is '$[0].verdict' pass
+    sql_is mimdsim.db "SELECT DISTINCT subject FROM check_point" t3e-300
+}
+
+@test "validate refuses what is no machine, or has no figures" {
+    fails_with 66 mimdsim validate t3e-3000
+    stderr_says "t3e-300"
+    fails_with 66 mimdsim validate ideal
+    stderr_says "no figures of machine 'ideal'"
+    fails_with 64 mimdsim validate
+    fails_with 64 mimdsim validate all t3e-300
+    nothing_left_behind
+}
+
+@test "a figure that is missed is a failure" {
+    mkdir -p data/machines
+    cp "$MIMDSIM_DATA"/machines/t3e-300.yaml data/machines/
+    { head -1 "$MIMDSIM_DATA/machines/published.csv"
+      echo 'X1,t3e-300,one-way,0,12,,,us,P,yes,,,"a claim that the file does not keep"'; } >data/machines/published.csv
+    MIMDSIM_DATA=$PWD/data fails_with 1 mimdsim validate all --quiet
+    stdout_says "+33.3 %"
+    stdout_says "1 fail"
+}
+
+@test "a wrong table of published figures is refused with its line" {
+    mkdir -p data/machines
+    { head -1 "$MIMDSIM_DATA/machines/published.csv"
+      echo 'X1,t3e-300,one-wya,0,12,,,us,P,yes,,,"x"'; } >data/machines/published.csv
+    MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
+    stderr_says "published.csv:2: no quantity is called 'one-wya'"
+    { head -1 "$MIMDSIM_DATA/machines/published.csv"
+      echo 'X1,t3e-300,one-way,0,12'; } >data/machines/published.csv
+    MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
+    stderr_says "expected 13 cells"
+}
+
+@test "netcheck prints cases and statistics, for one level or all" {
+    works mimdsim netcheck "$NET/hand_cases.json" --level flit --quiet
+    stdout_says "mean|e|%"
+    works mimdsim netcheck "$NET/hand_cases.json" --json --quiet
+    json_is_valid
+    json_is '$.totals[#-1].group' all
+    mimdsim netcheck "$NET/hand_cases.json" "$NET/makespan.json" --json --quiet --level link >both.json
+    [ "$(sqlite3 :memory: "SELECT json_extract(readfile('both.json'), '\$[1].totals[#-1].cases')")" = 800 ]
+}
+
+@test "netcheck refuses files that are missing, no JSON, or of another form, and unknown levels" {
+    fails_with 66 mimdsim netcheck nothing.json
+    echo '{' >broken.json
+    fails_with 65 mimdsim netcheck broken.json
+    stderr_says broken.json
+    stdout_is_empty
+    echo '[{"a": 1}]' >other.json
+    fails_with 65 mimdsim netcheck other.json --json
+    json_is '$.error.kind' bad-data
+    fails_with 64 mimdsim netcheck "$NET/hand_cases.json" --level flti
+    stderr_says "did you mean 'flit'?"
+    fails_with 64 mimdsim netcheck
+}
+
+@test "machines are shown with the origin of every value, and compared" {
+    works mimdsim machines paragon
+    stdout_says "paragon.yaml:"
+    stdout_says "netlib report94"
+    works mimdsim machines --compare t3e-300 t3e-300-mpt
+    stdout_says "software.send.overhead"
+    [[ $output != *topology.dims* ]]
+    works mimdsim machines t3e-300 --json
+    json_is_valid
+    fails_with 64 mimdsim machines --compare t3e-300
+    fails_with 66 mimdsim machines paragno
+    stderr_says "did you mean 'paragon'?"
+}
+
+# Each value that a file gives names its class and where it comes from.
+@test "no machine has a number without evidence" {
+    for file in "$MIMDSIM_DATA"/machines/*.yaml; do
+        name=$(basename "$file" .yaml)
+        works mimdsim machines "$name" --json
+        printf '%s' "$output" >machine.json
+        sql_is :memory: "SELECT count(*) > 40, sum(v.value ->> 'file' <> 'default' AND v.value ->> 'evidence' = ''
+            AND v.value ->> 'source' = '' AND v.value ->> 'key' NOT IN ('title', 'name', 'network.level'))
+            FROM json_each(readfile('machine.json'), '\$.values') v" '1|0' || { echo "$name"; return 1; }
+    done
+}
+
+@test "a ring with one class and small buffers deadlocks, and says around which links" {
+    fails_with 70 mimdsim run deadlock --quiet
+    stderr_says "network deadlock: link 0 (router 0 to 1) waits for link 1 (router 1 to 2) waits for link 2"
+    stderr_says "link 3 (router 3 to 0) waits for link 0"
+    sql_is mimdsim.db 'SELECT status FROM run' deadlock
+    works mimdsim run deadlock --quiet -o two.db --set machine.network.virtual_channels=2
+    sql_is two.db 'SELECT status FROM run' ok
+}
+
+@test "the most loaded links of a run, and their picture" {
+    works mimdsim run bisection --quiet --machine paragon --set ranks=256
+    works mimdsim links mimdsim.db
+    [ "${#lines[@]}" -eq 11 ]
+    # the middle of the mesh is crossed by 8 messages a column and direction
+    sql_is mimdsim.db "SELECT count(*), max(messages) FROM v_link_top WHERE level = 'link'" '10|8'
+    works mimdsim links mimdsim.db --json
+    json_is_valid
+    fails_with 66 mimdsim links mimdsim.db 77
+    fails_with 66 mimdsim links nothing.db
+    works mimdsim plot mimdsim.db linkmap
+    [ -s figures/linkmap.png ]
+    [ "$(tail -n +2 figures/linkmap.csv | wc -l)" -eq 960 ]
+}
+
+@test "ping-pong of every machine on one plot with published points" {
+    works mimdsim run pingpong-machines --quiet
+    works mimdsim validate all --quiet
+    works mimdsim plot mimdsim.db pingpong
+    [ -s figures/pingpong.png ]
+    [ "$(grep -c published figures/pingpong.csv)" -gt 45 ]
+}
+
+@test "every benchmark of messages runs on every machine" {
+    machines=$(cd "$MIMDSIM_DATA/machines" && printf '%s, ' *.yaml)
+    machines=${machines//.yaml/}
+    printf '%s\n' 'schema_version: 1' 'question: All?' 'ranks: 4' 'kernel: {message: 288 B, distance: 1}' \
+        'sweep:' "  machine: [${machines%, }]" \
+        '  kernel.name: [pingpong, shift, bisection, all-to-all, hot-spot, barrier]' >all.yaml
+    works mimdsim run all.yaml --quiet
+    sql_is mimdsim.db "SELECT count(*) = 6 * (SELECT count(DISTINCT machine) FROM run),
+        count(DISTINCT machine) = $(find "$MIMDSIM_DATA/machines" -name '*.yaml' | wc -l),
+        sum(status <> 'ok'), sum(measured_s <= 0 AND machine <> 'ideal') FROM run" '1|1|0|0'
+}
