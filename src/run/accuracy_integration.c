@@ -86,10 +86,25 @@ static void fastest_evaluation(struct climb *c)
     }
 }
 
-/* Largest difference of coordinates and of velocities, each over its largest number. */
-static double state_error(const struct model *m, const struct state *x, const struct state *reference)
+/* Largest difference of x and reference over the largest number that the reference has at the begin or the end: what has
+ * come to rest would have no scale of its own. */
+static double change_error(const double *x, const double *reference, const double *begin, int n)
 {
-    return fmax(trial_error(x->q, reference->q, m->nq), trial_error(x->qd, reference->qd, m->nu));
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+/* The larger error of coordinates and of velocities. */
+static double state_error(const struct climb *c, const struct state *x)
+{
+    const struct model *m = c->l->model;
+    const struct state *r = c->reference.s, *b = c->begin.s;
+    return fmax(change_error(x->q, r->q, b->q, m->nq), change_error(x->qd, r->qd, b->qd, m->nu));
 }
 
 /* Of the energy: over the largest of kinetic energy and what the motion exchanged. */
@@ -102,8 +117,9 @@ static double energy_error(const struct climb *c, const struct ending *x)
 
 static double momentum_error(const struct climb *c, const struct ending *x)
 {
-    return fmax(trial_error(x->totals.linear, c->reference.totals.linear, 3),
-                trial_error(x->totals.angular, c->reference.totals.angular, 3));
+    const struct dynamics_totals *r = &c->reference.totals, *b = &c->begin.totals;
+    return fmax(change_error(x->totals.linear, r->linear, b->linear, 3),
+                change_error(x->totals.angular, r->angular, b->angular, 3));
 }
 
 /* The rows of one rung: state first, then what should be kept. */
@@ -121,7 +137,7 @@ static void add_rows(struct climb *c, const char *method, const char *rung, stru
             text_copy(r->text, sizeof r->text, why);
             continue;
         }
-        double error = k == 0 ? state_error(m, x->s, c->reference.s) : k == 1 ? energy_error(c, x)
+        double error = k == 0 ? state_error(c, x->s) : k == 1 ? energy_error(c, x)
                      : k == 2 ? momentum_error(c, x) : x->drift;
         ladder_grade(r, error, 0.1, 1);
         snprintf(r->text, sizeof r->text, "%ld evaluations, P = %d%s", evaluations, c->processors,
@@ -181,7 +197,7 @@ static bool reference_find(struct climb *c)
     if (good) {
         ending_measure(&c->reference, l->model, l->arena);
         good = trajectory_advance(l->model, second.s, c->duration, &other, l->arena, NULL, &e);
-        c->uncertainty = good ? state_error(l->model, second.s, c->reference.s) : NAN;
+        c->uncertainty = good ? state_error(c, second.s) : NAN;
         return true;
     }
     struct accuracy_rung *r = ladder_add(l, "reference", "tight", "state", reference_name);
