@@ -95,6 +95,27 @@ static void a_message_takes_what_the_formula_says(void **state)
     arena_destroy(o.arena);
 }
 
+/* Up to the limit a message saves its sender 700 ns, and its receiver pays the copy of short ones instead of the eager
+ * one, per byte on top of every message's. */
+static void short_messages_cost_less_up_to_their_limit(void **state)
+{
+    (void)state;
+    for (int64_t limit = 999; limit <= 1000; limit++) {
+        struct machine_spec m = crossbar(2);
+        m.software.short_bytes = limit;
+        m.software.short_saving = 700e-9;
+        m.software.short_copy = 3e-9;
+        m.software.eager_copy = 8e-9;
+        struct outcome o = go(&m, 2, exchange, NULL);
+        bool is_short = limit == 1000;
+        const struct stage_time *first = &o.r.stage[1], *second = &o.r.stage[o.r.nstage + 1];
+        assert_int_equal(first->send_ps, 2000000 + 1000000 - (is_short ? 700000 : 0));
+        assert_int_equal(second->recv_ps, 3000000 + 2000000 + (is_short ? 3000000 : 8000000));
+        accounts_close(&o.r);
+        arena_destroy(o.arena);
+    }
+}
+
 /* Random but matching traffic: each pair (i, i + d) exchanges in both directions. */
 static void traffic(struct comm *c, void *context)
 {
@@ -395,6 +416,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_message_takes_what_the_formula_says),
+        cmocka_unit_test(short_messages_cost_less_up_to_their_limit),
         cmocka_unit_test(parts_add_up_to_the_makespan_at_every_level),
         cmocka_unit_test(the_same_run_has_the_same_digest),
         cmocka_unit_test(messages_match_in_the_order_sent),
