@@ -40,16 +40,34 @@ static const char *idle_without_forward(const struct run_spec *r)
     return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics solves no system" : NULL;
 }
 
-static const char *idle_unless_partition(const struct run_spec *r)
+static bool branches(const struct run_spec *r)
+{
+    switch (r->model.generator) {
+    case MODEL_SERIAL_CHAIN:
+    case MODEL_POLYMER:
+    case MODEL_URDF:
+    case MODEL_VECTOR: return false;
+    default: return true;
+    }
+}
+
+static const char *idle_without_chain_solver(const struct run_spec *r)
 {
     const char *why = idle_without_forward(r);
+    if (why != NULL) return why;
+    return branches(r) ? "trees and closed chains are contracted, not solved as a block tridiagonal system" : NULL;
+}
+
+static const char *idle_unless_partition(const struct run_spec *r)
+{
+    const char *why = idle_without_chain_solver(r);
     if (why != NULL) return why;
     return r->kernel.solver == SOLVER_PARTITION ? NULL : "kernel.solver is not 'partition'";
 }
 
 static const char *idle_unless_hybrid(const struct run_spec *r)
 {
-    const char *why = idle_without_forward(r);
+    const char *why = idle_without_chain_solver(r);
     if (why != NULL) return why;
     return r->kernel.solver == SOLVER_CR_PCR ? NULL : "kernel.solver is not 'cr-pcr'";
 }
@@ -75,17 +93,18 @@ static const char *idle_without_message(const struct run_spec *r)
     return strcmp(r->kernel.name, "barrier") == 0 ? "a barrier has no size" : NULL;
 }
 
+static const char *idle_without_branch_choice(const struct run_spec *r)
+{
+    const char *why = idle_without_model(r);
+    if (why != NULL) return why;
+    return branches(r) ? "trees are always cut into pieces of equal work" : NULL;
+}
+
 static const char *idle_unless_open_chain(const struct run_spec *r)
 {
     const char *why = idle_without_model(r);
     if (why != NULL) return why;
-    switch (r->model.generator) {
-    case MODEL_SERIAL_CHAIN:
-    case MODEL_POLYMER:
-    case MODEL_URDF:
-    case MODEL_VECTOR: return NULL;
-    default: return "trees and closed chains always take incoming composites";
-    }
+    return branches(r) ? "trees and closed chains always take incoming composites" : NULL;
 }
 
 static const struct field fields[] = {
@@ -94,7 +113,7 @@ static const struct field fields[] = {
     {.key = "formulation", .kind = FIELD_CHOICE, AT(formulation), .choice = formulations, .fallback = "paper",
      .idle = idle_without_forward, .doc = "forward dynamics: the paper's constraint system or the direct one"},
     {.key = "solver", .kind = FIELD_CHOICE, AT(solver), .choice = solvers, .fallback = "pcr-symmetric",
-     .idle = idle_without_forward, .doc = "of the block tridiagonal system"},
+     .idle = idle_without_chain_solver, .doc = "of the block tridiagonal system"},
     {.key = "part_solver", .kind = FIELD_CHOICE, AT(part_solver), .choice = part_solvers, .fallback = "pcr",
      .idle = idle_unless_partition, .doc = "of the interfaces between the parts of solver 'partition'"},
     {.key = "operators", .kind = FIELD_CHOICE, AT(operators), .choice = operators, .fallback = "structured",
@@ -102,7 +121,7 @@ static const struct field fields[] = {
     {.key = "precision", .kind = FIELD_CHOICE, AT(precision), .choice = precisions, .fallback = "double",
      .idle = idle_without_model, .doc = "of the arithmetic"},
     {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
-     .idle = idle_without_model, .doc = "bodies over ranks: equal counts, or equal work"},
+     .idle = idle_without_branch_choice, .doc = "bodies over ranks: equal counts, or equal work"},
     {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
      .idle = idle_unless_open_chain,
      .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
