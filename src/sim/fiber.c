@@ -126,6 +126,7 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 void fiber_pool_destroy(struct fiber_pool *p)
 {
     if (!p) return;
+    sanitizer_fresh(p->base, p->stride * (size_t)p->n); /* whoever is mapped here next inherits nothing */
     munmap(p->base, p->stride * (size_t)p->n);
     free(p->fiber);
     free(p);
