@@ -9,7 +9,8 @@ WITH solve AS (
                                            r.formulation, r.level = 'loggp'
                               ORDER BY r.operators = 'structured' DESC, r.level = 'link' DESC, r.id DESC) AS choice
     FROM run r JOIN stage s ON s.run_id = r.id AND s.name = 'CFA[2]'
-    WHERE r.status = 'ok' AND r.machine LIKE 'paragon%' AND r.kernel = 'forward' AND r.base = 'fixed'
+    WHERE r.status = 'ok' AND r.machine LIKE 'paragon%' AND r.kernel IN ('forward', 'dynamics') AND r.scenario NOT IN ('fig6-machines', 'fig9-machines')
+          AND r.base = 'fixed'
           AND ifnull(r.compute_noise_cv, 0) = 0 AND ifnull(r.background_load, 0) = 0),
 one AS (SELECT * FROM solve WHERE choice = 1),
 formulation AS (SELECT formulation AS name FROM one GROUP BY 1 ORDER BY count(*) DESC, 1 = 'paper' DESC LIMIT 1),

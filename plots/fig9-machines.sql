@@ -5,7 +5,7 @@ WITH point AS (
     SELECT v.*, CASE WHEN v.machine LIKE 't3e%' THEN 1 WHEN v.machine LIKE 'paragon%' THEN 2
                      WHEN v.machine LIKE 'origin%' THEN 3 WHEN v.machine LIKE 'quad-ppro%' THEN 4 END AS panel
     FROM v_speedup v JOIN run r ON r.id = v.run_id
-    WHERE v.kernel = 'dynamics' AND v.P > 1 AND v.n % v.P = 0 AND v.solver = 'partition' AND v.base = 'fixed'
+    WHERE v.kernel = 'dynamics' AND v.P > 1 AND v.n % v.P = 0 AND (v.n > v.P OR v.solver = 'partition') AND v.base = 'fixed'
           AND v.baseline = 'parallel code on one processor' AND r.placement = 'linear'
           AND ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0),
 -- one variant of each machine: the one with the paper's own message software comes first by name

@@ -244,8 +244,9 @@ static bool decide_row(void *context, const struct claim_rule *rule, const struc
 }
 
 /* What a reader wants to know next: where the verdict would be the other one. */
-static void add_elsewhere(struct deciding *d, struct text *note)
+static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, struct text *note)
 {
+    if (d->found) text_add(note, "judged for %s: ", rule->designated);
     text_add(note, "%s", d->own_note.s ? d->own_note.s : "");
     if (!d->found || d->own.holds.kind != STORE_INT) return;
     bool holds = d->own.holds.integer != 0;
@@ -262,7 +263,7 @@ static bool decide(const struct claim_rule *rule, struct store *s, struct err *e
     bool ok = judge(rule, s, decide_row, &d, e);
     struct text note = {0};
     if (!d.found) text_add(&d.own_note, "no run is stored that could tell; `mimdsim paper` makes them");
-    add_elsewhere(&d, &note);
+    add_elsewhere(&d, rule, &note);
     ok = ok && put_claim(&d, rule, "", &d.own, note.s);
     text_free(&note);
     text_free(&d.own_note);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 #include <sqlite3.h>
@@ -304,7 +305,8 @@ static void every_view_answers_on_an_empty_database(void **state)
 {
     struct fixture *f = *state;
     static const char *const view[] = {"v_speedup", "v_stage",   "v_accounting", "v_errors",    "v_indicator",
-                                       "v_setting", "v_itervar", "v_claims",     "v_provenance"};
+                                       "v_setting", "v_itervar", "v_claims",     "v_provenance", "v_link_top",
+                                       "v_repetition"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);
@@ -400,6 +402,25 @@ static bool count_kinds(void *context, int ncolumn, const char *const *name, con
     return true;
 }
 
+static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **state)
+{
+    struct fixture *f = *state;
+    struct store *passing = store_open("nowhere/at-all", STORE_MEMORY, &f->e);
+    assert_non_null(passing);
+    struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
+    struct run_result r = made_result(f->a, &spec);
+    char answer[8192];
+    assert_true(store_put(passing, &spec, &r, NULL, &f->e));
+    assert_true(store_has(passing, &spec));
+    assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell, answer, &f->e));
+    assert_string_equal(answer, "1");
+    assert_true(store_select(passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)", 0,
+                             NULL, take_cell, answer, &f->e));
+    assert_string_equal(answer, "0");
+    store_close(passing);
+    assert_int_equal(access("nowhere", F_OK), -1);
+}
+
 static void queries_keep_the_kinds_of_values_and_bind_parameters(void **state)
 {
     struct fixture *f = *state;
@@ -441,6 +462,7 @@ int main(void)
         TEST(a_transaction_is_kept_or_forgotten_as_a_whole),
         TEST(a_run_that_fails_half_way_leaves_no_row),
         TEST(commits_go_to_the_log_without_waiting_for_the_disk),
+        TEST(a_passing_store_leaves_no_file_and_keeps_what_claims_ask),
         TEST(queries_keep_the_kinds_of_values_and_bind_parameters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
