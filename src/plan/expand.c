@@ -135,10 +135,17 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
     if (m->placement.kind == PLACEMENT_LIST && m->placement.nlist < run->nrank)
         return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
                           "%d ranks, but machine.placement.list names %d processors", run->nrank, m->placement.nlist);
-    if (run->nrank <= n) return true;
-    return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
-                      "%d ranks, but machine '%s' has %lld processors; fewer ranks, or raise machine.topology.dims",
-                      run->nrank, m->name, (long long)n);
+    if (run->nrank > n)
+        return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
+                          "%d ranks, but machine '%s' has %lld processors; fewer ranks, or raise machine.topology.dims",
+                          run->nrank, m->name, (long long)n);
+    if (run->model.generator == MODEL_SERIAL_CHAIN && kernel_spec_needs_model(&run->kernel) &&
+        run->model.nbody < run->nrank)
+        return err_set_at(
+            x->err, ERR_CONFIG, ranks->file, ranks->line,
+            "%d processors for %d bodies: each needs at least one; `only: n >= ranks` leaves such points out",
+            run->nrank, run->model.nbody);
+    return true;
 }
 
 /* Whether the scenario's `only` conditions keep this point. */

@@ -257,3 +257,9 @@ refused() {
     sql_is mimdsim.db 'SELECT status, text LIKE "%differs from%" FROM run' 'invalid|1'
     sql_is mimdsim.db 'SELECT min(passed) FROM error_check' 0
 }
+
+@test "more ranks than bodies are refused with the line, before any point runs" {
+    scenario
+    sed -i 's/^ranks: n/ranks: [2, 10]/' small.yaml
+    refused 78 "small.yaml:6: 10 processors for 5 bodies: each needs at least one"
+}
