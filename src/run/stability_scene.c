@@ -91,8 +91,8 @@ static double mass_factor(const struct scene *c, int i, int n)
     switch (c->spread) {
     case SPREAD_HEAVY_TIP: return i == n - 1 ? c->ratio : 1;
     case SPREAD_LIGHT_TIP: return i == n - 1 ? 1 / c->ratio : 1;
-    case SPREAD_UP: return pow(c->ratio, (double)i / (n - 1));
-    case SPREAD_DOWN: return pow(c->ratio, (double)(n - 1 - i) / (n - 1));
+    case SPREAD_UP: return pow(c->ratio, (double)i / (n - 1) - 1); /* the heaviest weighs 1 */
+    case SPREAD_DOWN: return pow(c->ratio, -(double)i / (n - 1));
     case SPREAD_RANDOM: return pow(c->ratio, random_uniform(&r, -0.5, 0.5));
     case SPREAD_ALTERNATING: return i % 2 ? 1 : 1 / c->ratio; /* the tip heavy, or its acceleration hides all others */
     case SPREAD_EVEN: break;
