@@ -3,14 +3,16 @@
 #include "report/report.h"
 #include "store/store.h"
 
-static const char doc[] = "Print the ten most loaded links of run RUN (a row of table run) in the database DB: messages, bytes, "
-                          "how long each was busy and how long messages waited for it.\n\n"
-                          "Example: mimdsim links mimdsim.db\n\v"
-                          "Without RUN: the stored run in which messages waited longest. Loads are there for scenarios with "
-                          "`record: {links: true}`. A port of a node has no router at one end.";
+static const char doc[] =
+    "Print the ten most loaded links of run RUN (a row of table run) in the database DB: messages, bytes, "
+    "how long each was busy and how long messages waited for it.\n\n"
+    "Example: mimdsim links mimdsim.db\n\v"
+    "Without RUN: the stored run in which messages waited longest. Loads are there for scenarios with "
+    "`record: {links: true}`. A port of a node has no router at one end.";
 
 static const char sql[] =
-    "SELECT run_id, machine, topology, level, kernel, P, place, link, from_router, to_router, node, messages, sent_bytes,"
+    "SELECT run_id, machine, topology, level, kernel, P, place, link, from_router, to_router, node, messages, "
+    "sent_bytes,"
     " busy_ps / 1e6 AS busy_us, round(100 * busy_share, 1) AS busy_percent, queue_ps / 1e6 AS queue_us"
     " FROM v_link_top WHERE run_id = CASE WHEN ?1 = '' THEN"
     " (SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, run_id LIMIT 1)"

@@ -7,7 +7,8 @@
 #include "run/netcheck.h"
 
 static const char doc[] =
-    "Run the cases of each FILE (makespans, collectives, latency against load, hand cases) through the network levels and "
+    "Run the cases of each FILE (makespans, collectives, latency against load, hand cases) through the network levels "
+    "and "
     "print the error of each case and statistics.\n\n"
     "Example: mimdsim netcheck tests/data/net/makespan.json --level packet\n\v"
     "With --json one FILE gives one object, several give a list of objects. What a level cannot run is counted as "

@@ -11,12 +11,14 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Run the micro-benchmarks of MACHINE (or of all machines) through the simulator and print them beside the published "
+    "Run the micro-benchmarks of MACHINE (or of all machines) through the simulator and print them beside the "
+    "published "
     "figures of machines/published.csv, with the error of each; store them as check points.\n\n"
     "Example: mimdsim validate t3e-300\n"
     "         mimdsim validate network\n\v"
     "`network` holds every network level against the reference answers in tests/data/net, or in the FILEs named, and "
-    "prints a table of errors for documents. A figure whose evidence is E only says that the machine file was followed. "
+    "prints a table of errors for documents. A figure whose evidence is E only says that the machine file was "
+    "followed. "
     "The exit status is 1 when a figure used for calibration is missed: by more than 10 % (5 % for wires and rates of "
     "cuts, 20 % for recalled figures, class PR).";
 
@@ -232,8 +234,7 @@ static void network_table(const struct netcheck *n)
         for (int k = 0; group && k < g && !seen; k++) seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
         if (seen) continue;
         int cases = 0;
-        for (int k = 0; k < n->nrow; k++)
-            cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
+        for (int k = 0; k < n->nrow; k++) cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
         printf("| %s | %d |", group ? group : "all", cases);
         for (int l = 0; l < NETCHECK_LEVELS; l++) {
             struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);

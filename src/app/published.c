@@ -14,8 +14,7 @@ static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,c
 static const struct {
     const char *name;
     double scale;
-} units[] = {{"s", 1},      {"us", 1e-6},    {"ns", 1e-9},    {"B", 1},
-             {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12}};
+} units[] = {{"s", 1}, {"us", 1e-6}, {"ns", 1e-9}, {"B", 1}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12}};
 
 static char *copied(struct arena *a, const char *s, size_t n)
 {
@@ -66,7 +65,11 @@ static void split_sets(struct published *p, const char *s, struct arena *a)
 
 static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, struct err *e)
 {
-    *p = (struct published){.id = cell[0], .machine = cell[1], .at_text = cell[3], .unit = cell[7], .evidence = cell[8],
+    *p = (struct published){.id = cell[0],
+                            .machine = cell[1],
+                            .at_text = cell[3],
+                            .unit = cell[7],
+                            .evidence = cell[8],
                             .source = cell[12]};
     p->quantity = probe_find(cell[2]);
     if (p->quantity == PROBE_QUANTITIES) return err_set(e, ERR_DATA, "no quantity is called '%s'", cell[2]);

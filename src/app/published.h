@@ -11,9 +11,9 @@
 /* One figure. Texts lie in the arena. */
 struct published {
     const char *id;
-    const char *machine;     /* stem of the machine file */
+    const char *machine; /* stem of the machine file */
     enum probe_quantity quantity;
-    const char *at_text;     /* as written, "" where the quantity has no place */
+    const char *at_text; /* as written, "" where the quantity has no place */
     double at;
     double value, low, high; /* SI; low = high = value without a published range */
     const char *unit;        /* as written: us, MB/s, B, ... */
@@ -22,7 +22,7 @@ struct published {
     bool calibrated;         /* a number of the machine file was derived from it */
     double add;              /* SI, what the simulator leaves out, added to its answer */
     int nset;
-    const char **set;        /* (nset) "machine.key=value": the machine that was measured, where it is not the file's */
+    const char **set; /* (nset) "machine.key=value": the machine that was measured, where it is not the file's */
     const char *source;
 };
 

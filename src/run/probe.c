@@ -11,7 +11,7 @@
 enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22 };
 
 static const char *const names[PROBE_QUANTITIES] = {
-    "one-way", "round-trip", "bandwidth", "r-inf", "n-half", "o-send", "o-recv",
+    "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
     "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
 };
 
@@ -188,7 +188,8 @@ static bool global_rate(const struct machine_spec *m, const struct topology *t, 
     for (int l = 0; l < t->nlink; l++) {
         int from, to, port, group = t->spec->dims[1];
         topology_link_ends(t, l, &from, &to, &port);
-        if (from / group != to / group) *rate += m->network.link_bandwidth * topology_link_bandwidth(t, l, m->network.link_bandwidth) / 2;
+        if (from / group != to / group)
+            *rate += m->network.link_bandwidth * topology_link_bandwidth(t, l, m->network.link_bandwidth) / 2;
     }
     return true;
 }
@@ -213,7 +214,8 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
 bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e)
 {
     switch (q) {
-    case PROBE_ONE_WAY: return one_way(m, (int64_t)at, value, e);
+    case PROBE_ONE_WAY:
+        return one_way(m, (int64_t)at, value, e);
     case PROBE_ROUND_TRIP:
         if (!one_way(m, (int64_t)at, value, e)) return false;
         *value *= 2;
@@ -222,18 +224,27 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
         if (!one_way(m, (int64_t)at, value, e)) return false;
         *value = at / *value;
         return true;
-    case PROBE_R_INF: return asymptotic_rate(m, value, e);
-    case PROBE_N_HALF: return half_rate_size(m, value, e);
+    case PROBE_R_INF:
+        return asymptotic_rate(m, value, e);
+    case PROBE_N_HALF:
+        return half_rate_size(m, value, e);
     case PROBE_SEND_OVERHEAD:
     case PROBE_RECV_OVERHEAD:
-    case PROBE_LATENCY: return overheads(m, q, value, e);
-    case PROBE_GAP: return flood_gap(m, value, e);
-    case PROBE_WIRE: return wire(m, (int)at, value, e);
-    case PROBE_READ: return remote_read(m, (int)at, value, e);
+    case PROBE_LATENCY:
+        return overheads(m, q, value, e);
+    case PROBE_GAP:
+        return flood_gap(m, value, e);
+    case PROBE_WIRE:
+        return wire(m, (int)at, value, e);
+    case PROBE_READ:
+        return remote_read(m, (int)at, value, e);
     case PROBE_BISECTION:
-    case PROBE_GLOBAL: return cut(m, q, value, e);
-    case PROBE_BARRIER: return barrier(m, (int)at, value, e);
-    case PROBE_QUANTITIES: break;
+    case PROBE_GLOBAL:
+        return cut(m, q, value, e);
+    case PROBE_BARRIER:
+        return barrier(m, (int)at, value, e);
+    case PROBE_QUANTITIES:
+        break;
     }
     return err_set(e, ERR_CONFIG, "%s: no such quantity", m->name);
 }

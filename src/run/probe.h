@@ -12,20 +12,20 @@
 #include "spec/machine_spec.h"
 
 enum probe_quantity {
-    PROBE_ONE_WAY,        /* ping-pong of ranks 0 and 1: half the round trip [s]; at: bytes */
-    PROBE_ROUND_TRIP,     /* [s]; at: bytes */
-    PROBE_BANDWIDTH,      /* bytes / one way [B/s]; at: bytes */
-    PROBE_R_INF,          /* asymptotic rate: from 4 to 8 MiB [B/s] */
-    PROBE_N_HALF,         /* smallest size that reaches half of r_inf [B] */
-    PROBE_SEND_OVERHEAD,  /* LogGP o_s of 8 bytes [s] */
-    PROBE_RECV_OVERHEAD,  /* LogGP o_r of 8 bytes [s] */
-    PROBE_LATENCY,        /* LogGP L: one way of 8 bytes less o_s and o_r [s] */
-    PROBE_GAP,            /* LogGP g: between 8-byte messages of one sender [s] */
-    PROBE_WIRE,           /* one way without software, empty message [s]; at: links on the way */
-    PROBE_READ,           /* a remote read: request and reply over the wire, beside what memory takes [s]; at: routers */
-    PROBE_BISECTION,      /* links that a halving cuts, both directions; the smallest over the dimensions [B/s] */
-    PROBE_GLOBAL,         /* all links between groups of a dragonfly, one direction [B/s] */
-    PROBE_BARRIER,        /* [s]; at: ranks */
+    PROBE_ONE_WAY,       /* ping-pong of ranks 0 and 1: half the round trip [s]; at: bytes */
+    PROBE_ROUND_TRIP,    /* [s]; at: bytes */
+    PROBE_BANDWIDTH,     /* bytes / one way [B/s]; at: bytes */
+    PROBE_R_INF,         /* asymptotic rate: from 4 to 8 MiB [B/s] */
+    PROBE_N_HALF,        /* smallest size that reaches half of r_inf [B] */
+    PROBE_SEND_OVERHEAD, /* LogGP o_s of 8 bytes [s] */
+    PROBE_RECV_OVERHEAD, /* LogGP o_r of 8 bytes [s] */
+    PROBE_LATENCY,       /* LogGP L: one way of 8 bytes less o_s and o_r [s] */
+    PROBE_GAP,           /* LogGP g: between 8-byte messages of one sender [s] */
+    PROBE_WIRE,          /* one way without software, empty message [s]; at: links on the way */
+    PROBE_READ,          /* a remote read: request and reply over the wire, beside what memory takes [s]; at: routers */
+    PROBE_BISECTION,     /* links that a halving cuts, both directions; the smallest over the dimensions [B/s] */
+    PROBE_GLOBAL,        /* all links between groups of a dragonfly, one direction [B/s] */
+    PROBE_BARRIER,       /* [s]; at: ranks */
     PROBE_QUANTITIES
 };
 
