@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/progress.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -232,6 +233,13 @@ static bool clear_tables(struct sampler *p)
     return false;
 }
 
+static bool keep_meta(struct sampler *p, const char *key, const char *text)
+{
+    static const char *const name[] = {"key", "value"};
+    const struct store_value value[] = {store_text(key), store_text(text)};
+    return store_insert(p->store, "meta", 2, name, value, p->e);
+}
+
 static bool run_samples(struct sampler *p)
 {
     char hex[65];
@@ -240,11 +248,12 @@ static bool run_samples(struct sampler *p)
     if (!p->common->quiet)
         fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample, p->nuncertain,
                 p->nspec);
-    static const char *const name[] = {"key", "value"};
-    const struct store_value value[] = {store_text("samples"), store_text(hex)};
-    return clear_tables(p) &&
-           run_campaign(p->spec, p->nspec, NULL, p->common->jobs, p->common->quiet, keep_result, p, p->e) &&
-           store_insert(p->store, "meta", 2, name, value, p->e);
+    double began = host_seconds();
+    char took[32];
+    bool ok = clear_tables(p) &&
+              run_campaign(p->spec, p->nspec, NULL, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    snprintf(took, sizeof took, "%.2f", host_seconds() - began);
+    return ok && keep_meta(p, "samples_s", took) && keep_meta(p, "samples", hex);
 }
 
 bool sampling_run(const struct common *c, const struct claim_rules *rules, int nsample, struct store *s, struct err *e)
