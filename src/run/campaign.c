@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "run/run.h"
 
-enum { MOST_WORKERS = 256 };
+enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
 /* The arrays of a result, in the order in which they travel. */
 struct parts {
@@ -193,8 +193,11 @@ static bool serve(struct campaign *c, struct err *e)
         struct pollfd p[MOST_WORKERS];
         for (int i = 0; i < c->nworker; i++)
             p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
-        if (poll(p, (nfds_t)c->nworker, -1) < 0 && errno != EINTR)
-            return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
+        if (poll(p, (nfds_t)c->nworker, HEARTBEAT_MS) < 0) {
+            if (errno != EINTR) return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
+            continue;
+        }
+        progress_show(&c->progress, c->ndone);
         for (int i = 0; i < c->nworker; i++)
             if (p[i].fd >= 0 && p[i].revents && !take_answer(c, &c->worker[i], e)) return false;
     }
