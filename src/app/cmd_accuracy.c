@@ -10,7 +10,7 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that take seconds: levels of the network,\n"
+    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that take seconds: network levels,\n"
     "precisions and algorithms, steppers and step sizes. Rows go to table `ladder` of the database, a work-precision\n"
     "diagram beside it; failed methods are listed. Ends with the cheapest rung of each ladder.\n\n"
     "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n\v"

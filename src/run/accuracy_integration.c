@@ -86,8 +86,8 @@ static void fastest_evaluation(struct climb *c)
     }
 }
 
-/* Largest difference of x and reference over the largest number that the reference has at the begin or the end: what has
- * come to rest would have no scale of its own. */
+/* Largest difference of x and reference over the largest number that the reference has at the begin or the end: what
+ * has come to rest would have no scale of its own. */
 static double change_error(const double *x, const double *reference, const double *begin, int n)
 {
     double difference = 0, scale = 0;

@@ -101,8 +101,8 @@ void ladder_network(struct ladder *l)
         if (t[fineness[i]].answered) finest = fineness[i];
     double seconds, host_s;
     if (finest >= 0 && closed_form(l, &seconds, &host_s))
-        add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s, "mean work and messages of a rank, no overlap",
-                 &t[finest], level_table[finest].name);
+        add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s,
+                 "mean work and messages of a rank, no overlap", &t[finest], level_table[finest].name);
     for (int i = 0; i < LEVELS; i++)
         add_rows(l, level_table[i].name, t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps, t[i].host_s, t[i].text,
                  finest >= 0 ? &t[finest] : NULL, finest >= 0 ? level_table[finest].name : "none");

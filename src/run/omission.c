@@ -62,7 +62,7 @@ void omission_list(const struct run_spec *spec, const struct kernel_type *kernel
     out->nomission = 0;
     if (m) list_model(spec, kernel, m, out);
     if (kernel->largest_message && (n->level == LEVEL_LINK || n->level == LEVEL_PACKET || n->level == LEVEL_AUTO))
-        add(out, KEEP_START_EVENTS, "events that start messages", "the largest message is known, so eager sends are in order");
+        add(out, KEEP_START_EVENTS, "events that start messages", "eager sends are in order");
     if (n->level == LEVEL_AUTO)
         add(out, KEEP_CONTENTION, "contention where routes share no link", "level auto gives the packet level's times");
     if (!spec->record.spans) add(out, KEEP_SPANS, "timeline", "record.spans does not ask for it");

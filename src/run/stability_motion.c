@@ -74,7 +74,8 @@ static void own_row(struct stability_report *r, const char *subject, const struc
     struct state end = copy_of(m, s, a);
     struct work w = {0};
     bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, &end, rule, duration / steps, (int)steps, a, &w);
-    double error = good ? fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu)) : NAN;
+    double error = NAN;
+    if (good) error = fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu));
     x->error = isfinite(error) ? error : NAN;
     x->status = error <= 0.01 ? STABILITY_OK : isfinite(error) ? STABILITY_DEGRADED : STABILITY_FAILED;
     double E = energy_of(m, reference, a);

@@ -6,7 +6,9 @@
 #include "run/stability.h"
 
 /* How the masses of a chain are spread. */
-enum spread { SPREAD_EVEN, SPREAD_HEAVY_TIP, SPREAD_LIGHT_TIP, SPREAD_UP, SPREAD_DOWN, SPREAD_RANDOM, SPREAD_ALTERNATING };
+enum spread {
+    SPREAD_EVEN, SPREAD_HEAVY_TIP, SPREAD_LIGHT_TIP, SPREAD_UP, SPREAD_DOWN, SPREAD_RANDOM, SPREAD_ALTERNATING
+};
 
 struct scene {
     const char *name;
