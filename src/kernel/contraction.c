@@ -176,6 +176,7 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
         }
     }
     k->residual = scale > 0 ? residual / scale : residual;
+    k->residual_scale = scale;
     tree_report(t);
 }
 
@@ -291,13 +292,15 @@ static void refine_outside(struct contraction *k)
 {
     struct comm *c = k->tree.comm;
     const int outer = k->tree.job->spec->kernel.outer_refinements;
-    const real residual = k->residual; /* of the answer itself; the corrections have their own */
+    /* of the answer itself; the corrections have their own */
+    const real residual = k->residual, scale = k->residual_scale;
     struct refinement course;
     /* the paper's residual does not see the errors of its bias forces */
     const real known = k->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, c, TAG_EXTREME, known);
     for (int pass = 0; going && pass < outer; pass++) going = refine(k, &course);
     k->residual = residual;
+    k->residual_scale = scale;
 }
 
 /* evaluate: the answer from the coordinates and rates in the tree. */
@@ -343,6 +346,7 @@ static void store(const struct contraction *k)
             job->qdd[b->u_at + i] = k->broken ? __builtin_nan("") : (double)k->answer[t->u_at[l] + i];
     }
     if (job->residual) job->residual[rank] = (double)k->residual;
+    if (job->residual_scale) job->residual_scale[rank] = (double)k->residual_scale;
     if (rank != 0) return;
     for (int j = 0; j + 1 < k->room && job->lambda; j++) job->lambda[j] = (double)k->lambda[j];
     if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;

@@ -49,7 +49,7 @@ struct contraction {
     real *lambda; /* (nrow) loop forces, summed over refinements */
     struct motion motion;
     bool stored; /* the first evaluation's answer is in the job's arrays */
-    real residual;
+    real residual, residual_scale; /* largest constraint residual over this */
     bool broken;
 };
 

@@ -240,6 +240,7 @@ static void operator_form(struct forward *f, bool terms)
         six_copy(before, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
+    f->residual_scale = scale;
 }
 
 /* right_hand_side: r = -W^T z. */
@@ -292,6 +293,7 @@ static void paper_residual(struct forward *f)
         scale = largest_size(scale, 6, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
+    f->residual_scale = scale;
     ch->work = before;
 }
 
@@ -426,13 +428,15 @@ static void refine_outside(struct forward *f)
 {
     struct chain *ch = &f->chain;
     const int outer = ch->job->spec->kernel.outer_refinements;
-    const real residual = f->residual; /* of the answer itself; the corrections have their own */
+    /* of the answer itself; the corrections have their own */
+    const real residual = f->residual, scale = f->residual_scale;
     struct refinement course;
     /* the paper's residual does not see the errors of its bias forces */
     const real known = f->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, ch->comm, TAG_EXTREME, known);
     for (int pass = 0; going && pass < outer; pass++) going = refine(f, &course);
     f->residual = residual;
+    f->residual_scale = scale;
 }
 
 /* evaluate: ud from the coordinates and rates in the chain. */
@@ -456,6 +460,7 @@ static void store(const struct forward *f)
     const int k = comm_rank(ch->comm), first = body_of(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
     for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
     if (job->residual) job->residual[k] = (double)f->residual;
+    if (job->residual_scale) job->residual_scale[k] = (double)f->residual_scale;
     if (job->condition) job->condition[k] = (double)f->blocks.reduction.condition;
 }
 

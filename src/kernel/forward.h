@@ -29,6 +29,7 @@ struct forward {
     struct motion motion;
     bool stored;   /* the first evaluation's answer is in the job's arrays */
     real residual; /* largest |W^T z| over the largest term in it */
+    real residual_scale; /* that term */
 };
 
 /* forward_carve: room for rank `rank`. */

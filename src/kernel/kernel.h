@@ -30,6 +30,7 @@ struct kernel_job {
     double *lambda;         /* out: loop forces; NULL without loops */
     double *measured;       /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
     double *residual;       /* out (nrank): largest constraint residual seen by each rank, relative; may be NULL */
+    double *residual_scale; /* out (nrank): what each rank's residual is relative to; may be NULL */
     double *condition;      /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
                                condition of the block-scaled system; 0: not seen by the solver; may be NULL */
     int *loop_rank;         /* out (1): rank of the loops' constraint matrix; may be NULL */

@@ -55,6 +55,7 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
             job->qd_end = TAKE(a, m->nu, double);
         }
         job->residual = TAKE(a, spec->nrank, double);
+        job->residual_scale = TAKE(a, spec->nrank, double);
         job->condition = TAKE(a, spec->nrank, double);
     } else {
         job->measured = TAKE(a, spec->nrank, double);

@@ -15,6 +15,19 @@ static double worst(const double *x, int n)
     return largest;
 }
 
+/* Of all ranks: a rank whose terms are nothing but rounding beside those of others has no say. */
+static double worst_residual(const struct kernel_job *job)
+{
+    double residual = 0, scale = 0;
+    if (!job->residual_scale) return worst(job->residual, job->nrank);
+    for (int i = 0; i < job->nrank; i++) {
+        if (isnan(job->residual[i])) return job->residual[i];
+        residual = fmax(residual, job->residual[i] * job->residual_scale[i]);
+        scale = fmax(scale, job->residual_scale[i]);
+    }
+    return scale > 0 ? residual / scale : residual;
+}
+
 /* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. */
 static const char *remedy(const struct kernel_spec *k)
 {
@@ -31,7 +44,7 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     bool single = k->precision == PRECISION_FLOAT;
     double poor = single ? 0.1 : 1e-4, epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
-    out->residual = worst(job->residual, job->nrank);
+    out->residual = worst_residual(job);
     out->condition = worst(job->condition, job->nrank);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
     out->status = RUN_INVALID;

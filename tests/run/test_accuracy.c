@@ -199,7 +199,15 @@ static void untrustworthy_answers_are_told(void **state)
     r.status = RUN_OK, residual[0] = NAN;
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_INVALID);
-    r.status = RUN_OK, residual[0] = 0, condition[1] = 1e17;
+    double scale[2] = {1e-20, 1}; /* the first rank has nothing but rounding */
+    r.status = RUN_OK, residual[0] = 1, job.residual_scale = scale;
+    trust_check(&job, &r);
+    assert_int_equal(r.status, RUN_OK);
+    assert_true(r.residual == 1e-9);
+    residual[1] = 0.1;
+    trust_check(&job, &r);
+    assert_int_equal(r.status, RUN_INVALID);
+    r.status = RUN_OK, residual[0] = residual[1] = 0, condition[1] = 1e17;
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_INVALID);
 }
