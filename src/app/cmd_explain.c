@@ -12,7 +12,7 @@ static const char doc[] =
     "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
     "memory they will take on this computer.\n\n"
     "Example: mimdsim explain scenarios/speedup-t3e.yaml\n\v"
-                          "--measure: run the largest point with each of the omissions put back, and tell what it saves.";
+    "--measure: run the largest point with each of the omissions put back, and tell what it saves.";
 
 struct totals {
     double host_s, host_bytes;

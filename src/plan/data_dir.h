@@ -13,11 +13,12 @@
  * Returns NULL with ERR_NO_INPUT and the nearest name there is. */
 const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a, struct err *e);
 
-/* data_dir_names: stems of the *.yaml files of `what` ("plots": *.sql), sorted, without repetition; (*n) of them in `a`. */
+/* data_dir_names: stems of the *.yaml files of `what` ("plots": *.sql), sorted, without repetition; (*n) of them in
+ * `a`. */
 const char **data_dir_names(const char *what, struct arena *a, int *n);
 
-/* data_dir_has_figure: whether the data folder's plots/ can draw `name`; where not, ERR_DATA at line `line` of `file` with
- * the nearest name. */
+/* data_dir_has_figure: whether the data folder's plots/ can draw `name`; where not, ERR_DATA at line `line` of `file`
+ * with the nearest name. */
 bool data_dir_has_figure(const char *name, const char *file, int line, struct arena *a, struct err *e);
 
 /* data_dir_of: the folder part of `path`, "" when it has none; data_dir_stem: its last part without ".yaml". In `a`. */

@@ -235,15 +235,16 @@ static bool effort(struct chapter *c)
              c->d->host_s);
     page_paragraph(c->page, t.s);
     text_free(&t);
-    return table(c,
-                 "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
-                 " format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS in_all_s,"
-                 " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
-                 " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
-                 " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run"
-                 " UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM claim_sample), NULL, NULL,"
-                 " NULL, value, NULL FROM meta WHERE key = 'samples_s'",
-                 "No run is stored.");
+    return table(
+        c,
+        "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
+        " format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS in_all_s,"
+        " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
+        " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
+        " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run"
+        " UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM claim_sample), NULL, NULL,"
+        " NULL, value, NULL FROM meta WHERE key = 'samples_s'",
+        "No run is stored.");
 }
 
 static bool provenance(struct chapter *c)

@@ -8,7 +8,8 @@
 #include "base/err.h"
 #include "spec/run_spec.h"
 
-/* model_file_is: whether `path` is a robot (its name ends in .urdf) or a reference vector (.json, unless it is a scenario). */
+/* model_file_is: whether `path` is a robot (its name ends in .urdf) or a reference vector (.json, unless it is a
+ * scenario). */
 bool model_file_is(const char *path);
 
 /* model_file_check: read such a file and make its model, a robot's with a fixed base. What a robot's file says but

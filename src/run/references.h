@@ -19,8 +19,8 @@ void references_check(const struct kernel_job *job, struct arena *scratch, struc
 void references_loops(const struct kernel_job *job, struct arena *scratch, struct run_result *out);
 
 /* references_tolerance: the largest relative error of the accelerations that a correct program may show for `n`
- * bodies: the formulation's error growth (docs/accuracy.md), with two decades of room. Where more is found, the error of the
- * serial code of the same formulation on the same system counts, with two decades too, up to 1e-2. */
+ * bodies: the formulation's error growth (docs/accuracy.md), with two decades of room. Where more is found, the error
+ * of the serial code of the same formulation on the same system counts, with two decades too, up to 1e-2. */
 double references_tolerance(const struct kernel_spec *k, int n);
 
 /* references_baselines: predicted times of the serial codes on one node, and of the whole parallel work on one

@@ -21,8 +21,8 @@ struct verify_case {
 /* verify_error: max |x - ref| / max |ref|, absolute where ref is zero; INFINITY if an x is no number. */
 double verify_error(const double *x, const double *ref, int n);
 
-/* verify_error_beside: the same for an x that may cancel: measured by a thousandth of `scale`, the largest of what it is
- * made of, where ref is smaller. verify_largest: max |x|. */
+/* verify_error_beside: the same for an x that may cancel: measured by a thousandth of `scale`, the largest of what it
+ * is made of, where ref is smaller. verify_largest: max |x|. */
 double verify_error_beside(const double *x, const double *ref, int n, double scale);
 double verify_largest(const double *x, int n);
 

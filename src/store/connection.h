@@ -23,7 +23,7 @@
       " finish_min_ps, finish_max_ps, rank_compute_min_ps, rank_compute_max_ps, links, host_s, host_total_s,"          \
       " host_peak_bytes, stack_peak_bytes, left_out, config_text, build_id, created_utc) VALUES"                       \
       " (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"  \
-      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                                \
+      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                          \
     X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
     X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
     X(SETTING_ADD, "INSERT INTO setting (key, value) VALUES (?1, ?2)")                                                 \
@@ -44,7 +44,7 @@ enum statement {
 #define X(name, sql) STATEMENT_##name,
     STORE_STATEMENTS(X)
 #undef X
-    STATEMENT_COUNT
+        STATEMENT_COUNT
 };
 
 enum {
@@ -57,12 +57,12 @@ enum {
 };
 
 struct store {
-    sqlite3 *db;                    /* owned */
-    char *path;                     /* owned */
+    sqlite3 *db; /* owned */
+    char *path;  /* owned */
     bool writable;
-    bool passing;                   /* STORE_MEMORY: what only people read is not kept */
-    bool in_transaction;            /* store_begin's */
-    int64_t build_id;               /* row of this program in table build, 0: not looked up yet */
+    bool passing;                             /* STORE_MEMORY: what only people read is not kept */
+    bool in_transaction;                      /* store_begin's */
+    int64_t build_id;                         /* row of this program in table build, 0: not looked up yet */
     sqlite3_stmt *statement[STATEMENT_COUNT]; /* owned, NULL until used */
 };
 

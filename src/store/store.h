@@ -20,8 +20,8 @@ enum store_mode {
                     are not kept */
 };
 
-/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. Returns NULL with ERR_NO_INPUT (read, not there),
- * ERR_DATA (not ours, or newer), ERR_BUSY (locked), ERR_CREATE or ERR_IO (read-only, disk full). */
+/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. Returns NULL with ERR_NO_INPUT (read, not
+ * there), ERR_DATA (not ours, or newer), ERR_BUSY (locked), ERR_CREATE or ERR_IO (read-only, disk full). */
 struct store *store_open(const char *path, enum store_mode mode, struct err *e);
 
 /* store_close: accepts NULL. */

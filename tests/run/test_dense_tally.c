@@ -18,7 +18,8 @@ static struct model *chain(struct arena *a, int n, enum model_joint joint)
     struct err e;
     err_clear(&e);
     for (int i = 0; i < n; i++) {
-        struct body_def b = {.parent = i - 1, .joint = joint, .axis = {0, 0, 1}, .mass = 1, .inertia = {1, 0, 0, 1, 0, 1}};
+        struct body_def b = {
+            .parent = i - 1, .joint = joint, .axis = {0, 0, 1}, .mass = 1, .inertia = {1, 0, 0, 1, 0, 1}};
         assert_int_equal(model_add_body(m, &b, &e), i);
     }
     assert_true(model_finish(m, false, &e));
@@ -56,7 +57,8 @@ static void composite_bodies_grow_as_the_cube(void **state)
     struct arena *a = arena_create();
     for (int n = 10; n <= 400; n *= 2) {
         const struct model *m = chain(a, n, JOINT_REVOLUTE);
-        double d = n, expected = d * (2000 + 828 + 77) + 77 * d * (d - 1) / 2 + d * (d + 1) * (2 * d + 1) / 6 + 2 * d * d;
+        double d = n,
+               expected = d * (2000 + 828 + 77) + 77 * d * (d - 1) / 2 + d * (d + 1) * (2 * d + 1) / 6 + 2 * d * d;
         assert_true(fabs(flops(m, FORWARD_CRBA) / expected - 1) < 1e-12);
     }
     arena_destroy(a);

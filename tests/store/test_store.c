@@ -304,9 +304,9 @@ static void links_and_spans_are_kept_within_their_limits(void **state)
 static void every_view_answers_on_an_empty_database(void **state)
 {
     struct fixture *f = *state;
-    static const char *const view[] = {"v_speedup", "v_stage",   "v_accounting", "v_errors",    "v_indicator",
-                                       "v_setting", "v_itervar", "v_claims",     "v_provenance", "v_link_top",
-                                       "v_repetition"};
+    static const char *const view[] = {"v_speedup",    "v_stage",    "v_accounting", "v_errors",
+                                       "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
+                                       "v_provenance", "v_link_top", "v_repetition"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);
@@ -414,8 +414,8 @@ static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **stat
     assert_true(store_has(passing, &spec));
     assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "1");
-    assert_true(store_select(passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)", 0,
-                             NULL, take_cell, answer, &f->e));
+    assert_true(store_select(passing, "SELECT (SELECT count(*) FROM rank_stage) + (SELECT count(*) FROM run_setting)",
+                             0, NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "0");
     store_close(passing);
     assert_int_equal(access("nowhere", F_OK), -1);
