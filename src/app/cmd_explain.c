@@ -36,6 +36,8 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
                r[i].messages, r[i].bytes / 1e6, r[i].flops / 1e6, r[i].host_s, r[i].host_bytes / 1e6);
         add(&t, &r[i]);
     }
+    if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
+        printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre, r[0].kilogram, r[0].second);
     printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
     for (int k = 0; p->nrun && k < r[0].nomission; k++)
         printf("left out (%s): %s: %s\n", r[0].omission[k].exact ? "exact" : "bounded", r[0].omission[k].what,

@@ -137,6 +137,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         kernel->estimate(spec, m, &k);
         out->nbody = m ? m->nbody : 0;
         out->nu = m ? m->nu : 0;
+        if (m) out->metre = m->metre, out->kilogram = m->kilogram, out->second = m->second;
         out->messages = k.messages;
         out->bytes = k.bytes;
         out->flops = k.flops;

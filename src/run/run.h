@@ -21,6 +21,7 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
     int64_t nbody, nu; /* bodies, degrees of freedom */
+    double metre, kilogram, second; /* the model's units in SI; 0: no model */
     double messages, bytes, flops;
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
