@@ -50,10 +50,9 @@ static error_t refuse(struct argp_state *state, const char *format, const char *
     return EINVAL;
 }
 
-static void add_set(struct common *c, const char *text)
+static void add_set(struct common *c, const char *text, struct argp_state *state)
 {
-    c->set = realloc(c->set, (size_t)(c->nset + 1) * sizeof *c->set);
-    CHECK(c->set);
+    if (c->nset == COMMON_MOST_SETS) argp_error(state, "more than %d times --set", COMMON_MOST_SETS);
     c->set[c->nset++] = text;
 }
 
@@ -75,7 +74,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->machine = arg;
         break;
     case 's':
-        add_set(c, arg);
+        add_set(c, arg, state);
         break;
     case 'o':
         c->database = arg;

@@ -27,21 +27,23 @@ int cmd_explain(int argc, char **argv);   /* estimate a scenario */
 int cmd_machines(int argc, char **argv);  /* list, show or compare machines */
 int cmd_scenarios(int argc, char **argv); /* list scenarios */
 int cmd_kernels(int argc, char **argv);   /* list kernels */
-int cmd_query(int argc, char **argv);
+int cmd_query(int argc, char **argv);     /* SQL */
 int cmd_paper(int argc, char **argv);
 int cmd_claims(int argc, char **argv);
 int cmd_timeline(int argc, char **argv);
-int cmd_netcheck(int argc, char **argv);
-int cmd_links(int argc, char **argv); /* the most loaded links */
-int cmd_validate(int argc, char **argv);     /* SQL */
+int cmd_netcheck(int argc, char **argv);  /* network levels against references */
+int cmd_validate(int argc, char **argv);  /* machines against published figures */
+int cmd_links(int argc, char **argv);     /* the most loaded links */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 int cmd_accuracy(int argc, char **argv);  /* error against run time */
 int cmd_stability(int argc, char **argv); /* stiff and extreme cases */
 
+enum { COMMON_MOST_SETS = 256 };
+
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {
     const char *machine;
-    const char **set; /* (nset), owned by the process */
+    const char *set[COMMON_MOST_SETS]; /* (nset) */
     int nset;
     bool json, quiet, force;
     const char *database;  /* -o */

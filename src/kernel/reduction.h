@@ -53,9 +53,16 @@ struct reduction {
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
                      const struct row_layout *layout, int rank, int m, bool keep);
 
-/* reduction_left, reduction_right: where L (c x c_{k-1}) and U (c x c_{k+1}) are to be put before reduction_run. */
-static inline real *reduction_left(const struct reduction *s) { return s->in_a + block_update_size(s->c, s->m); }
-static inline real *reduction_right(const struct reduction *s) { return s->in_b + block_update_size(s->c, s->m); }
+/* reduction_left, reduction_right: where L (c x c_{k-1}) and U (c x c_{k+1}) are to be put before reduction_run; NULL
+ * where there is no such neighbour. */
+static inline real *reduction_left(const struct reduction *s)
+{
+    return s->in_a ? s->in_a + block_update_size(s->c, s->m) : NULL;
+}
+static inline real *reduction_right(const struct reduction *s)
+{
+    return s->in_b ? s->in_b + block_update_size(s->c, s->m) : NULL;
+}
 
 /* reduction_run: the solution into r. D, L, U are used up. Every rank must call.
  *

@@ -1,5 +1,7 @@
 /* test_chain.c - parallel dynamics of chains equals the serial algorithms: every joint, size, split and solver. */
 #include <setjmp.h>
+#include "config.h"
+
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -143,7 +145,7 @@ static void a_rank_of_a_large_machine_is_small(void **state)
     s.model.inertia = INERTIA_UNIFORM;
     const struct evaluation v = evaluate(&s, a);
     assert_true(v.rank_bytes <= 4096);
-#ifndef __SANITIZE_ADDRESS__ /* which widens every frame */
+#ifndef SANITIZERS /* which widen every frame */
     assert_true(v.counts.stack_bytes <= 8192);
 #endif
     arena_destroy(a);
