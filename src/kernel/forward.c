@@ -274,7 +274,7 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
         const int n = active ? s->d : 6;
         for (int r = from; r < to; r++)
             for (int k = 0; k < n; k++) y[r] += (j < i ? E[6 * r + k] : j == i ? D[6 * r + k] : next[6 * k + r]) * x[k];
-        ch->work.flop += (uint64_t)(2 * n * (to - from) - (j == i ? to - from : 0));
+        ch->work.flop += (uint64_t)(2 * n * (to - from) - (j == i && n > 0 ? to - from : 0));
     }
 }
 
