@@ -5,7 +5,9 @@ WITH chosen AS (
     SELECT id, row_number() OVER (PARTITION BY P ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
                                   level = 'link' DESC, level <> 'loggp' DESC, precision = 'double' DESC, id DESC) AS choice
     FROM run
-    WHERE status = 'ok' AND machine LIKE 't3e%' AND kernel = 'dynamics' AND n = P AND P IN (16, 128)
+    WHERE status = 'ok' AND kernel = 'dynamics' AND n = P AND P IN (16, 128)
+          AND machine = (SELECT machine FROM run WHERE status = 'ok' AND kernel = 'dynamics' AND n = P
+                         GROUP BY machine ORDER BY machine = 't3e-300' DESC, count(DISTINCT n) DESC, min(id) LIMIT 1)
           AND base = 'fixed' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0
           AND placement = 'linear' AND solver <> 'partition')
 SELECT v.P, v.stage, v.name, v.compute_mean_ps / 1e6 AS compute_us, v.send_mean_ps / 1e6 AS send_us,

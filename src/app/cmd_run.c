@@ -15,7 +15,8 @@ static const char doc[] =
     "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
     "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
     "the exit status is then 1; a deadlock ends with 70.\n\n"
-    "--keep-all: compute too what the scene does not need (mimdsim explain lists it); the results are the same.";
+    "--keep-all: compute too what the scene does not need (mimdsim explain lists it); the answers are the same to the "
+    "last bit, the predicted time includes what is kept.";
 
 struct keep {
     struct store *store;
@@ -63,7 +64,10 @@ static bool *stored_already(struct store *s, const struct plan *p, bool force)
 }
 
 static const char table_sql[] =
-    "SELECT r.kernel, r.formulation, r.solver, r.level, r.n, r.P, r.makespan_ps / 1e6 AS makespan_us,"
+    "SELECT r.machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation, iif(r.nu > 0, r.solver, NULL) AS"
+    " solver, iif(r.measured_s IS NULL, NULL, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND"
+    " v.key = 'kernel.message')) AS message, r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P, r.makespan_ps / 1e6 AS "
+    "makespan_us,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
     "   AS speedup_vs_fastest_serial,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'parallel code on one processor')"

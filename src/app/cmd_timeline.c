@@ -15,7 +15,7 @@ static const char doc[] = "Show the timeline of one run: of run number RUN of th
                           "has one), or of the first "
                           "point of SCENARIO, which is run for it.\n\n"
                           "Example: mimdsim timeline scenarios/fig8.yaml\n"
-                          "         mimdsim timeline paper.db 140 --format chrome\n\v"
+                          "         mimdsim timeline paper.db --format chrome\n\v"
                           "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
                           "timeline.json (Chrome trace "
                           "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans, pictures "
@@ -136,6 +136,7 @@ static bool show(struct shown *t)
     static const char *const ending[] = {[TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
     const char *word = t->common->format;
     enum trace_format format;
+    if (!word && t->common->json) return write_trace(t, TRACE_CHROME, NULL);
     if (!word)
         return write_trace(t, TRACE_TEXT, NULL) && write_trace(t, TRACE_CHROME, "json") &&
                write_trace(t, TRACE_PAJE, "paje") && draw_picture(t);
