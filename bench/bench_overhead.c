@@ -14,6 +14,7 @@
 #include "mech/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
+#include "torus_plan.h"
 
 enum { MOST_ROUNDS = 200 };
 
@@ -27,26 +28,6 @@ static void program(struct comm *c, void *context)
 {
     struct bare *b = context;
     b->kernel->run(c, &b->job, b->workspace[comm_rank(c)]);
-}
-
-/* torus_of: dimensions with the product nrank, as equal as powers of two allow. */
-static void torus_of(int nrank, int dims[3])
-{
-    dims[0] = dims[1] = dims[2] = 1;
-    for (int k = 0; nrank > 1; nrank /= 2, k++) dims[k % 3] *= 2;
-}
-
-static bool load(struct plan *p, int nrank, const char *level, struct err *e)
-{
-    int dims[3];
-    char set[3][96];
-    torus_of(nrank, dims);
-    snprintf(set[0], sizeof set[0], "machine.topology.dims=[%d, %d, %d]", dims[0], dims[1], dims[2]);
-    snprintf(set[1], sizeof set[1], "model.n=%d", nrank);
-    snprintf(set[2], sizeof set[2], "machine.network.level=%s", level);
-    const char *all[] = {set[0], set[1], set[2], "record.links=false"};
-    struct plan_options o = {.nset = 4, .set = all};
-    return plan_read(p, "speedup-t3e", &o, e);
 }
 
 /* rounds_for: repetitions that fill about a second, at least three. */
@@ -105,7 +86,7 @@ static bool measure(int nrank)
     double bare = 0, simulated[2];
     for (int k = 0; k < 2; k++) {
         struct plan p = {0};
-        if (!load(&p, nrank, levels[k], &e)) break;
+        if (!torus_plan_read(&p, nrank, levels[k], &e)) break;
         if (k == 0) bare = bare_seconds(&p.run[0], &e);
         simulated[k] = simulated_seconds(&p.run[0], &e);
     }

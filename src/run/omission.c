@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "mech/model.h"
+#include "run/launch.h"
 
 enum { BASELINE_MOST = 512 }; /* degrees of freedom of the mass-matrix baseline, see references.h */
 
@@ -12,7 +13,7 @@ int64_t omission_largest_message(const struct run_spec *spec, const struct kerne
                                  const struct kernel_job *job)
 {
     if (spec->keep & KEEP_START_EVENTS) return -1;
-    return kernel->largest_message ? kernel->largest_message(job) : -1;
+    return launch_largest_message(kernel, job);
 }
 
 struct machine_spec omission_machine(const struct run_spec *spec)

@@ -9,22 +9,10 @@
 #include "base/progress.h"
 #include "kernel/kernel.h"
 #include "mech/model.h"
+#include "run/launch.h"
 #include "run/omission.h"
 #include "run/references.h"
 #include "run/trust.h"
-#include "vp/world.h"
-
-struct launch {
-    const struct kernel_type *kernel;
-    const struct kernel_job *job;
-    char **workspace; /* (nrank) */
-};
-
-static void program(struct comm *c, void *context)
-{
-    struct launch *l = context;
-    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
-}
 
 static const struct kernel_type *find_kernel(const struct run_spec *spec, struct err *e)
 {
@@ -63,14 +51,6 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
     return kernel->accepts(spec, job->model, e) && kernel->prepare(job, a, e);
 }
 
-/* Taken one by one: all of it will be touched, so the arena may use large pages. */
-static char **make_workspaces(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *a)
-{
-    char **w = TAKE(a, job->nrank, char *);
-    for (int i = 0; i < job->nrank; i++) w[i] = arena_take(a, kernel->workspace_bytes(job, i));
-    return w;
-}
-
 static double largest_measured(const struct kernel_job *job)
 {
     double largest = job->measured ? 0 : NAN;
@@ -99,16 +79,10 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
     struct kernel_job job;
     bool ok = make_job(&job, kernel, spec, scratch, e);
     if (ok) {
-        struct launch l = {kernel, &job, make_workspaces(&job, kernel, scratch)};
-        struct world_load load = {spec->nrank,
-                                  program,
-                                  &l,
-                                  kernel->nstage,
-                                  kernel->stage_name,
-                                  omission_largest_message(spec, kernel, &job)};
         struct machine_spec machine = omission_machine(spec);
         struct record_spec record = omission_record(spec);
-        ok = world_run(&machine, &load, &record, spec->seed + (uint64_t)spec->rep, a, out, e);
+        ok = launch_job(kernel, &job, &machine, &record, spec->seed + (uint64_t)spec->rep,
+                        omission_largest_message(spec, kernel, &job), scratch, a, out, e);
     }
     if (ok && job.model) {
         out->nbody = job.model->nbody;

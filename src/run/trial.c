@@ -5,19 +5,7 @@
 
 #include "base/text.h"
 #include "kernel/kernel.h"
-#include "vp/world.h"
-
-struct launch {
-    const struct kernel_type *kernel;
-    const struct kernel_job *job;
-    char **workspace; /* (nrank) */
-};
-
-static void program(struct comm *c, void *context)
-{
-    struct launch *l = context;
-    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
-}
+#include "run/launch.h"
 
 double trial_error(const double *x, const double *reference, int n)
 {
@@ -90,13 +78,8 @@ struct trial trial_run(const struct run_spec *spec, const struct model *m, const
     err_clear(&e);
     if (!kernel) err_set(&e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
     bool good = kernel && job_make(&job, kernel, spec, m, s, a, &e);
-    if (good) {
-        struct launch l = {kernel, &job, TAKE(a, spec->nrank, char *)};
-        for (int i = 0; i < spec->nrank; i++) l.workspace[i] = arena_take(a, kernel->workspace_bytes(&job, i) + 64);
-        struct world_load load = {spec->nrank, program, &l, kernel->nstage, kernel->stage_name,
-                                  kernel->largest_message ? kernel->largest_message(&job) : -1};
-        good = world_run(&spec->machine, &load, &spec->record, spec->seed, a, result, &e);
-    }
+    good = good && launch_job(kernel, &job, &spec->machine, &spec->record, spec->seed,
+                              launch_largest_message(kernel, &job), a, a, result, &e);
     if (good) answer(&t, &job, result);
     else text_copy(t.text, sizeof t.text, e.text);
     return t;

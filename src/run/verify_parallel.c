@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "kernel/kernel.h"
 #include "run/verify_rows.h"
-#include "vp/world.h"
+#include "run/launch.h"
 
 /* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
 struct variant {
@@ -40,18 +40,6 @@ static const struct variant variant_table[] = {
             .partition = PARTITION_BALANCED),
 };
 enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
-
-struct launch {
-    const struct kernel_type *kernel;
-    const struct kernel_job *job;
-    char **workspace; /* (nrank) */
-};
-
-static void program(struct comm *c, void *context)
-{
-    struct launch *l = context;
-    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
-}
 
 /* P = 1, 2, 3, n/2, n without repetition; of large cases 3 and n. */
 static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANKS])
@@ -122,11 +110,9 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
         text_copy(out->text, sizeof out->text, refused.text);
         return true;
     }
-    struct launch l = {kernel, &job, TAKE(v->arena, nrank, char *)};
-    for (int i = 0; i < nrank; i++) l.workspace[i] = arena_take(v->arena, kernel->workspace_bytes(&job, i) + 64);
-    struct world_load load = {nrank, program, &l, kernel->nstage, kernel->stage_name,
-                              kernel->largest_message ? kernel->largest_message(&job) : -1};
-    if (!world_run(&spec->machine, &load, &spec->record, 0, v->arena, result, e)) return false;
+    if (!launch_job(kernel, &job, &spec->machine, &spec->record, 0, launch_largest_message(kernel, &job), v->arena,
+                    v->arena, result, e))
+        return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
                             .x = kernel->does_forward ? job.qdd : job.tau,
                             .lambda = job.lambda,
