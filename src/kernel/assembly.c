@@ -9,29 +9,29 @@ void assembly_inverse_inertia(struct chain *ch, int i, real *phi)
 {
     const struct body *b = &ch->shared->body[i];
     if (!ch->dense) {
-        sym6_expand(phi, &b->phi);
+        body_phi(b, phi);
         return;
     }
     chain_shifted_inertia(b, phi, &ch->work);
-    dense_invert(6, phi, &ch->work);
+    dense_invert(SPACE, phi, &ch->work);
 }
 
-/* transpose: a 6x6 matrix in place. */
+/* transpose: a square matrix in place. */
 static void transpose(real *M)
 {
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < i; j++) {
-            const real t = M[6 * i + j];
-            M[6 * i + j] = M[6 * j + i];
-            M[6 * j + i] = t;
+            const real t = M[SPACE * i + j];
+            M[SPACE * i + j] = M[SPACE * j + i];
+            M[SPACE * j + i] = t;
         }
 }
 
-/* move_rows: row_k <- X^T row_k: M X for the 6x6 matrix M, in place. */
+/* move_rows: row_k <- X^T row_k: M X for the square matrix M, in place. */
 static void move_rows(struct chain *ch, const real *X, real *M)
 {
-    for (int k = 0; k < 6; k++) xform_motion(M + 6 * k, (const struct xform *)X, M + 6 * k);
-    ch->work.flop += 6 * XFORM_MOTION_FLOP;
+    for (int k = 0; k < SPACE; k++) xform_motion(M + SPACE * k, (const struct xform *)X, M + SPACE * k);
+    ch->work.flop += SPACE * XFORM_MOTION_FLOP;
     ch->work.call++;
 }
 
@@ -39,15 +39,15 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E)
 {
     if (D) assembly_inverse_inertia(ch, i, D);
     if (i == 0) {
-        memset(E, 0, 36 * sizeof *E);
+        memset(E, 0, SQUARE * sizeof *E);
         return;
     }
     const real *X = chain_transform(ch, i);
-    real phi[36], moved[36];
+    real phi[SQUARE], moved[SQUARE];
     assembly_inverse_inertia(ch, i - 1, phi);
     if (ch->dense) {
-        dense_product_tn(6, 6, 6, X, phi, E, &ch->work);
-        if (D) dense_product(6, 6, 6, E, X, moved, &ch->work);
+        dense_product_tn(SPACE, SPACE, SPACE, X, phi, E, &ch->work);
+        if (D) dense_product(SPACE, SPACE, SPACE, E, X, moved, &ch->work);
     } else {
         memcpy(E, phi, sizeof phi);
         move_rows(ch, X, E);
@@ -58,19 +58,19 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E)
         }
     }
     if (D) {
-        for (int k = 0; k < 36; k++) D[k] += moved[k];
-        ch->work.flop += ch->dense ? 36 : 21;
+        for (int k = 0; k < SQUARE; k++) D[k] += moved[k];
+        ch->work.flop += ch->dense ? SQUARE : PACKED;
     }
-    for (int k = 0; k < 36; k++) E[k] = -E[k];
+    for (int k = 0; k < SQUARE; k++) E[k] = -E[k];
 }
 
-/* expand: out (6 x 6) = [H W] as a matrix. */
+/* expand: out (SPACE x SPACE) = [H W] as a matrix. */
 static void expand(const struct subspace *s, real *out)
 {
-    for (int k = 0; k < 6; k++) {
-        real column[6];
+    for (int k = 0; k < SPACE; k++) {
+        real column[SPACE];
         subspace_column(s, k, column);
-        for (int i = 0; i < 6; i++) out[6 * i + k] = column[i];
+        for (int i = 0; i < SPACE; i++) out[SPACE * i + k] = column[i];
     }
 }
 
@@ -78,16 +78,16 @@ static void expand(const struct subspace *s, real *out)
 static void turn_part(struct chain *ch, const struct subspace *a, int a0, const real *M, const struct subspace *b,
                       int b0, real *out)
 {
-    const int na = 6 - a0, nb = 6 - b0;
-    real left[36], right[36], product[36], part[36];
+    const int na = SPACE - a0, nb = SPACE - b0;
+    real left[SQUARE], right[SQUARE], product[SQUARE], part[SQUARE];
     expand(a, left);
     expand(b, right);
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < nb; j++) part[i * nb + j] = right[6 * i + b0 + j];
-    dense_product(6, nb, 6, M, part, product, &ch->work);
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < na; j++) part[i * na + j] = left[6 * i + a0 + j];
-    dense_product_tn(na, nb, 6, part, product, out, &ch->work);
+    for (int i = 0; i < SPACE; i++)
+        for (int j = 0; j < nb; j++) part[i * nb + j] = right[SPACE * i + b0 + j];
+    dense_product(SPACE, nb, SPACE, M, part, product, &ch->work);
+    for (int i = 0; i < SPACE; i++)
+        for (int j = 0; j < na; j++) part[i * na + j] = left[SPACE * i + a0 + j];
+    dense_product_tn(na, nb, SPACE, part, product, out, &ch->work);
 }
 
 void assembly_project(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out)
@@ -97,7 +97,7 @@ void assembly_project(struct chain *ch, const struct subspace *a, const real *M,
         return;
     }
     subspace_project(a, true, M, b, true, out);
-    ch->work.flop += (uint64_t)((b->pick ? 0 : 66 * b->c) + (a->pick ? 0 : 11 * a->c * b->c));
+    ch->work.flop += (uint64_t)((b->pick ? 0 : SQUARE_VEC_FLOP * b->c) + (a->pick ? 0 : SCREW_DOT_FLOP * a->c * b->c));
     ch->work.call++;
 }
 
@@ -107,15 +107,15 @@ void assembly_turn(struct chain *ch, const struct subspace *a, const real *M, co
         turn_part(ch, a, 0, M, b, 0, out);
         return;
     }
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j < 6; j++) out[6 * i + j] = M[6 * a->pick[i] + b->pick[j]];
+    for (int i = 0; i < SPACE; i++)
+        for (int j = 0; j < SPACE; j++) out[SPACE * i + j] = M[SPACE * a->pick[i] + b->pick[j]];
 }
 
 void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real *x, real *y)
 {
     subspace_h_transposed(s, x, y);
     subspace_w_transposed(s, x, y + s->d);
-    if (!s->pick) ch->work.flop += 66;
+    if (!s->pick) ch->work.flop += SQUARE_VEC_FLOP;
 }
 
 void assembly_pack(int c, const real *M, int stride, real *packed)

@@ -8,12 +8,12 @@
 
 #include "kernel/chain.h"
 
-/* assembly_inverse_inertia: Phi (6 x 6) of body i; with dense operators shifted and inverted anew. */
+/* assembly_inverse_inertia: Phi (SPACE x SPACE) of body i; with dense operators shifted and inverted anew. */
 #define assembly_inverse_inertia REAL_NAME(assembly_inverse_inertia)
 void assembly_inverse_inertia(struct chain *ch, int i, real *phi);
 
-/* assembly_operators: D_ii and E_i (6 x 6 each) of joint i, an own body or the first one behind the block (whose D is
- * of no use: D may be NULL). E is zero for i = 0. */
+/* assembly_operators: D_ii and E_i (SPACE x SPACE each) of joint i, an own body or the first one behind the block
+ * (whose D is of no use: D may be NULL). E is zero for i = 0. */
 #define assembly_operators REAL_NAME(assembly_operators)
 void assembly_operators(struct chain *ch, int i, real *D, real *E);
 
@@ -21,11 +21,11 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E);
 #define assembly_project REAL_NAME(assembly_project)
 void assembly_project(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out);
 
-/* assembly_turn: out (6 x 6) = Q_a^T M Q_b. */
+/* assembly_turn: out (SPACE x SPACE) = Q_a^T M Q_b. */
 #define assembly_turn REAL_NAME(assembly_turn)
 void assembly_turn(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out);
 
-/* assembly_turn_vector: y (6) = Q^T x. */
+/* assembly_turn_vector: y (SPACE) = Q^T x. */
 #define assembly_turn_vector REAL_NAME(assembly_turn_vector)
 void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real *x, real *y);
 
@@ -33,7 +33,7 @@ void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real
 #define assembly_pack REAL_NAME(assembly_pack)
 void assembly_pack(int c, const real *M, int stride, real *packed);
 
-/* chain_shifted_inertia: dense operators: the 6x6 inertia of a body about its origin, by two full products. */
+/* chain_shifted_inertia: dense operators: the square inertia of a body about its origin, by two full products. */
 #define chain_shifted_inertia REAL_NAME(chain_shifted_inertia)
 void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w);
 

@@ -60,7 +60,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     s->body = bodies_make(model, a);
     s->layout = (struct row_layout){.nrow = n, .nrank = nrank, .size = size, .interface = interface};
     for (int i = 0; i < n; i++) {
-        size[i] = (unsigned char)(6 - s->body[i].d);
+        size[i] = (unsigned char)(SPACE - s->body[i].d);
         if (size[i] > s->layout.largest) s->layout.largest = size[i];
         picked = picked && picks_columns(s->body[i].joint);
     }
@@ -68,8 +68,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     for (int k = 0; k < nrank; k++) interface[k] = size[s->layout.first[k + 1] - 1];
     s->pose_bytes = picked ? offsetof(struct body_pose, s.col) : sizeof(struct body_pose);
     s->subspace_bytes = picked ? offsetof(struct subspace, col) : sizeof(struct subspace);
-    for (int i = 0; i < 6; i++)
-        s->base[i] = (real)job->state->base_acceleration[i] - (i < 3 ? 0 : (real)model->gravity[i - 3]);
+    base_motion(model, job->state, s->base);
     return s;
 }
 
@@ -85,12 +84,12 @@ void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job
     ch->q = CARVE(c, chain_nq(s, lo, hi), real);
     ch->u = CARVE(c, chain_nu(s, lo, hi), real);
     ch->pose = CARVE(c, (size_t)room * s->pose_bytes, char);
-    ch->matrix = CARVE(c, ch->dense ? 36 * room : 0, real);
-    ch->h = CARVE(c, 6 * (hi - lo), real);
-    ch->v = CARVE(c, 6 * (hi - lo), real);
-    ch->b = CARVE(c, 6 * (hi - lo), real);
-    ch->a = CARVE(c, forces ? 6 * (hi - lo) : 0, real);
-    ch->f = CARVE(c, forces ? 6 * (hi - lo) : 0, real);
+    ch->matrix = CARVE(c, ch->dense ? SQUARE * room : 0, real);
+    ch->h = CARVE(c, SPACE * (hi - lo), real);
+    ch->v = CARVE(c, SPACE * (hi - lo), real);
+    ch->b = CARVE(c, SPACE * (hi - lo), real);
+    ch->a = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
+    ch->f = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
 }
 
 void chain_load(struct chain *ch)
@@ -106,15 +105,15 @@ void chain_place(struct chain *ch)
 {
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
-        const struct joint_cost *cost = joint_cost_of(b->joint);
+        const struct joint_cost *cost = body_cost(b);
         struct body_pose *pose = chain_pose(ch, i);
         body_place(b, ch->q + chain_q_at(ch, i), pose);
         body_rate(pose, ch->u + chain_u_at(ch, i), chain_at(ch, ch->h, i));
-        ch->work.flop += (uint64_t)(cost->place + (ch->dense ? 6 * b->d : cost->rate));
+        ch->work.flop += (uint64_t)(cost->place + (ch->dense ? SPACE * b->d : cost->rate));
         ch->work.trig += (uint64_t)cost->place_trig;
         ch->work.div += (uint64_t)cost->place_div;
         ch->work.call += 2;
-        if (ch->dense) transform_expand(true, ch->matrix + 36 * (i - ch->lo), &pose->x, &ch->work);
+        if (ch->dense) transform_expand(true, ch->matrix + SQUARE * (i - ch->lo), &pose->x, &ch->work);
     }
     chain_report(ch);
 }
@@ -123,7 +122,7 @@ void chain_place(struct chain *ch)
 static void compose_block(struct chain *ch, real *C)
 {
     const int size = ch->scan.size;
-    real next[36];
+    real next[SQUARE];
     memcpy(C, chain_transform(ch, ch->lo), (size_t)size * sizeof(real));
     for (int i = ch->lo + 1; i < ch->hi; i++) {
         transform_compose(ch->dense, next, C, chain_transform(ch, i), &ch->work);
@@ -148,14 +147,14 @@ static void begin_composites(struct chain *ch)
     if (k + 1 < comm_size(ch->comm)) comm_recv(ch->comm, k + 1, TAG_COMPOSITE, ch->scan.level, bytes);
 }
 
-/* sweep_up: x_i = X_i^T x_{i-1} + x_i for i = from .. to-1, in place; `before` (6) is x_{from-1}. */
+/* sweep_up: x_i = X_i^T x_{i-1} + x_i for i = from .. to-1, in place; `before` (SPACE) is x_{from-1}. */
 static void sweep_up(struct chain *ch, real *x, const real *before, int from, int to)
 {
     for (int i = from; i < to; i++) {
-        real moved[6], *now = chain_at(ch, x, i);
+        real moved[SPACE], *now = chain_at(ch, x, i);
         transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
-        six_add(now, moved);
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(now, moved);
+        ch->work.flop += SCREW_ADD_FLOP;
         before = now;
     }
 }
@@ -163,11 +162,11 @@ static void sweep_up(struct chain *ch, real *x, const real *before, int from, in
 /* end_of_block: x at the block's last body when x before the block is zero; x is not changed. */
 static void end_of_block(struct chain *ch, real *x, real *end)
 {
-    six_copy(end, chain_at(ch, x, ch->lo));
+    screw_copy(end, chain_at(ch, x, ch->lo));
     for (int i = ch->lo + 1; i < ch->hi; i++) {
         transform_motion(ch->dense, end, chain_transform(ch, i), end, &ch->work);
-        six_add(end, chain_at(ch, x, i));
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(end, chain_at(ch, x, i));
+        ch->work.flop += SCREW_ADD_FLOP;
     }
 }
 
@@ -178,7 +177,7 @@ static void scan_up(struct chain *ch, real *x, bool first, int tag)
     const int k = comm_rank(c), P = comm_size(c), m = ch->hi - ch->lo;
     const int next = k + 1 < P ? ch->shared->layout.first[k + 2] - ch->hi : 0;
     const int shift = TAG_SHIFT + tag / TAG_STEP;
-    real end[6], before[6];
+    real end[SPACE], before[SPACE];
     if (first) begin_composites(ch);
     end_of_block(ch, x, end);
     if (first) scan_first(&ch->scan, tag, end, &ch->work);
@@ -190,7 +189,7 @@ static void scan_up(struct chain *ch, real *x, bool first, int tag)
     } else if (m > 1) {
         sweep_up(ch, x, x, ch->lo + 1, ch->hi - 1);
     }
-    six_copy(chain_at(ch, x, ch->hi - 1), end);
+    screw_copy(chain_at(ch, x, ch->hi - 1), end);
     chain_report(ch);
 }
 
@@ -198,10 +197,10 @@ static void scan_up(struct chain *ch, real *x, bool first, int tag)
 static void sweep_down(struct chain *ch, real *f)
 {
     for (int i = ch->hi - 2; i >= ch->lo; i--) {
-        real moved[6];
+        real moved[SPACE];
         transform_force(ch->dense, moved, chain_transform(ch, i + 1), chain_at(ch, f, i + 1), &ch->work);
-        six_add(chain_at(ch, f, i), moved);
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(chain_at(ch, f, i), moved);
+        ch->work.flop += SCREW_ADD_FLOP;
     }
 }
 
@@ -211,27 +210,27 @@ static void entering(struct chain *ch, real *total)
 {
     struct comm *c = ch->comm;
     const int k = comm_rank(c);
-    real sum[6];
-    six_copy(sum, chain_at(ch, ch->f, ch->hi - 1));
+    real sum[SPACE];
+    screw_copy(sum, chain_at(ch, ch->f, ch->hi - 1));
     for (int i = ch->hi - 1; i > ch->lo; i--) {
         transform_force(ch->dense, sum, chain_transform(ch, i), sum, &ch->work);
-        six_add(sum, chain_at(ch, ch->f, i - 1));
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(sum, chain_at(ch, ch->f, i - 1));
+        ch->work.flop += SCREW_ADD_FLOP;
     }
     if (k > 0) {
         transform_force(ch->dense, sum, chain_transform(ch, ch->lo), sum, &ch->work);
         chain_report(ch);
         comm_send(c, k - 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, sum, (int64_t)sizeof sum);
     }
-    six_zero(total);
+    screw_zero(total);
     if (k + 1 < comm_size(c))
-        comm_recv(c, k + 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, total, (int64_t)(6 * sizeof *total));
+        comm_recv(c, k + 1, TAG_SHIFT + TAG_FORCE / TAG_STEP, total, (int64_t)(SPACE * sizeof *total));
     scan_force(&ch->scan, TAG_FORCE, total, &ch->work);
 }
 
 void chain_velocity(struct chain *ch)
 {
-    memcpy(ch->v, ch->h, (size_t)(6 * (ch->hi - ch->lo)) * sizeof(real));
+    memcpy(ch->v, ch->h, (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real));
     scan_up(ch, ch->v, true, TAG_VELOCITY);
 }
 
@@ -241,24 +240,24 @@ void chain_bias(struct chain *ch)
         const struct body *b = &ch->shared->body[i];
         body_bias(b, chain_pose(ch, i), chain_at(ch, ch->v, i), chain_at(ch, ch->h, i), ch->u + chain_u_at(ch, i),
                   chain_at(ch, ch->b, i));
-        ch->work.flop += (uint64_t)joint_cost_of(b->joint)->bias;
+        ch->work.flop += (uint64_t)body_cost(b)->bias;
         ch->work.call++;
     }
 }
 
 void chain_acceleration(struct chain *ch, const real *ud)
 {
-    memcpy(ch->a, ch->b, (size_t)(6 * (ch->hi - ch->lo)) * sizeof(real));
+    memcpy(ch->a, ch->b, (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real));
     for (int i = ch->lo; i < ch->hi && ud; i++) {
         const struct body *b = &ch->shared->body[i];
         subspace_h(&chain_pose(ch, i)->s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));
-        ch->work.flop += (uint64_t)(ch->dense ? 12 * b->d : joint_cost_of(b->joint)->h);
+        ch->work.flop += (uint64_t)(ch->dense ? SCREW_AXPY_FLOP * b->d : body_cost(b)->h);
     }
     if (ch->lo == 0) {
-        real moved[6];
+        real moved[SPACE];
         transform_motion(ch->dense, moved, chain_transform(ch, 0), ch->shared->base, &ch->work);
-        six_add(ch->a, moved);
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(ch->a, moved);
+        ch->work.flop += SCREW_ADD_FLOP;
     }
     scan_up(ch, ch->a, false, TAG_ACCELERATION);
 }
@@ -271,48 +270,43 @@ void chain_gyro(struct chain *ch, int i, real *f)
     ch->work.flop += BODY_GYRO_FLOP;
     ch->work.call++;
     if (!fext) return;
-    real load[6];
+    real load[SPACE];
     body_load(b, fext + 6 * i, load);
-    six_sub(f, load);
-    ch->work.flop += BODY_LOAD_FLOP + SIX_ADD_FLOP;
+    screw_sub(f, load);
+    ch->work.flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
 }
 
 void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
 {
-    real shift[36] = {0}, about[36] = {0}, product[36];
-    static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
-    shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
-    shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
-    for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->jc[at[i]];
-    for (int i = 3; i < 6; i++) about[7 * i] = b->m;
-    dense_product(6, 6, 6, shift, about, product, w);
-    for (int i = 0; i < 6; i++)
+    real shift[SQUARE] = {0}, about[SQUARE] = {0}, product[SQUARE];
+    body_inertia_factors(b, shift, about);
+    dense_product(SPACE, SPACE, SPACE, shift, about, product, w);
+    for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < i; j++) {
-            const real t = shift[6 * i + j];
-            shift[6 * i + j] = shift[6 * j + i];
-            shift[6 * j + i] = t;
+            const real t = shift[SPACE * i + j];
+            shift[SPACE * i + j] = shift[SPACE * j + i];
+            shift[SPACE * j + i] = t;
         }
-    dense_product(6, 6, 6, product, shift, inertia, w);
+    dense_product(SPACE, SPACE, SPACE, product, shift, inertia, w);
 }
 
 /* load: f = I a + P - Fext of own body i. */
 static void load(struct chain *ch, int i)
 {
     const struct body *b = &ch->shared->body[i];
-    real inertial[6], *f = chain_at(ch, ch->f, i);
+    real inertial[SPACE], *f = chain_at(ch, ch->f, i);
     chain_gyro(ch, i, f);
     if (ch->dense) {
-        real inertia[36];
+        real inertia[SQUARE];
         chain_shifted_inertia(b, inertia, &ch->work);
-        dense_product(6, 1, 6, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
-        ch->work.flop += SIX_ADD_FLOP;
+        dense_product(SPACE, 1, SPACE, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
+        ch->work.flop += SCREW_ADD_FLOP;
     } else {
         body_force(b, chain_at(ch, ch->a, i), inertial);
         ch->work.flop += BODY_FORCE_FLOP;
         ch->work.call++;
     }
-    six_add(f, inertial);
+    screw_add(f, inertial);
 }
 
 void chain_force(struct chain *ch, real *tau)
@@ -321,16 +315,16 @@ void chain_force(struct chain *ch, real *tau)
     if (ch->n == comm_size(ch->comm)) {
         scan_force(&ch->scan, TAG_FORCE, ch->f, &ch->work);
     } else {
-        real total[6];
+        real total[SPACE];
         entering(ch, total);
-        six_add(chain_at(ch, ch->f, ch->hi - 1), total);
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_add(chain_at(ch, ch->f, ch->hi - 1), total);
+        ch->work.flop += SCREW_ADD_FLOP;
         sweep_down(ch, ch->f);
     }
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
         subspace_h_transposed(&chain_pose(ch, i)->s, chain_at(ch, ch->f, i), tau + chain_u_at(ch, i));
-        ch->work.flop += (uint64_t)(ch->dense ? 11 * b->d : joint_cost_of(b->joint)->h_transposed);
+        ch->work.flop += (uint64_t)(ch->dense ? SCREW_DOT_FLOP * b->d : body_cost(b)->h_transposed);
     }
     chain_report(ch);
 }

@@ -20,7 +20,7 @@ struct chain_shared {
     const struct body *body;           /* (nbody) constants */
     struct row_layout layout;          /* bodies over ranks; constraints of each joint */
     size_t pose_bytes, subspace_bytes; /* room for a pose, a subspace: columns only if some joint needs them */
-    real base[6];                      /* acceleration of the base minus gravity */
+    real base[SPACE];                  /* acceleration of the base minus gravity */
 };
 
 /* One rank's share. Arrays over own bodies are indexed by i - lo. */
@@ -29,15 +29,15 @@ struct chain {
     const struct kernel_job *job;
     const struct chain_shared *shared;
     int n, lo, hi;
-    bool dense;       /* operators as full 6x6 matrices */
+    bool dense;       /* operators as full square matrices */
     struct work work; /* done since the last report */
     real *q, *u;      /* coordinates and rates of own bodies, from q_at and u_at of body lo */
     char *pose;       /* struct body_pose of own bodies, pose_bytes apart; one more for body hi if asked for */
-    real *matrix;     /* dense: the transforms as matrices, (36) each */
+    real *matrix;     /* dense: the transforms as matrices, (SQUARE) each */
     struct scan scan;
-    real *h;         /* (6) joint velocity H u */
-    real *v, *a, *f; /* (6) velocity, acceleration, force */
-    real *b;         /* (6) joint bias acceleration */
+    real *h;         /* (SPACE) joint velocity H u */
+    real *v, *a, *f; /* (SPACE) velocity, acceleration, force */
+    real *b;         /* (SPACE) joint bias acceleration */
 };
 
 /* chain_shared_make: from a job's model, state and number of ranks. */
@@ -74,7 +74,7 @@ void chain_acceleration(struct chain *ch, const real *ud);
 #define chain_force REAL_NAME(chain_force)
 void chain_force(struct chain *ch, real *tau);
 
-/* chain_gyro: P - Fext of own body i into f (6). */
+/* chain_gyro: P - Fext of own body i into f (SPACE). */
 #define chain_gyro REAL_NAME(chain_gyro)
 void chain_gyro(struct chain *ch, int i, real *f);
 
@@ -87,11 +87,11 @@ static inline struct body_pose *chain_pose(const struct chain *ch, int i)
 /* chain_transform: the transform of own body i (or of body hi) in the form that the operators use. */
 static inline const real *chain_transform(const struct chain *ch, int i)
 {
-    return ch->dense ? ch->matrix + 36 * (i - ch->lo) : (const real *)&chain_pose(ch, i)->x;
+    return ch->dense ? ch->matrix + SQUARE * (i - ch->lo) : (const real *)&chain_pose(ch, i)->x;
 }
 
 /* chain_at: element i of an array of 6-vectors over own bodies. */
-static inline real *chain_at(const struct chain *ch, real *array, int i) { return array + 6 * (i - ch->lo); }
+static inline real *chain_at(const struct chain *ch, real *array, int i) { return array + SPACE * (i - ch->lo); }
 
 /* chain_u_at, chain_q_at: place of body i's first rate (coordinate) in arrays over own joints. */
 static inline int chain_u_at(const struct chain *ch, int i)

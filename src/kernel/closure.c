@@ -8,7 +8,7 @@
 #include "kernel/tags.h"
 #include "linalg/least_norm.h"
 
-enum { TAG_MEET = TAG_LOOP, TAG_CONTRIBUTE, TAG_LAMBDA, MEETING = 18 };
+enum { TAG_MEET = TAG_LOOP, TAG_CONTRIBUTE, TAG_LAMBDA, MEETING = XFORM_NUMBERS + SPACE };
 
 struct closure_shared *closure_shared_make(const struct model *m, const struct body *body, const real *base,
                                            const int *owner, struct arena *a)
@@ -30,10 +30,10 @@ void closure_carve(struct closure *cl, struct carve *c, const struct closure_sha
     for (int s = 0; s < sides; s++) cl->takes_part = cl->takes_part || shared->owner[s] == rank;
     cl->lambda = CARVE(c, n, real);
     if (!cl->takes_part && rank != 0) return;
-    cl->contribution = CARVE(c, 6 * (cl->m + 1), real);
+    cl->contribution = CARVE(c, SPACE * (cl->m + 1), real);
     cl->pose = CARVE(c, shared->nloop, struct loop_pose);
     cl->side_pose = CARVE(c, sides, struct xform);
-    cl->side_velocity = CARVE(c, 6 * sides, real);
+    cl->side_velocity = CARVE(c, SPACE * sides, real);
     if (rank != 0) return;
     cl->S = CARVE(c, n * n, real);
     cl->reference = CARVE(c, n, real);
@@ -49,25 +49,25 @@ void closure_meet(struct closure *cl, struct work *w)
     for (int side = 0; side < 2 * s->nloop; side++) {
         const int other = s->owner[side ^ 1];
         if (s->owner[side] != k || other < 0 || other == k) continue;
-        memcpy(message, &cl->side_pose[side], 12 * sizeof(real));
-        memcpy(message + 12, cl->side_velocity + 6 * side, 6 * sizeof(real));
+        memcpy(message, &cl->side_pose[side], XFORM_NUMBERS * sizeof(real));
+        memcpy(message + XFORM_NUMBERS, cl->side_velocity + SPACE * side, SPACE * sizeof(real));
         comm_send(cl->comm, other, TAG_MEET, message, (int64_t)sizeof message);
     }
     for (int side = 0; side < 2 * s->nloop; side++) {
         if (s->owner[side] == k) continue;
         if (s->owner[side] < 0) {
             xform_identity(&cl->side_pose[side]);
-            six_zero(cl->side_velocity + 6 * side);
+            screw_zero(cl->side_velocity + SPACE * side);
         } else if (s->owner[side ^ 1] == k) {
             comm_recv(cl->comm, s->owner[side], TAG_MEET, message, (int64_t)sizeof message);
-            memcpy(&cl->side_pose[side], message, 12 * sizeof(real));
-            memcpy(cl->side_velocity + 6 * side, message + 12, 6 * sizeof(real));
+            memcpy(&cl->side_pose[side], message, XFORM_NUMBERS * sizeof(real));
+            memcpy(cl->side_velocity + SPACE * side, message + XFORM_NUMBERS, SPACE * sizeof(real));
         }
     }
     for (int l = 0; l < s->nloop; l++) {
         if (s->owner[2 * l] != k && s->owner[2 * l + 1] != k) continue;
-        loop_place(&s->loop[l], &cl->side_pose[2 * l], &cl->side_pose[2 * l + 1], cl->side_velocity + 12 * l,
-                   cl->side_velocity + 12 * l + 6, &cl->pose[l]);
+        loop_place(&s->loop[l], &cl->side_pose[2 * l], &cl->side_pose[2 * l + 1], cl->side_velocity + 2 * SPACE * l,
+                   cl->side_velocity + 2 * SPACE * l + SPACE, &cl->pose[l]);
         w->flop += LOOP_PLACE_FLOP;
         w->call++;
     }
@@ -80,11 +80,11 @@ void closure_loads(struct closure *cl, int body, real *load, struct work *w)
     if (!s || !cl->takes_part) return;
     for (int side = 0; side < 2 * s->nloop; side++) {
         if (closure_body(s, side) != body) continue;
-        real column[36];
+        real column[SQUARE];
         const struct loop *l = &s->loop[side / 2];
         loop_column(&cl->pose[side / 2], side % 2, column);
-        for (int k = 0; k < l->c; k++) six_add(load + 6 * (1 + l->row_at + k), column + 6 * k);
-        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SIX_ADD_FLOP));
+        for (int k = 0; k < l->c; k++) screw_add(load + SPACE * (1 + l->row_at + k), column + SPACE * k);
+        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP));
     }
 }
 
@@ -98,25 +98,25 @@ static void contribute(struct closure *cl, int side, const real *acceleration, r
     const struct xform *here = side % 2 ? &p->tb : &p->ta, *there = side % 2 ? &p->ta : &p->tb;
     const real sign = side % 2 ? 1 : -1;
     const bool alone = s->owner[side ^ 1] < 0;
-    real column[36], moved[6], accelerated[6];
+    real column[SQUARE], moved[SPACE], accelerated[SPACE];
     for (int j = 0; j < m; j++) {
-        xform_motion(moved, here, acceleration + 6 * j);
-        for (int k = 0; k < 6; k++) moved[k] *= sign;
+        xform_motion(moved, here, acceleration + SPACE * j);
+        for (int k = 0; k < SPACE; k++) moved[k] *= sign;
         if (j == 0 && alone) {
             xform_motion(accelerated, there, s->base);
-            six_axpy(moved, -sign, accelerated);
+            screw_axpy(moved, -sign, accelerated);
         }
-        if (j == 0 && (alone || side % 2)) six_add(moved, p->gamma);
-        for (int k = 0; k < c; k++) out[k * m + j] = six_dot(p->w + 6 * k, moved);
+        if (j == 0 && (alone || side % 2)) screw_add(moved, p->gamma);
+        for (int k = 0; k < c; k++) out[k * m + j] = screw_dot(p->w + SPACE * k, moved);
     }
     loop_column(p, side % 2, column);
     for (int k = 0; k < c; k++) {
         if (alone || side % 2) out[k * m] += p->stabilise[k];
-        body_accelerate(&s->body[closure_body(s, side)], column + 6 * k, accelerated);
-        out[c * m + k] = six_dot(column + 6 * k, accelerated);
+        body_accelerate(&s->body[closure_body(s, side)], column + SPACE * k, accelerated);
+        out[c * m + k] = screw_dot(column + SPACE * k, accelerated);
     }
-    w->flop +=
-        (uint64_t)(m * (XFORM_MOTION_FLOP + SIX_DOT_FLOP * c) + c * (XFORM_FORCE_FLOP + SYM6_MUL_FLOP + SIX_DOT_FLOP));
+    w->flop += (uint64_t)(m * (XFORM_MOTION_FLOP + SCREW_DOT_FLOP * c) +
+                          c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP));
     w->call += 3;
 }
 

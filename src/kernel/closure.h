@@ -23,7 +23,7 @@ struct closure_shared {
     const struct loop *loop; /* (nloop) */
     const int *owner;        /* (2 nloop) rank that owns the side's body; -1: the base */
     const struct body *body; /* (nbody) */
-    const real *base;        /* (6) acceleration of the base minus gravity */
+    const real *base;        /* (SPACE) acceleration of the base minus gravity */
 };
 
 struct closure {
@@ -33,7 +33,7 @@ struct closure {
     bool takes_part;               /* this rank owns a side */
     struct loop_pose *pose;        /* (nloop) of loops with a side here */
     struct xform *side_pose;       /* (2 nloop) body to base; own sides filled in before closure_meet */
-    real *side_velocity;           /* (2 nloop x 6) */
+    real *side_velocity;           /* (2 nloop x SPACE) */
     real *contribution;            /* (6 (m + 1)) */
     real *S, *reference, *scratch; /* rank 0 */
     real *lambda;                  /* (nrow), on every rank after closure_solve */
@@ -59,13 +59,13 @@ void closure_carve(struct closure *cl, struct carve *c, const struct closure_sha
 #define closure_meet REAL_NAME(closure_meet)
 void closure_meet(struct closure *cl, struct work *w);
 
-/* closure_loads: load (m x 6) of an own body: column 1 + row += the force of that row's unit lambda. */
+/* closure_loads: load (m x SPACE) of an own body: column 1 + row += the force of that row's unit lambda. */
 #define closure_loads REAL_NAME(closure_loads)
 void closure_loads(struct closure *cl, int body, real *load, struct work *w);
 
 /* closure_solve: lambda on every rank.
  *
- *   acceleration  in  (2 nloop) for own sides: (m x 6) classical acceleration of the body for each column */
+ *   acceleration  in  (2 nloop) for own sides: (m x SPACE) classical acceleration of the body for each column */
 #define closure_solve REAL_NAME(closure_solve)
 void closure_solve(struct closure *cl, real *const *acceleration, struct work *w);
 

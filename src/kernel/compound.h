@@ -8,17 +8,20 @@
 #include "linalg/real.h"
 #include "mech/body.h"
 
-/* Symmetric matrices are packed (linalg/dense.h), columns of loads lie one behind the other, (6) each. */
+/* Symmetric matrices are packed (linalg/dense.h), columns of loads lie one behind the other, (SPACE) each. */
 struct compound {
-    real *p11, *p12, *p22; /* 21, 36, 21 */
-    real *beta1, *beta2;   /* (6 x m) */
+    real *p11, *p12, *p22; /* PACKED, SQUARE, PACKED */
+    real *beta1, *beta2;   /* (SPACE x m) */
 };
 
+enum { COMPOUND_MATRICES = 2 * PACKED + SQUARE };
+
 /* compound_at: the parts of the compound that begins at `base`; compound_size: its numbers. */
-static inline int compound_size(int m) { return 78 + 12 * m; }
+static inline int compound_size(int m) { return COMPOUND_MATRICES + 2 * SPACE * m; }
 static inline struct compound compound_at(real *base, int m)
 {
-    return (struct compound){base, base + 21, base + 57, base + 78, base + 78 + 6 * m};
+    return (struct compound){base, base + PACKED, base + PACKED + SQUARE, base + COMPOUND_MATRICES,
+                             base + COMPOUND_MATRICES + SPACE * m};
 }
 
 /* The joint on top of a compound, and what is given there. */
@@ -26,10 +29,10 @@ struct joint_view {
     const struct xform *x;
     const struct subspace *s;
     const real *active; /* (d); NULL: zero */
-    const real *bias;   /* (6); NULL: zero */
+    const real *bias;   /* (SPACE); NULL: zero */
 };
 
-/* packed_multiply: y (6) = S x for a packed symmetric 6x6 S; y may not be x. 66 flops. */
+/* packed_multiply: y (SPACE) = S x for a packed symmetric square S; y may not be x. SQUARE_VEC_FLOP. */
 #define packed_multiply REAL_NAME(packed_multiply)
 void packed_multiply(const real *S, const real *x, real *y, struct work *w);
 
@@ -37,23 +40,24 @@ void packed_multiply(const real *S, const real *x, real *y, struct work *w);
 #define joint_compliance REAL_NAME(joint_compliance)
 bool joint_compliance(const struct subspace *s, const real *Z, real *N, struct work *w);
 
-/* joint_force: h (6 x m): h_j = H active - N (Z H active + beta_j - entry_j - bias), active and bias for j = 0 only;
- * `entry` (6 x m) is the acceleration of the parent's side in this frame, NULL: zero. */
+/* joint_force: h (SPACE x m): h_j = H active - N (Z H active + beta_j - entry_j - bias), active and bias for j = 0
+ * only; `entry` (SPACE x m) is the acceleration of the parent's side in this frame, NULL: zero. */
 #define joint_force REAL_NAME(joint_force)
 void joint_force(const struct joint_view *v, int m, const real *Z, const real *N, const real *beta, const real *entry,
                  real *h, struct work *w);
 
 /* compound_rake: what a leaf compound with top joint v does to its parent's bottom body: adds X N X^T to dI (packed)
- * and X h to dp (6 x m); leaves N (21) and h (6 x m) in `joint`. */
+ * and X h to dp (SPACE x m); leaves N (PACKED) and h (SPACE x m) in `joint`. */
 #define compound_rake REAL_NAME(compound_rake)
 bool compound_rake(const struct joint_view *v, int m, const struct compound *leaf, real *joint, real *dI, real *dp,
                    struct work *w);
 
-/* compound_absorb: the parent u takes dI, dp over (6.3); `record` gets dI, n21, P22, dp, beta_2 (78 + 12 m). */
+/* compound_absorb: the parent u takes dI, dp over (6.3); `record` gets dI, n21, P22, dp, beta_2 (as long as a
+ * compound). */
 #define compound_absorb REAL_NAME(compound_absorb)
 bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, real *record, struct work *w);
 
-/* compound_merge: u takes its only child v over (6.4); `record` gets h_0 (6 x m), M_1, M_3, X (84 + 6 m). */
+/* compound_merge: u takes its only child v over (6.4); `record` gets h_0 (SPACE x m), M_1, M_3, X. */
 #define compound_merge REAL_NAME(compound_merge)
 bool compound_merge(const struct joint_view *v, int m, struct compound *u, const struct compound *below, real *record,
                     struct work *w);

@@ -37,27 +37,27 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
     k->answer = CARVE(c, nu, real);
     motion_carve(&k->motion, c, job, k->tree.nq, nu);
     k->ud = CARVE(c, room * nu, real);
-    k->load = CARVE(c, 6 * room * n, real);
+    k->load = CARVE(c, SPACE * room * n, real);
     k->compound = CARVE(c, compound_size(room) * n, real);
-    k->f1 = CARVE(c, 6 * room * n, real);
-    k->f2 = CARVE(c, 6 * room * n, real);
-    k->acceleration = CARVE(c, 6 * room * n, real);
-    k->offset = CARVE(c, 6 * n, real);
-    k->residual_bias = CARVE(c, 6 * n, real);
-    k->joint = CARVE(c, (21 + 6 * room) * n, real);
+    k->f1 = CARVE(c, SPACE * room * n, real);
+    k->f2 = CARVE(c, SPACE * room * n, real);
+    k->acceleration = CARVE(c, SPACE * room * n, real);
+    k->offset = CARVE(c, SPACE * n, real);
+    k->residual_bias = CARVE(c, SPACE * n, real);
+    k->joint = CARVE(c, (PACKED + SPACE * room) * n, real);
     k->record_at = CARVE(c, plan->ops.at[rank + 1] - plan->ops.at[rank], int);
     k->record = CARVE(c, records(plan, rank, room, k->record_at), real);
-    k->message = CARVE(c, compound_size(room) + 7 + 6 + 6 + 12 * room, real);
-    k->anchor_acceleration = CARVE(c, 6 * room, real);
+    k->message = CARVE(c, compound_size(room) + 7 + SPACE + SPACE + 2 * SPACE * room, real);
+    k->anchor_acceleration = CARVE(c, SPACE * room, real);
     const int sides = s->closure ? 2 * s->closure->nloop : 0;
     k->side = CARVE(c, sides, real *);
-    k->side_room = CARVE(c, k->closure.takes_part ? 6 * room * sides : 0, real);
+    k->side_room = CARVE(c, k->closure.takes_part ? SPACE * room * sides : 0, real);
     k->lambda = CARVE(c, room - 1, real);
 }
 
 void contraction_set(struct contraction *k, struct comm *c) { k->tree.comm = k->closure.comm = c; }
 
-static real *columns(real *array, int room, int l) { return array + 6 * room * l; }
+static real *columns(real *array, int room, int l) { return array + SPACE * room * l; }
 static bool has_loops(const struct contraction *k) { return k->room > 1; }
 
 /* given_forces: tau of own joints, springs included. */
@@ -78,12 +78,12 @@ static void given_forces(struct contraction *k)
 static void make_loads(struct contraction *k, bool terms)
 {
     struct tree *t = &k->tree;
-    memset(k->load, 0, (size_t)(6 * k->room * t->n) * sizeof(real));
+    memset(k->load, 0, (size_t)(SPACE * k->room * t->n) * sizeof(real));
     for (int l = 0; l < t->n; l++) {
         real *load = columns(k->load, k->room, l);
         if (terms) {
             tree_gyro(t, l, load);
-            for (int i = 0; i < 6; i++) load[i] = -load[i];
+            for (int i = 0; i < SPACE; i++) load[i] = -load[i];
         }
         closure_loads(&k->closure, t->bodies[l], load, &t->work);
     }
@@ -99,7 +99,7 @@ static void meet_loops(struct contraction *k)
         if (s->owner[side] != comm_rank(t->comm)) continue;
         const int l = t->shared->plan->local[closure_body(s, side)];
         tree_base_pose(t, l, &k->closure.side_pose[side]);
-        six_copy(k->closure.side_velocity + 6 * side, tree_at(t->v, l));
+        screw_copy(k->closure.side_velocity + SPACE * side, tree_at(t->v, l));
     }
     closure_meet(&k->closure, &t->work);
 }
@@ -111,12 +111,13 @@ static void accelerate(struct contraction *k, bool add)
     const bool loads = k->given.load != NULL;
     for (int l = 0; l < t->n; l++)
         for (int j = 0; j < k->m; j++) {
-            real net[6], y[6], *a = columns(k->acceleration, k->room, l) + 6 * j;
-            const real *f1 = columns(k->f1, k->room, l) + 6 * j, *f2 = columns(k->f2, k->room, l) + 6 * j;
-            for (int i = 0; i < 6; i++) net[i] = f1[i] + f2[i] + (loads ? columns(k->load, k->room, l)[6 * j + i] : 0);
+            real net[SPACE], y[SPACE], *a = columns(k->acceleration, k->room, l) + SPACE * j;
+            const real *f1 = columns(k->f1, k->room, l) + SPACE * j, *f2 = columns(k->f2, k->room, l) + SPACE * j;
+            for (int i = 0; i < SPACE; i++)
+                net[i] = f1[i] + f2[i] + (loads ? columns(k->load, k->room, l)[SPACE * j + i] : 0);
             body_accelerate(tree_body(t, l), net, y);
-            for (int i = 0; i < 6; i++) a[i] = add ? a[i] + y[i] : y[i];
-            t->work.flop += (uint64_t)(SYM6_MUL_FLOP + SIX_ADD_FLOP * (1 + loads + add));
+            for (int i = 0; i < SPACE; i++) a[i] = add ? a[i] + y[i] : y[i];
+            t->work.flop += (uint64_t)(BODY_ACCELERATE_FLOP + SCREW_ADD_FLOP * (1 + loads + add));
             t->work.call++;
         }
     tree_report(t);
@@ -127,7 +128,7 @@ static void share_anchors(struct contraction *k, int m)
 {
     struct tree *t = &k->tree;
     const struct tree_plan *plan = t->shared->plan;
-    const int64_t bytes = 6 * m * (int64_t)sizeof(real);
+    const int64_t bytes = SPACE * m * (int64_t)sizeof(real);
     int nkid;
     const int *kid = tree_kids(t, &nkid);
     for (int i = 0; i < nkid; i++)
@@ -149,29 +150,29 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
         const bool on_base = tree_body(t, l)->parent < 0;
         const struct subspace *s = &t->pose[l].s;
         for (int j = 0; j < m; j++) {
-            real z[6], moved[6], rest[6], *a = columns(k->acceleration, k->room, l) + 6 * j;
+            real z[SPACE], moved[SPACE], rest[SPACE], *a = columns(k->acceleration, k->room, l) + SPACE * j;
             const real *below = on_base  ? (j == 0 ? base : NULL)
-                                : p >= 0 ? columns(k->acceleration, k->room, p) + 6 * j
-                                         : k->anchor_acceleration + 6 * j;
-            six_copy(z, a);
+                                : p >= 0 ? columns(k->acceleration, k->room, p) + SPACE * j
+                                         : k->anchor_acceleration + SPACE * j;
+            screw_copy(z, a);
             if (below) {
                 xform_motion(moved, &t->pose[l].x, below);
-                six_sub(z, moved);
-                t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+                screw_sub(z, moved);
+                t->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
             }
             if (j == 0 && bias) {
-                six_sub(z, bias + 6 * l);
-                t->work.flop += SIX_ADD_FLOP;
+                screw_sub(z, bias + SPACE * l);
+                t->work.flop += SCREW_ADD_FLOP;
             }
             subspace_h_transposed(s, z, k->ud + j * t->nu + t->u_at[l]);
-            t->work.flop += (uint64_t)joint_cost_of(tree_body(t, l)->joint)->h_transposed;
+            t->work.flop += (uint64_t)body_cost(tree_body(t, l))->h_transposed;
             if (j > 0) continue;
             subspace_w_transposed(s, z, rest);
-            residual = largest_size(residual, 6 - d, rest);
-            scale = largest_size(scale, 6, a);
-            real *left_over = k->residual_bias + 6 * l;
-            six_zero(left_over);
-            for (int i = 0; i < 6 - d; i++) rest[i] = -rest[i];
+            residual = largest_size(residual, SPACE - d, rest);
+            scale = largest_size(scale, SPACE, a);
+            real *left_over = k->residual_bias + SPACE * l;
+            screw_zero(left_over);
+            for (int i = 0; i < SPACE - d; i++) rest[i] = -rest[i];
             subspace_w(s, rest, left_over);
         }
     }
@@ -207,10 +208,10 @@ static void close_loops(struct contraction *k)
     for (int side = 0; s && side < 2 * s->nloop && k->closure.takes_part; side++) {
         if (s->owner[side] != comm_rank(t->comm)) continue;
         const int l = t->shared->plan->local[closure_body(s, side)];
-        k->side[side] = k->side_room + 6 * k->room * side;
-        memcpy(k->side[side], columns(k->acceleration, k->room, l), (size_t)(6 * k->room) * sizeof(real));
-        six_add(k->side[side], k->offset + 6 * l);
-        t->work.flop += SIX_ADD_FLOP;
+        k->side[side] = k->side_room + SPACE * k->room * side;
+        memcpy(k->side[side], columns(k->acceleration, k->room, l), (size_t)(SPACE * k->room) * sizeof(real));
+        screw_add(k->side[side], k->offset + SPACE * l);
+        t->work.flop += SCREW_ADD_FLOP;
     }
     if (s) closure_solve(&k->closure, k->side, &t->work);
     for (int i = 0; i < t->nu; i++) {
@@ -256,7 +257,7 @@ static void loop_forces(struct contraction *k, real *f)
     struct tree *t = &k->tree;
     for (int l = 0; l < t->n && has_loops(k); l++)
         for (int j = 1; j < k->room; j++)
-            six_axpy(tree_at(f, l), -k->lambda[j - 1], columns(k->load, k->room, l) + 6 * j);
+            screw_axpy(tree_at(f, l), -k->lambda[j - 1], columns(k->load, k->room, l) + SPACE * j);
 }
 
 /* refine: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6). False when that would not have made it better. */
@@ -265,9 +266,9 @@ static bool refine(struct contraction *k, struct refinement *course)
     struct tree *t = &k->tree;
     comm_stage(t->comm, STAGE_ACCELERATION);
     tree_acceleration(t, k->answer);
-    memcpy(k->offset, t->a, (size_t)(6 * t->n) * sizeof(real));
+    memcpy(k->offset, t->a, (size_t)(SPACE * t->n) * sizeof(real));
     comm_stage(t->comm, STAGE_FORCE);
-    memset(k->residual_bias, 0, (size_t)(6 * t->n) * sizeof(real));
+    memset(k->residual_bias, 0, (size_t)(SPACE * t->n) * sizeof(real));
     loop_forces(k, k->residual_bias);
     tree_force(t, k->active, k->residual_bias);
     for (int i = 0; i < t->nu; i++) k->active[i] = k->tau[i] - k->active[i];
@@ -317,13 +318,13 @@ static void evaluate(struct contraction *k)
     tree_bias(t);
     memcpy(k->active, k->tau, (size_t)t->nu * sizeof(real));
     memset(k->answer, 0, (size_t)t->nu * sizeof(real));
-    memset(k->offset, 0, (size_t)(6 * t->n) * sizeof(real));
+    memset(k->offset, 0, (size_t)(SPACE * t->n) * sizeof(real));
     memset(k->lambda, 0, (size_t)(k->room - 1) * sizeof(real));
     if (!k->direct) {
         tree_report(t);
         comm_stage(t->comm, STAGE_ACCELERATION);
         tree_acceleration(t, NULL);
-        memcpy(k->offset, t->a, (size_t)(6 * t->n) * sizeof(real));
+        memcpy(k->offset, t->a, (size_t)(SPACE * t->n) * sizeof(real));
         comm_stage(t->comm, STAGE_FORCE);
         tree_force(t, k->ud, NULL);
         comm_stage(t->comm, STAGE_ASSEMBLY);

@@ -12,15 +12,16 @@
 #ifndef KERNEL_CONTRACTION_H
 #define KERNEL_CONTRACTION_H
 
+#include "kernel/compound.h"
 #include "kernel/motion.h"
 #include "kernel/tree.h"
 
 /* What is given for one solution: zero where a pointer is NULL. */
 struct contraction_given {
     const real *active; /* own joints: joint forces, column 0 */
-    const real *bias;   /* own bodies (6): joint bias accelerations, column 0 */
-    const real *load;   /* own bodies (6 x room): external loads of all columns */
-    const real *base;   /* (6) acceleration of the base, column 0 */
+    const real *bias;   /* own bodies (SPACE): joint bias accelerations, column 0 */
+    const real *load;   /* own bodies (SPACE x room): external loads of all columns */
+    const real *base;   /* (SPACE) acceleration of the base, column 0 */
 };
 
 struct contraction {
@@ -34,13 +35,13 @@ struct contraction {
     real *active;        /* own joints: forces of the present solution */
     real *ud;            /* (room x own joints) answers of all columns */
     real *answer;        /* own joints */
-    real *load;          /* own bodies (6 x room) */
-    real *compound;      /* own bodies: P11 (21) P12 (36) P22 (21) beta_1 (6 room) beta_2 (6 room) */
-    real *f1, *f2;       /* own bodies (6 x room) */
-    real *acceleration;  /* own bodies (6 x room) */
-    real *offset;        /* own bodies (6): accelerations that column 0 does not contain */
-    real *residual_bias; /* own bodies (6) */
-    real *joint;         /* own bodies: N (21), h (6 room) of a raked joint */
+    real *load;          /* own bodies (SPACE x room) */
+    real *compound;      /* own bodies: P11, P12, P22, beta_1, beta_2 (compound.h) */
+    real *f1, *f2;       /* own bodies (SPACE x room) */
+    real *acceleration;  /* own bodies (SPACE x room) */
+    real *offset;        /* own bodies (SPACE): accelerations that column 0 does not contain */
+    real *residual_bias; /* own bodies (SPACE) */
+    real *joint;         /* own bodies: N (PACKED), h (SPACE x room) of a raked joint */
     real *record;        /* what undoing the operations into own compounds needs */
     int *record_at;      /* (own operations) */
     real *message, *anchor_acceleration;
@@ -72,7 +73,7 @@ void contraction_solve(struct contraction *k);
 /* contraction_record_size: numbers that an operation leaves for its undoing at the rank of its `into`. */
 static inline int contraction_record_size(enum tree_kind kind, int room)
 {
-    return kind == TREE_RAKE ? 78 + 12 * room : 84 + 6 * room;
+    return kind == TREE_RAKE ? COMPOUND_MATRICES + 2 * SPACE * room : 2 * SQUARE + XFORM_NUMBERS + SPACE * room;
 }
 
 #endif

@@ -11,7 +11,7 @@ enum { TAG_UP = TAG_TREE, TAG_DOWN = TAG_TREE + 1 };
 
 static const struct tree_plan *plan_of(const struct contraction *k) { return k->tree.shared->plan; }
 static int local_of(const struct contraction *k, int body) { return plan_of(k)->local[body]; }
-static real *columns(real *array, int room, int l) { return array + 6 * room * l; }
+static real *columns(real *array, int room, int l) { return array + SPACE * room * l; }
 
 static struct compound own_compound(const struct contraction *k, int body)
 {
@@ -25,7 +25,7 @@ static struct joint_view own_joint(const struct contraction *k, int body)
     const struct tree *t = &k->tree;
     struct joint_view v = {.x = &t->pose[l].x, .s = &t->pose[l].s};
     if (k->given.active) v.active = k->given.active + t->u_at[l];
-    if (k->given.bias) v.bias = k->given.bias + 6 * l;
+    if (k->given.bias) v.bias = k->given.bias + SPACE * l;
     return v;
 }
 
@@ -36,19 +36,19 @@ static void single_bodies(struct contraction *k)
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         struct compound c = own_compound(k, t->bodies[l]);
-        real full[36];
-        sym6_expand(full, &b->phi);
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j <= i; j++) c.p11[packed_index(i, j)] = c.p22[packed_index(i, j)] = full[6 * i + j];
+        real full[SQUARE];
+        body_phi(b, full);
+        for (int i = 0; i < SPACE; i++)
+            for (int j = 0; j <= i; j++) c.p11[packed_index(i, j)] = c.p22[packed_index(i, j)] = full[SPACE * i + j];
         memcpy(c.p12, full, sizeof full);
         for (int j = 0; j < k->m; j++) {
-            real *beta = c.beta1 + 6 * j;
-            six_zero(beta);
+            real *beta = c.beta1 + SPACE * j;
+            screw_zero(beta);
             if (k->given.load && (j == 0 || k->m > 1)) {
-                body_accelerate(b, columns((real *)k->given.load, k->room, l) + 6 * j, beta);
-                t->work.flop += SYM6_MUL_FLOP;
+                body_accelerate(b, columns((real *)k->given.load, k->room, l) + SPACE * j, beta);
+                t->work.flop += BODY_ACCELERATE_FLOP;
             }
-            six_copy(c.beta2 + 6 * j, beta);
+            screw_copy(c.beta2 + SPACE * j, beta);
         }
     }
 }
@@ -60,15 +60,16 @@ static void rake(struct contraction *k, const struct tree_op *op, real *record)
 {
     struct tree *t = &k->tree;
     const int me = comm_rank(t->comm), m = k->m;
-    real *dI = k->message, *dp = dI + 21;
-    const int64_t bytes = (21 + 6 * m) * (int64_t)sizeof(real);
+    real *dI = k->message, *dp = dI + PACKED;
+    const int64_t bytes = (PACKED + SPACE * m) * (int64_t)sizeof(real);
     if (op->from == me) {
         memset(dI, 0, (size_t)bytes);
         for (int i = 0; i < op->count; i++) {
             const int v = plan_of(k)->absorbed[op->first + i];
             const struct joint_view joint = own_joint(k, v);
             const struct compound leaf = own_compound(k, v);
-            check(k, compound_rake(&joint, m, &leaf, k->joint + (21 + 6 * k->room) * local_of(k, v), dI, dp, &t->work));
+            check(k, compound_rake(&joint, m, &leaf, k->joint + (PACKED + SPACE * k->room) * local_of(k, v), dI, dp,
+                                   &t->work));
         }
         if (op->to != me) {
             tree_report(t);
@@ -89,7 +90,7 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
     struct tree *t = &k->tree;
     const int me = comm_rank(t->comm), m = k->m, size = compound_size(m), v = plan_of(k)->absorbed[op->first];
     const struct body *b = &t->shared->body[v];
-    const int nactive = k->given.active ? b->d : 0, nbias = k->given.bias ? 6 : 0;
+    const int nactive = k->given.active ? b->d : 0, nbias = k->given.bias ? SPACE : 0;
     const int64_t bytes = (size + b->nq + nactive + nbias) * (int64_t)sizeof(real);
     real *q = k->message + size, *active = q + b->nq, *bias = active + nactive;
     struct joint_view joint;
@@ -102,7 +103,7 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
             memcpy(k->message, below.p11, (size_t)size * sizeof(real));
             memcpy(q, t->q + t->q_at[local_of(k, v)], (size_t)b->nq * sizeof(real));
             if (nactive) memcpy(active, joint.active, (size_t)nactive * sizeof(real));
-            if (nbias) six_copy(bias, joint.bias);
+            if (nbias) screw_copy(bias, joint.bias);
             tree_report(t);
             comm_send(t->comm, op->to, TAG_UP, k->message, bytes);
             return;
@@ -110,8 +111,8 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
     } else {
         comm_recv(t->comm, op->from, TAG_UP, k->message, bytes);
         body_place(b, q, &pose);
-        t->work.flop += (uint64_t)joint_cost_of(b->joint)->place;
-        t->work.trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
+        t->work.flop += (uint64_t)body_cost(b)->place;
+        t->work.trig += (uint64_t)body_cost(b)->place_trig;
         joint = (struct joint_view){&pose.x, &pose.s, nactive ? active : NULL, nbias ? bias : NULL};
         below = compound_at(k->message, m);
     }
@@ -129,18 +130,18 @@ static void solve_roots(struct contraction *k)
         if (plan_of(k)->owner[v] != comm_rank(t->comm)) continue;
         const struct compound c = own_compound(k, v);
         const struct joint_view joint = own_joint(k, v);
-        real N[21], bias[6] = {0}, moved[6];
+        real N[PACKED], bias[SPACE] = {0}, moved[SPACE];
         struct joint_view seen = joint;
-        if (joint.bias) six_copy(bias, joint.bias);
+        if (joint.bias) screw_copy(bias, joint.bias);
         if (k->given.base) { /* the base's acceleration acts like a bias */
             xform_motion(moved, joint.x, k->given.base);
-            six_add(bias, moved);
-            t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+            screw_add(bias, moved);
+            t->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
         }
         seen.bias = bias;
         check(k, joint_compliance(joint.s, c.p11, N, &t->work));
         joint_force(&seen, k->m, c.p11, N, c.beta1, NULL, columns(k->f1, k->room, local_of(k, v)), &t->work);
-        memset(columns(k->f2, k->room, local_of(k, v)), 0, (size_t)(6 * k->m) * sizeof(real));
+        memset(columns(k->f2, k->room, local_of(k, v)), 0, (size_t)(SPACE * k->m) * sizeof(real));
     }
 }
 
@@ -149,36 +150,37 @@ static void unrake(struct contraction *k, const struct tree_op *op, const real *
 {
     struct tree *t = &k->tree;
     const int me = comm_rank(t->comm), m = k->m;
-    real *a2 = k->message, part[6];
+    real *a2 = k->message, part[SPACE];
     if (op->to == me) {
-        const real *dI = record, *n21 = record + 21, *n22 = record + 57, *dp = record + 78, *beta2 = dp + 6 * m;
+        const real *dI = record, *n21 = record + PACKED, *n22 = n21 + SQUARE;
+        const real *dp = record + COMPOUND_MATRICES, *beta2 = dp + SPACE * m;
         for (int j = 0; j < m; j++) {
-            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + 6 * j;
-            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + 6 * j, *a = a2 + 6 * j;
+            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + SPACE * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j, *a = a2 + SPACE * j;
             packed_multiply(n22, f2, a, &t->work);
-            for (int i = 0; i < 6; i++) a[i] += six_dot(n21 + 6 * i, f1) + beta2[6 * j + i];
+            for (int i = 0; i < SPACE; i++) a[i] += screw_dot(n21 + SPACE * i, f1) + beta2[SPACE * j + i];
             packed_multiply(dI, a, part, &t->work);
-            for (int i = 0; i < 6; i++) f2[i] -= part[i] + dp[6 * j + i];
-            t->work.flop += 66 + 4 * SIX_ADD_FLOP;
+            for (int i = 0; i < SPACE; i++) f2[i] -= part[i] + dp[SPACE * j + i];
+            t->work.flop += SQUARE_VEC_FLOP + 4 * SCREW_ADD_FLOP;
         }
         if (op->from != me) {
             tree_report(t);
-            comm_send(t->comm, op->from, TAG_DOWN, a2, 6 * m * (int64_t)sizeof(real));
+            comm_send(t->comm, op->from, TAG_DOWN, a2, SPACE * m * (int64_t)sizeof(real));
             return;
         }
     } else {
-        comm_recv(t->comm, op->to, TAG_DOWN, a2, 6 * m * (int64_t)sizeof(real));
+        comm_recv(t->comm, op->to, TAG_DOWN, a2, SPACE * m * (int64_t)sizeof(real));
     }
     for (int i = 0; i < op->count; i++) {
         const int l = local_of(k, plan_of(k)->absorbed[op->first + i]);
-        const real *N = k->joint + (21 + 6 * k->room) * l, *h = N + 21;
+        const real *N = k->joint + (PACKED + SPACE * k->room) * l, *h = N + PACKED;
         for (int j = 0; j < m; j++) {
-            real *f1 = columns(k->f1, k->room, l) + 6 * j;
-            xform_motion(part, &t->pose[l].x, a2 + 6 * j);
+            real *f1 = columns(k->f1, k->room, l) + SPACE * j;
+            xform_motion(part, &t->pose[l].x, a2 + SPACE * j);
             packed_multiply(N, part, f1, &t->work);
-            six_add(f1, h + 6 * j);
-            six_zero(columns(k->f2, k->room, l) + 6 * j);
-            t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+            screw_add(f1, h + SPACE * j);
+            screw_zero(columns(k->f2, k->room, l) + SPACE * j);
+            t->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
         }
     }
     tree_report(t);
@@ -191,28 +193,29 @@ static void unmerge(struct contraction *k, const struct tree_op *op, const real 
     const int me = comm_rank(t->comm), m = k->m, v = plan_of(k)->absorbed[op->first];
     real *pair = k->message;
     if (op->to == me) {
-        const real *h = record, *M1 = record + 6 * m, *M3 = M1 + 36;
-        const struct xform *x = (const struct xform *)(M3 + 36);
+        const real *h = record, *M1 = record + SPACE * m, *M3 = M1 + SQUARE;
+        const struct xform *x = (const struct xform *)(M3 + SQUARE);
         for (int j = 0; j < m; j++) {
-            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + 6 * j;
-            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + 6 * j, *fv = pair + 12 * j;
-            for (int i = 0; i < 6; i++) fv[i] = h[6 * j + i] + six_dot(M1 + 6 * i, f1) - six_dot(M3 + 6 * i, f2);
-            six_copy(fv + 6, f2);
+            real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + SPACE * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j, *fv = pair + 2 * SPACE * j;
+            for (int i = 0; i < SPACE; i++)
+                fv[i] = h[SPACE * j + i] + screw_dot(M1 + SPACE * i, f1) - screw_dot(M3 + SPACE * i, f2);
+            screw_copy(fv + SPACE, f2);
             xform_force(f2, x, fv);
-            for (int i = 0; i < 6; i++) f2[i] = -f2[i];
-            t->work.flop += 2 * 66 + 2 * SIX_ADD_FLOP + XFORM_FORCE_FLOP;
+            for (int i = 0; i < SPACE; i++) f2[i] = -f2[i];
+            t->work.flop += 2 * SQUARE_VEC_FLOP + 2 * SCREW_ADD_FLOP + XFORM_FORCE_FLOP;
         }
         if (op->from != me) {
             tree_report(t);
-            comm_send(t->comm, op->from, TAG_DOWN, pair, 12 * m * (int64_t)sizeof(real));
+            comm_send(t->comm, op->from, TAG_DOWN, pair, 2 * SPACE * m * (int64_t)sizeof(real));
             return;
         }
     } else {
-        comm_recv(t->comm, op->to, TAG_DOWN, pair, 12 * m * (int64_t)sizeof(real));
+        comm_recv(t->comm, op->to, TAG_DOWN, pair, 2 * SPACE * m * (int64_t)sizeof(real));
     }
     for (int j = 0; j < m; j++) {
-        six_copy(columns(k->f1, k->room, local_of(k, v)) + 6 * j, pair + 12 * j);
-        six_copy(columns(k->f2, k->room, local_of(k, v)) + 6 * j, pair + 12 * j + 6);
+        screw_copy(columns(k->f1, k->room, local_of(k, v)) + SPACE * j, pair + 2 * SPACE * j);
+        screw_copy(columns(k->f2, k->room, local_of(k, v)) + SPACE * j, pair + 2 * SPACE * j + SPACE);
     }
     tree_report(t);
 }

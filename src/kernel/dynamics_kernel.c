@@ -20,12 +20,12 @@ struct tree_inverse {
     real *ud, *tau;
 };
 
-/* One body a rank: a textbook row of three 6x6 blocks and a right-hand side is the largest message there is. */
+/* One body a rank: a textbook row of three square blocks and a right-hand side is the largest message there is. */
 static int64_t largest_message(const struct kernel_job *job)
 {
     bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
     if (kernel_branches(job->model) || gathers || job->model->nbody != job->nrank) return -1;
-    return (3 * 36 + 6) * (int64_t)sizeof(real);
+    return (3 * SQUARE + SPACE) * (int64_t)sizeof(real);
 }
 
 static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)

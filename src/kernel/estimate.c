@@ -27,11 +27,11 @@ static struct outline outline_of(const struct run_spec *spec, const struct model
     }
     o.d = model->u_at[last + 1] - model->u_at[last];
     o.nq = model->q_at[last + 1] - model->q_at[last];
-    o.c = 6 - o.d;
+    o.c = SPACE - o.d;
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
-    o.x = dense ? 66 : XFORM_FORCE_FLOP;
-    o.y = dense ? 396 : XFORM_COMPOSE_FLOP;
-    o.T = dense ? 36 : 12;
+    o.x = dense ? SQUARE_VEC_FLOP : XFORM_FORCE_FLOP;
+    o.y = dense ? SQUARE_MUL_FLOP : XFORM_COMPOSE_FLOP;
+    o.T = dense ? SQUARE : XFORM_NUMBERS;
     o.split = n > P;
     o.many = !o.split ? 0 : n >= 2 * P ? P : n - P;
     o.shifts = o.many > 0 ? o.many - 1 : 0;
@@ -49,38 +49,38 @@ static void add(struct kernel_estimate *e, double messages, double numbers)
 static void velocity_scan(const struct outline *o, bool incoming, struct kernel_estimate *e)
 {
     const double inside = o->n - o->P;
-    add(e, o->pairs, 6);
+    add(e, o->pairs, SPACE);
     if (incoming) {
         e->bytes += o->triples * o->T * (double)sizeof(real);
     } else {
         add(e, o->triples + o->P - 1, o->T);
     }
-    add(e, o->shifts, 6);
-    e->flops += o->pairs * (o->x + 6) + o->triples * o->y;
-    e->flops += inside * (2 * (o->x + 6) + o->y);
+    add(e, o->shifts, SPACE);
+    e->flops += o->pairs * (o->x + SPACE) + o->triples * o->y;
+    e->flops += inside * (2 * (o->x + SPACE) + o->y);
 }
 
 static void vector_scan(const struct outline *o, bool force, struct kernel_estimate *e)
 {
     const double inside = o->n - o->P;
-    add(e, o->pairs, 6);
-    add(e, force ? (o->split ? o->P - 1 : 0) : o->shifts, 6);
-    e->flops += o->pairs * (o->x + 6) + 2 * inside * (o->x + 6) + (force && o->split ? (o->P - 1) * o->x : 0);
+    add(e, o->pairs, SPACE);
+    add(e, force ? (o->split ? o->P - 1 : 0) : o->shifts, SPACE);
+    e->flops += o->pairs * (o->x + SPACE) + 2 * inside * (o->x + SPACE) + (force && o->split ? (o->P - 1) * o->x : 0);
 }
 
 /* bodies: local work of inverse dynamics. */
 static void local_inverse(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
 {
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
-    const double place = 58, bias = 45, load = 39 + 66;
-    e->flops += o->n * (place + bias + load + 3 * o->d) + (dense ? o->n * (396 + 792) : 0);
+    const double place = 58, bias = 45, load = BODY_GYRO_FLOP + BODY_FORCE_FLOP;
+    e->flops += o->n * (place + bias + load + 3 * o->d) + (dense ? o->n * 3 * SQUARE_MUL_FLOP : 0);
 }
 
 /* reduction of one interface row per rank: physics (5.2), 5.3. */
 static void interface(const struct run_spec *spec, const struct outline *o, double m, struct kernel_estimate *e)
 {
     const double c = o->c, packed = c * (c + 1) / 2;
-    const double factor = c * (c + 1) * (2 * c + 1) / 6, triangular = c * c, product = c * (2 * c - 1);
+    const double factor = c * (c + 1) * (2 * c + 1) / SPACE, triangular = c * c, product = c * (2 * c - 1);
     const double one = factor + m * triangular + c * triangular + packed * (2 * c - 1) + m * product;
     const double two = one + c * triangular + packed * (2 * c - 1) + m * product + c * product;
     const double update = packed + c * m;
@@ -158,7 +158,7 @@ static void solution(const struct run_spec *spec, const struct outline *o, struc
     add(e, o->P - 1, c * c); /* coupling to the left, with the Schur complement of several rows */
     e->bytes += o->shifts * (packed + c) * (double)sizeof(real);
     add(e, o->P - 1, c); /* interface solution to the right */
-    const double factor = c * (c + 1) * (2 * c + 1) / 6, product = c * (2 * c - 1);
+    const double factor = c * (c + 1) * (2 * c + 1) / SPACE, product = c * (2 * c - 1);
     const double first = o->P < o->n ? (double)(int)((o->n + o->P - 1) / o->P) - 1 : 0, others = o->n - o->P - first;
     const double side = c * c * c + packed * (2 * c - 1) + product + packed + c; /* towards one neighbour */
     e->flops += first * (factor + c * c + side + c * c + product + c);
@@ -171,7 +171,7 @@ static double rank_memory(const struct outline *o, bool keep)
     const double c = o->c, update = c * (c + 1) / 2 + c + c * c, factor = c * (c + 1) / 2 + 2 * c * c, m = o->n / o->P;
     const double row = 4 * update + factor * (keep ? o->steps + 1 : 1) + 4 * c + c * (c + 1) / 2;
     const double rows = m > 1 ? m * (c * (c + 1) / 2 + c * c + c + factor) : 0;
-    return (m * (12 + 36 + 60) + o->T * (o->steps + 1) + row + rows) * (double)sizeof(real) + 512;
+    return (m * (XFORM_NUMBERS + SQUARE + 60) + o->T * (o->steps + 1) + row + rows) * (double)sizeof(real) + 512;
 }
 
 /* evaluations: forward dynamics of all time steps. */
@@ -201,7 +201,8 @@ void estimate_inverse(const struct run_spec *spec, const struct model *model, st
     vector_scan(&o, false, out);
     vector_scan(&o, true, out);
     local_inverse(spec, &o, out);
-    out->rank_bytes = (o.n / o.P * (12 + 36 + 36) + o.T * (o.steps + 2)) * (double)sizeof(real) + 512;
+    out->rank_bytes =
+        (o.n / o.P * (XFORM_NUMBERS + SQUARE + SQUARE) + o.T * (o.steps + 2)) * (double)sizeof(real) + 512;
 }
 
 void estimate_forward(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
@@ -223,11 +224,13 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, st
     const double edges = o.P - 1;
     add(out, 2 * edges, o.nq);
     add(out, edges, o.d);
-    add(out, edges, o.d + (direct ? 6 : 0));
+    add(out, edges, o.d + (direct ? SPACE : 0));
     solution(spec, &o, out);
     add(out, edges, o.c);
-    out->flops += (o.n - 1) * 525;
-    if (direct) out->flops += 2 * ((o.n - 1) * (2 * o.x + 66 + 24) + 66 + 24 + edges * (66 + 12 + o.x));
+    out->flops += (o.n - 1) * (2 * SPACE * XFORM_MOTION_FLOP + PACKED);
+    if (direct)
+        out->flops += 2 * ((o.n - 1) * (2 * o.x + BODY_ACCELERATE_FLOP + 4 * SPACE) + BODY_ACCELERATE_FLOP + 4 * SPACE +
+                           edges * (BODY_ACCELERATE_FLOP + 2 * SPACE + o.x));
     else out->flops += o.n * 60 + edges * 310;
     out->rank_bytes = rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
     repeat(out, evaluations(&spec->kernel));

@@ -1,4 +1,5 @@
 /* estimate_tree.c - costs of the programs for trees, from the plan that they follow (estimate.h). */
+#include "kernel/compound.h"
 #include "kernel/estimate.h"
 #include "kernel/tree_plan.h"
 #include "linalg/spatial.h"
@@ -36,10 +37,11 @@ static struct jumps jumps_of(const struct tree_plan *p)
 /* scan: one recurrence along the tree. */
 static void scan(const struct jumps *j, double n, bool first, struct kernel_estimate *e)
 {
-    add(e, j->entries, first ? 18 : 6);
-    add(e, j->jumps, 6);
-    if (first) e->bytes += 12 * j->composing * (double)sizeof(real);
-    e->flops += (2 * n + j->jumps) * (XFORM_FORCE_FLOP + SIX_ADD_FLOP) + (first ? (n + j->composing) * 63 : 0);
+    add(e, j->entries, first ? XFORM_NUMBERS + SPACE : SPACE);
+    add(e, j->jumps, SPACE);
+    if (first) e->bytes += XFORM_NUMBERS * j->composing * (double)sizeof(real);
+    e->flops += (2 * n + j->jumps) * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP) +
+                (first ? (n + j->composing) * XFORM_COMPOSE_FLOP : 0);
 }
 
 /* contraction: one solution for m columns. */
@@ -52,12 +54,12 @@ static void contraction(const struct tree_plan *p, const struct model *model, do
         const double d = model->u_at[v + 1] - model->u_at[v], nq = model->q_at[v + 1] - model->q_at[v];
         const bool away = op->from != op->to;
         if (op->kind == TREE_RAKE) {
-            if (away) add(e, 1, 21 + 6 * m);
-            if (away) add(e, 1, 6 * m);
+            if (away) add(e, 1, PACKED + SPACE * m);
+            if (away) add(e, 1, SPACE * m);
             e->flops += op->count * RAKE_FLOP + ABSORB_FLOP + (1 + op->count) * UNDO_FLOP * m;
         } else {
-            if (away) add(e, 1, 78 + 12 * m + nq + d + (terms ? 6 : 0));
-            if (away) add(e, 1, 12 * m);
+            if (away) add(e, 1, compound_size((int)m) + nq + d + (terms ? SPACE : 0));
+            if (away) add(e, 1, 2 * SPACE * m);
             e->flops += MERGE_FLOP + UNDO_FLOP * m;
         }
     }
@@ -79,7 +81,7 @@ void estimate_tree(const struct run_spec *spec, const struct model *model, bool 
     if (forward) {
         struct kernel_estimate one = {0};
         contraction(p, model, m, direct, &one);
-        add(&one, j.entries, 6 * m);
+        add(&one, j.entries, SPACE * m);
         out->messages += passes * one.messages;
         out->bytes += passes * one.bytes;
         out->flops += passes * (one.flops + n * m * 2 * BODY_FLOP);

@@ -20,14 +20,14 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->tau = CARVE(c, nu, real);
     f->ud = CARVE(c, nu, real);
     motion_carve(&f->motion, c, job, chain_nq(s, ch->lo, ch->hi), nu);
-    f->force = CARVE(c, 6 * m, real);
-    f->force_left = CARVE(c, 6, real);
-    f->force_right = CARVE(c, 6, real);
-    f->gain = CARVE(c, f->direct || refine ? 6 * m : 0, real);
-    f->gain_left = CARVE(c, 6, real);
-    f->z = CARVE(c, 6 * m, real);
-    f->D = CARVE(c, f->direct ? 0 : 36 * m, real);
-    f->E = CARVE(c, f->direct ? 0 : 36 * (m + 1), real);
+    f->force = CARVE(c, SPACE * m, real);
+    f->force_left = CARVE(c, SPACE, real);
+    f->force_right = CARVE(c, SPACE, real);
+    f->gain = CARVE(c, f->direct || refine ? SPACE * m : 0, real);
+    f->gain_left = CARVE(c, SPACE, real);
+    f->z = CARVE(c, SPACE * m, real);
+    f->D = CARVE(c, f->direct ? 0 : SQUARE * m, real);
+    f->E = CARVE(c, f->direct ? 0 : SQUARE * (m + 1), real);
     f->message = CARVE(c, 14, real);
     f->left = carve_bytes(c, s->subspace_bytes);
     /* The composites are not needed any more when the system is assembled, unless for outer refinement. */
@@ -65,22 +65,22 @@ static void exchange_joints(struct forward *f)
     if (has_right(f)) comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last), body_of(f, last)->nq * size);
     if (has_right(f)) {
         const struct body *b = body_of(f, ch->hi);
-        const struct joint_cost *cost = joint_cost_of(b->joint);
+        const struct joint_cost *cost = body_cost(b);
         comm_recv(c, k + 1, TAG_JOINT, f->message, b->nq * size);
         body_place(b, f->message, chain_pose(ch, ch->hi));
         ch->work.flop += (uint64_t)cost->place;
         ch->work.trig += (uint64_t)cost->place_trig;
         ch->work.div += (uint64_t)cost->place_div;
         if (ch->dense)
-            transform_expand(true, ch->matrix + 36 * (ch->hi - ch->lo), &chain_pose(ch, ch->hi)->x, &ch->work);
+            transform_expand(true, ch->matrix + SQUARE * (ch->hi - ch->lo), &chain_pose(ch, ch->hi)->x, &ch->work);
     }
     if (has_left(f)) {
         const struct body *b = body_of(f, ch->lo - 1);
         comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
         body_subspace(b, f->message, f->left);
         if (!f->left->pick) {
-            ch->work.flop += (uint64_t)joint_cost_of(b->joint)->place;
-            ch->work.trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
+            ch->work.flop += (uint64_t)body_cost(b)->place;
+            ch->work.trig += (uint64_t)body_cost(b)->place_trig;
         }
     }
     chain_report(ch);
@@ -105,7 +105,7 @@ static void assemble_direct(struct forward *f)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
-        real D[36], E[36], A[36];
+        real D[SQUARE], E[SQUARE], A[SQUARE];
         assembly_operators(ch, i, D, E);
         assembly_project(ch, subspace_of(f, i), D, subspace_of(f, i), A);
         assembly_pack(subspace_of(f, i)->c, A, subspace_of(f, i)->c, blocks_row_D(&f->blocks, i));
@@ -118,35 +118,35 @@ static void assemble_paper(struct forward *f)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi + has_right(f); i++) {
-        real D[36], E[36], *turned = f->E + 36 * (i - ch->lo);
+        real D[SQUARE], E[SQUARE], *turned = f->E + SQUARE * (i - ch->lo);
         const bool own = i < ch->hi;
         const struct subspace *s = subspace_of(f, i);
         assembly_operators(ch, i, own ? D : NULL, E);
         if (i > 0) assembly_turn(ch, s, E, subspace_of(f, i - 1), turned);
         if (!own) continue;
-        real *diagonal = f->D + 36 * (i - ch->lo), *L = blocks_row_L(&f->blocks, i);
+        real *diagonal = f->D + SQUARE * (i - ch->lo), *L = blocks_row_L(&f->blocks, i);
         assembly_turn(ch, s, D, s, diagonal);
-        assembly_pack(s->c, diagonal + 7 * s->d, 6, blocks_row_D(&f->blocks, i));
+        assembly_pack(s->c, diagonal + (SPACE + 1) * s->d, SPACE, blocks_row_D(&f->blocks, i));
         if (i == 0) continue;
-        const int before = subspace_of(f, i - 1)->d, nbefore = 6 - before;
+        const int before = subspace_of(f, i - 1)->d, nbefore = SPACE - before;
         for (int r = 0; r < s->c; r++)
-            memcpy(L + r * nbefore, turned + 6 * (s->d + r) + before, (size_t)nbefore * sizeof(real));
+            memcpy(L + r * nbefore, turned + SPACE * (s->d + r) + before, (size_t)nbefore * sizeof(real));
     }
 }
 
 /* active_force: F = H x for joint i, x (d). */
 static void active_force(struct forward *f, int i, const real *x, real *force)
 {
-    six_zero(force);
+    screw_zero(force);
     subspace_h(subspace_of(f, i), x, force);
-    f->chain.work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->h;
+    f->chain.work.flop += (uint64_t)body_cost(body_of(f, i))->h;
 }
 
 /* add_reaction: F += W x for joint i, x (c). */
 static void add_reaction(struct forward *f, int i, const real *x, real *force)
 {
     subspace_w(subspace_of(f, i), x, force);
-    f->chain.work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->w;
+    f->chain.work.flop += (uint64_t)body_cost(body_of(f, i))->w;
 }
 
 /* begin_forces: F = H x of own joints and, by messages, of those beside the block; direct: the gain of body lo-1 comes
@@ -162,16 +162,16 @@ static void begin_forces(struct forward *f, const real *x, bool gain)
     if (has_left(f)) comm_send(c, k - 1, TAG_ACTIVE, x, body_of(f, ch->lo)->d * size);
     if (has_right(f)) {
         memcpy(f->message, x + chain_u_at(ch, last), (size_t)d * sizeof(real));
-        if (gain) six_copy(f->message + d, chain_at(ch, f->gain, last));
-        comm_send(c, k + 1, TAG_ACTIVE, f->message, (d + (gain ? 6 : 0)) * size);
+        if (gain) screw_copy(f->message + d, chain_at(ch, f->gain, last));
+        comm_send(c, k + 1, TAG_ACTIVE, f->message, (d + (gain ? SPACE : 0)) * size);
         comm_recv(c, k + 1, TAG_ACTIVE, f->message, body_of(f, ch->hi)->d * size);
         active_force(f, ch->hi, f->message, f->force_right);
     }
     if (!has_left(f)) return;
     const int before = body_of(f, ch->lo - 1)->d;
-    comm_recv(c, k - 1, TAG_ACTIVE, f->message, (before + (gain ? 6 : 0)) * size);
+    comm_recv(c, k - 1, TAG_ACTIVE, f->message, (before + (gain ? SPACE : 0)) * size);
     active_force(f, ch->lo - 1, f->message, f->force_left);
-    if (gain) six_copy(f->gain_left, f->message + before);
+    if (gain) screw_copy(f->gain_left, f->message + before);
 }
 
 /* add_reactions: F += W FS of own joints and of both neighbours, after a solution. */
@@ -182,11 +182,11 @@ static void add_reactions(struct forward *f)
     const int k = comm_rank(c);
     const int64_t size = sizeof(real);
     if (has_left(f))
-        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), (6 - body_of(f, ch->lo)->d) * size);
+        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), (SPACE - body_of(f, ch->lo)->d) * size);
     for (int i = ch->lo; i < ch->hi; i++) add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
     if (has_left(f)) add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
     if (!has_right(f)) return;
-    comm_recv(c, k + 1, TAG_REACTION, f->message, (6 - body_of(f, ch->hi)->d) * size);
+    comm_recv(c, k + 1, TAG_REACTION, f->message, (SPACE - body_of(f, ch->hi)->d) * size);
     add_reaction(f, ch->hi, f->message, f->force_right);
 }
 
@@ -194,17 +194,17 @@ static void add_reactions(struct forward *f)
 static void body_acceleration(struct forward *f, int i, const real *force, const real *next, const real *gain, real *y)
 {
     struct chain *ch = &f->chain;
-    real net[6];
-    six_copy(net, force);
+    real net[SPACE];
+    screw_copy(net, force);
     if (next) {
-        real moved[6];
+        real moved[SPACE];
         transform_force(ch->dense, moved, chain_transform(ch, i + 1), next, &ch->work);
-        six_sub(net, moved);
-        ch->work.flop += SIX_ADD_FLOP;
+        screw_sub(net, moved);
+        ch->work.flop += SCREW_ADD_FLOP;
     }
-    if (gain) six_add(net, gain);
+    if (gain) screw_add(net, gain);
     body_accelerate(body_of(f, i), net, y);
-    ch->work.flop += (uint64_t)(SYM6_MUL_FLOP + (gain ? SIX_ADD_FLOP : 0));
+    ch->work.flop += (uint64_t)(BODY_ACCELERATE_FLOP + (gain ? SCREW_ADD_FLOP : 0));
     ch->work.call++;
 }
 
@@ -214,30 +214,30 @@ static void operator_form(struct forward *f, bool terms)
 {
     struct chain *ch = &f->chain;
     const int lo = ch->lo, hi = ch->hi;
-    real before[6], y[6], moved[6], residual = 0, scale = 0;
+    real before[SPACE], y[SPACE], moved[SPACE], residual = 0, scale = 0;
     if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, terms ? f->gain_left : NULL, before);
-    else six_copy(before, ch->shared->base);
+    else screw_copy(before, ch->shared->base);
     for (int i = lo; i < hi; i++) {
-        real *z = chain_at(ch, f->z, i), reaction[6];
+        real *z = chain_at(ch, f->z, i), reaction[SPACE];
         const struct subspace *s = subspace_of(f, i);
         const real *next = i + 1 < hi ? chain_at(ch, f->force, i + 1) : has_right(f) ? f->force_right : NULL;
         body_acceleration(f, i, chain_at(ch, f->force, i), next, terms ? chain_at(ch, f->gain, i) : NULL, y);
-        six_copy(z, y);
-        scale = largest_size(scale, 6, y);
+        screw_copy(z, y);
+        scale = largest_size(scale, SPACE, y);
         if (i > 0 || terms) {
             transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
-            six_sub(z, moved);
-            ch->work.flop += SIX_ADD_FLOP;
-            scale = largest_size(scale, 6, moved);
+            screw_sub(z, moved);
+            ch->work.flop += SCREW_ADD_FLOP;
+            scale = largest_size(scale, SPACE, moved);
         }
         if (terms) {
-            six_sub(z, chain_at(ch, ch->b, i));
-            ch->work.flop += SIX_ADD_FLOP;
-            scale = largest_size(scale, 6, chain_at(ch, ch->b, i));
+            screw_sub(z, chain_at(ch, ch->b, i));
+            ch->work.flop += SCREW_ADD_FLOP;
+            scale = largest_size(scale, SPACE, chain_at(ch, ch->b, i));
         }
         subspace_w_transposed(s, z, reaction);
         residual = largest_size(residual, s->c, reaction);
-        six_copy(before, y);
+        screw_copy(before, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
     f->residual_scale = scale;
@@ -251,7 +251,7 @@ static void right_hand_side(struct forward *f)
         real *r = blocks_row_r(&f->blocks, i);
         subspace_w_transposed(subspace_of(f, i), chain_at(ch, f->z, i), r);
         for (int k = 0; k < subspace_of(f, i)->c; k++) r[k] = -r[k];
-        ch->work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->w_transposed;
+        ch->work.flop += (uint64_t)body_cost(body_of(f, i))->w_transposed;
     }
 }
 
@@ -260,20 +260,21 @@ static void right_hand_side(struct forward *f)
 static void multiply_rows(struct forward *f, int i, int from, int to, bool active, real *y)
 {
     struct chain *ch = &f->chain;
-    const real *D = f->D + 36 * (i - ch->lo), *E = f->E + 36 * (i - ch->lo), *next = E + 36;
+    const real *D = f->D + SQUARE * (i - ch->lo), *E = f->E + SQUARE * (i - ch->lo), *next = E + SQUARE;
     for (int r = from; r < to; r++) y[r] = 0;
     for (int j = i - 1; j <= i + 1; j++) {
         if (j < 0 || j >= ch->n) continue;
-        real x[6];
+        real x[SPACE];
         const struct subspace *s = subspace_of(f, j);
         assembly_turn_vector(ch, s,
                              j < ch->lo    ? f->force_left
                              : j == ch->hi ? f->force_right
                                            : chain_at(ch, f->force, j),
                              x);
-        const int n = active ? s->d : 6;
+        const int n = active ? s->d : SPACE;
         for (int r = from; r < to; r++)
-            for (int k = 0; k < n; k++) y[r] += (j < i ? E[6 * r + k] : j == i ? D[6 * r + k] : next[6 * k + r]) * x[k];
+            for (int k = 0; k < n; k++)
+                y[r] += (j < i ? E[SPACE * r + k] : j == i ? D[SPACE * r + k] : next[SPACE * k + r]) * x[k];
         ch->work.flop += (uint64_t)(2 * n * (to - from) - (j == i && n > 0 ? to - from : 0));
     }
 }
@@ -283,14 +284,14 @@ static void paper_residual(struct forward *f)
 {
     struct chain *ch = &f->chain;
     const struct work before = ch->work;
-    real residual = 0, scale = 0, y[6];
+    real residual = 0, scale = 0, y[SPACE];
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = subspace_of(f, i)->d;
-        multiply_rows(f, i, 0, 6, false, y);
-        residual = largest_size(residual, 6 - d, y + d);
-        scale = largest_size(scale, 6, y);
-        multiply_rows(f, i, 0, 6, true, y);
-        scale = largest_size(scale, 6, y);
+        multiply_rows(f, i, 0, SPACE, false, y);
+        residual = largest_size(residual, SPACE - d, y + d);
+        scale = largest_size(scale, SPACE, y);
+        multiply_rows(f, i, 0, SPACE, true, y);
+        scale = largest_size(scale, SPACE, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
     f->residual_scale = scale;
@@ -322,7 +323,7 @@ static void joint_accelerations(struct forward *f, real *ud)
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
         subspace_h_transposed(subspace_of(f, i), chain_at(ch, f->z, i), ud + chain_u_at(ch, i));
-        ch->work.flop += (uint64_t)joint_cost_of(body_of(f, i)->joint)->h_transposed;
+        ch->work.flop += (uint64_t)body_cost(body_of(f, i))->h_transposed;
     }
     chain_report(ch);
 }
@@ -338,7 +339,7 @@ static void evaluate_direct(struct forward *f)
     for (int i = ch->lo; i < ch->hi; i++) {
         real *gain = chain_at(ch, f->gain, i);
         chain_gyro(ch, i, gain);
-        for (int k = 0; k < 6; k++) gain[k] = -gain[k];
+        for (int k = 0; k < SPACE; k++) gain[k] = -gain[k];
     }
     assemble_direct(f);
     begin_forces(f, f->tau, true);
@@ -351,13 +352,13 @@ static void paper_solution(struct forward *f, const real *active)
 {
     struct chain *ch = &f->chain;
     const int inner = ch->job->spec->kernel.inner_refinements;
-    real y[6];
+    real y[SPACE];
     begin_forces(f, active, false);
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = subspace_of(f, i)->d;
         real *r = blocks_row_r(&f->blocks, i);
-        multiply_rows(f, i, d, 6, true, y);
-        for (int k = d; k < 6; k++) r[k - d] = -y[k];
+        multiply_rows(f, i, d, SPACE, true, y);
+        for (int k = d; k < SPACE; k++) r[k - d] = -y[k];
     }
     chain_report(ch);
     comm_stage(ch->comm, STAGE_SOLVE);

@@ -19,12 +19,12 @@ struct forward {
     bool direct;
     real *tau;                      /* own joints: given forces and springs */
     real *ud;                       /* own joints: the answer */
-    real *force;                    /* own bodies (6): F in the body's frame */
+    real *force;                    /* own bodies (SPACE): F in the body's frame */
     real *force_left, *force_right; /* F of bodies lo-1 and hi */
-    real *gain;                     /* direct: Fext - P of own bodies (6) */
+    real *gain;                     /* direct: Fext - P of own bodies (SPACE) */
     real *gain_left;                /* of body lo-1 */
-    real *z;                        /* own bodies (6): acceleration of the joint, H^T z = u', W^T z = 0 */
-    real *D, *E;                    /* paper: Q^T D Q of own joints, Q^T E Q of own joints and of joint hi (36 each) */
+    real *z;                        /* own bodies (SPACE): acceleration of the joint, H^T z = u', W^T z = 0 */
+    real *D, *E;                    /* paper: Q^T D Q of own joints, Q^T E Q also of joint hi (SQUARE each) */
     real *message;                  /* coordinates or forces of an edge joint */
     struct motion motion;
     bool stored;   /* the first evaluation's answer is in the job's arrays */

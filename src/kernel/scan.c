@@ -5,14 +5,14 @@
 
 #include "linalg/dense.h"
 
-enum { SIX_BYTES = 6 * (int)sizeof(real) };
+enum { SCREW_BYTES = SPACE * (int)sizeof(real) };
 
 void transform_force(bool dense, real *y, const real *T, const real *f, struct work *w)
 {
     if (dense) {
-        real g[6];
-        dense_product(6, 1, 6, T, f, g, w);
-        six_copy(y, g);
+        real g[SPACE];
+        dense_product(SPACE, 1, SPACE, T, f, g, w);
+        screw_copy(y, g);
         return;
     }
     xform_force(y, (const struct xform *)T, f);
@@ -23,9 +23,9 @@ void transform_force(bool dense, real *y, const real *T, const real *f, struct w
 void transform_motion(bool dense, real *y, const real *T, const real *v, struct work *w)
 {
     if (dense) {
-        real g[6];
-        dense_product_tn(6, 1, 6, T, v, g, w);
-        six_copy(y, g);
+        real g[SPACE];
+        dense_product_tn(SPACE, 1, SPACE, T, v, g, w);
+        screw_copy(y, g);
         return;
     }
     xform_motion(y, (const struct xform *)T, v);
@@ -36,7 +36,7 @@ void transform_motion(bool dense, real *y, const real *T, const real *v, struct 
 void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w)
 {
     if (dense) {
-        dense_product(6, 6, 6, a, b, c, w);
+        dense_product(SPACE, SPACE, SPACE, a, b, c, w);
         return;
     }
     xform_compose((struct xform *)c, (const struct xform *)a, (const struct xform *)b);
@@ -50,14 +50,9 @@ void transform_expand(bool dense, real *T, const struct xform *x, struct work *w
         memcpy(T, x, sizeof *x);
         return;
     }
-    /* [U p~; 0 U] [r 0; 0 r] */
-    real shift[36] = {0}, turn[36] = {0};
-    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
-    shift[4] = -x->p[2], shift[5] = x->p[1], shift[9] = x->p[2];
-    shift[11] = -x->p[0], shift[15] = -x->p[1], shift[16] = x->p[0];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) turn[6 * i + j] = turn[6 * (i + 3) + j + 3] = x->r[3 * i + j];
-    dense_product(6, 6, 6, shift, turn, T, w);
+    real shift[SQUARE] = {0}, turn[SQUARE] = {0};
+    xform_factors(x, shift, turn);
+    dense_product(SPACE, SPACE, SPACE, shift, turn, T, w);
 }
 
 /* levels: transforms that a rank with `before` ranks on its composites' side ever holds. */
@@ -72,18 +67,18 @@ void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int 
 {
     s->dense = dense;
     s->incoming = incoming;
-    s->size = dense ? 36 : 12;
-    s->level = CARVE(c, s->size * levels(incoming ? rank : nrank - 1 - rank) + 6, real);
-    s->in = CARVE(c, s->size + 6, real);
+    s->size = dense ? SQUARE : XFORM_NUMBERS;
+    s->level = CARVE(c, s->size * levels(incoming ? rank : nrank - 1 - rank) + SPACE, real);
+    s->in = CARVE(c, s->size + SPACE, real);
 }
 
 /* add_motion: v += T^T u. */
 static void add_motion(struct scan *s, real *v, const real *T, const real *u, struct work *w)
 {
-    real moved[6];
+    real moved[SPACE];
     transform_motion(s->dense, moved, T, u, w);
-    six_add(v, moved);
-    w->flop += SIX_ADD_FLOP;
+    screw_add(v, moved);
+    w->flop += SCREW_ADD_FLOP;
 }
 
 /* first_incoming: composites first, then v right behind the newest one, so that both leave as one message without
@@ -92,31 +87,31 @@ static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
 {
     struct comm *c = s->comm;
     const int k = comm_rank(c), P = comm_size(c), size = s->size;
-    const int pair = (size + 6) * (int)sizeof(real);
+    const int pair = (size + SPACE) * (int)sizeof(real);
     real *now = s->level + (k > 0 ? size : 0); /* where v lives */
-    six_copy(now, v);
+    screw_copy(now, v);
     work_report(c, w);
     for (int d = 1, j = 0; d < P; d *= 2, j++) {
         real *T = s->level + j * size;
         if (k + d < P) {
             if (k >= d) comm_send(c, k + d, tag + j, T, pair);
-            else comm_send(c, k + d, tag + j, now, SIX_BYTES);
+            else comm_send(c, k + d, tag + j, now, SCREW_BYTES);
         }
         if (k < d) continue;
         if (k >= 2 * d) {
             comm_recv(c, k - d, tag + j, s->in, pair);
             real *next = now + size;
-            six_copy(next, now);
+            screw_copy(next, now);
             add_motion(s, next, T, s->in + size, w);
             transform_compose(s->dense, T + size, s->in, T, w);
             now = next;
         } else {
-            comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
+            comm_recv(c, k - d, tag + j, s->in, SCREW_BYTES);
             add_motion(s, now, T, s->in, w);
         }
         work_report(c, w);
     }
-    six_copy(v, now);
+    screw_copy(v, now);
 }
 
 /* first_outgoing: physics (3.4). Transforms travel to the left with tags after those of the vectors. */
@@ -130,13 +125,13 @@ static void first_outgoing(struct scan *s, int tag, real *v, struct work *w)
         if (k + d < P) {
             transform_motion(s->dense, s->in, T, v, w);
             work_report(c, w);
-            comm_send(c, k + d, tag + j, s->in, SIX_BYTES);
+            comm_send(c, k + d, tag + j, s->in, SCREW_BYTES);
             if (k >= d) comm_send(c, k - d, transform_tag + j, T, size * (int)sizeof(real));
         }
         if (k >= d) {
-            comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
-            six_add(v, s->in);
-            w->flop += SIX_ADD_FLOP;
+            comm_recv(c, k - d, tag + j, s->in, SCREW_BYTES);
+            screw_add(v, s->in);
+            w->flop += SCREW_ADD_FLOP;
             work_report(c, w);
         }
         if (k + 2 * d < P) {
@@ -165,15 +160,15 @@ void scan_motion(struct scan *s, int tag, real *v, struct work *w)
                 transform_motion(s->dense, s->in, T, v, w);
                 work_report(c, w);
             }
-            comm_send(c, k + d, tag + j, s->incoming ? v : s->in, SIX_BYTES);
+            comm_send(c, k + d, tag + j, s->incoming ? v : s->in, SCREW_BYTES);
         }
         if (k < d) continue;
-        comm_recv(c, k - d, tag + j, s->in, SIX_BYTES);
+        comm_recv(c, k - d, tag + j, s->in, SCREW_BYTES);
         if (s->incoming) {
             add_motion(s, v, T, s->in, w);
         } else {
-            six_add(v, s->in);
-            w->flop += SIX_ADD_FLOP;
+            screw_add(v, s->in);
+            w->flop += SCREW_ADD_FLOP;
         }
         work_report(c, w);
     }
@@ -191,13 +186,13 @@ void scan_force(struct scan *s, int tag, real *f, struct work *w)
                 transform_force(s->dense, s->in, T, f, w);
                 work_report(c, w);
             }
-            comm_send(c, k - d, tag + j, s->incoming ? s->in : f, SIX_BYTES);
+            comm_send(c, k - d, tag + j, s->incoming ? s->in : f, SCREW_BYTES);
         }
         if (k + d >= P) continue;
-        comm_recv(c, k + d, tag + j, s->in, SIX_BYTES);
+        comm_recv(c, k + d, tag + j, s->in, SCREW_BYTES);
         if (!s->incoming) transform_force(s->dense, s->in, T, s->in, w);
-        six_add(f, s->in);
-        w->flop += SIX_ADD_FLOP;
+        screw_add(f, s->in);
+        w->flop += SCREW_ADD_FLOP;
         work_report(c, w);
     }
 }

@@ -7,7 +7,7 @@
  *   outgoing: rank k holds the one from frame k+2^j to its own, as in the paper: two messages a step.
  * All levels are kept: later scans at the same configuration send vectors only.
  *
- * A transform is a pair (r, p) of 12 numbers, or with `dense` a full 6x6 matrix (36 numbers, general products). */
+ * A transform is a pair (r, p), or with `dense` a full square matrix (general products). */
 #ifndef KERNEL_SCAN_H
 #define KERNEL_SCAN_H
 
@@ -22,7 +22,7 @@
 struct scan {
     struct comm *comm;
     bool dense, incoming;
-    int size;    /* numbers per transform: 12 or 36 */
+    int size;    /* numbers per transform: XFORM_NUMBERS or SQUARE */
     real *level; /* transforms T^(0), T^(1), ...; then, while the first scan runs, v */
     real *in;    /* receive: one transform and one vector */
 };
@@ -36,7 +36,7 @@ void transform_motion(bool dense, real *y, const real *T, const real *v, struct 
 #define transform_compose REAL_NAME(transform_compose)
 void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w);
 
-/* transform_expand: the 6x6 matrix of a pair, as the product of a shift and a rotation (dense) or a copy. */
+/* transform_expand: the square matrix of a pair, as the product of a shift and a rotation (dense) or a copy. */
 #define transform_expand REAL_NAME(transform_expand)
 void transform_expand(bool dense, real *T, const struct xform *x, struct work *w);
 
@@ -44,18 +44,18 @@ void transform_expand(bool dense, real *T, const struct xform *x, struct work *w
 #define scan_carve REAL_NAME(scan_carve)
 void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int rank, int nrank);
 
-/* scan_first: inclusive scan of the motion v (6) in place, building the composites from level 0.
+/* scan_first: inclusive scan of the motion v (SPACE) in place, building the composites from level 0.
  *
  *   level 0  in   incoming: T_k, frame k -> k-1 (rank 0: none); outgoing: T_{k+1}, frame k+1 -> k (last rank: none)
  *   w        in/out  work done but not yet reported; reported at each communication step */
 #define scan_first REAL_NAME(scan_first)
 void scan_first(struct scan *s, int tag, real *v, struct work *w);
 
-/* scan_motion: another scan of a motion v (6) with the composites of scan_first. */
+/* scan_motion: another scan of a motion v (SPACE) with the composites of scan_first. */
 #define scan_motion REAL_NAME(scan_motion)
 void scan_motion(struct scan *s, int tag, real *v, struct work *w);
 
-/* scan_force: reverse inclusive scan of a force f (6), f_k += T_{k+1} f_{k+1}. */
+/* scan_force: reverse inclusive scan of a force f (SPACE), f_k += T_{k+1} f_{k+1}. */
 #define scan_force REAL_NAME(scan_force)
 void scan_force(struct scan *s, int tag, real *f, struct work *w);
 

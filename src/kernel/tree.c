@@ -5,7 +5,7 @@
 
 #include "kernel/tags.h"
 
-enum { VECTOR_BYTES = 6 * (int)sizeof(real), PAIR_BYTES = 18 * (int)sizeof(real) };
+enum { VECTOR_BYTES = SPACE * (int)sizeof(real), PAIR_BYTES = (XFORM_NUMBERS + SPACE) * (int)sizeof(real) };
 
 /* side_owners: of the 2 nloop loop sides. */
 static const int *side_owners(const struct model *m, const struct tree_plan *plan, struct arena *a)
@@ -24,8 +24,7 @@ struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena 
     struct tree_shared *s = TAKE(a, 1, struct tree_shared);
     s->plan = tree_plan_make(m, job->nrank, a);
     s->body = bodies_make(m, a);
-    for (int i = 0; i < 6; i++)
-        s->base[i] = (real)job->state->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
+    base_motion(m, job->state, s->base);
     s->closure = closure_shared_make(m, s->body, s->base, side_owners(m, s->plan, a), a);
     return s;
 }
@@ -52,15 +51,15 @@ void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, i
     t->q = CARVE(c, t->nq, real);
     t->u = CARVE(c, t->nu, real);
     t->pose = CARVE(c, t->n, struct body_pose);
-    t->h = CARVE(c, 6 * t->n, real);
-    t->v = CARVE(c, 6 * t->n, real);
-    t->a = CARVE(c, 6 * t->n, real);
-    t->f = CARVE(c, 6 * t->n, real);
-    t->b = CARVE(c, 6 * t->n, real);
-    t->level = CARVE(c, 12 * (plan->nlevel + 1), real);
+    t->h = CARVE(c, SPACE * t->n, real);
+    t->v = CARVE(c, SPACE * t->n, real);
+    t->a = CARVE(c, SPACE * t->n, real);
+    t->f = CARVE(c, SPACE * t->n, real);
+    t->b = CARVE(c, SPACE * t->n, real);
+    t->level = CARVE(c, XFORM_NUMBERS * (plan->nlevel + 1), real);
     t->base_pose = CARVE(c, 1, struct xform);
-    t->path = CARVE(c, 12 * t->n, real);
-    t->in = CARVE(c, 18, real);
+    t->path = CARVE(c, XFORM_NUMBERS * t->n, real);
+    t->in = CARVE(c, XFORM_NUMBERS + SPACE, real);
 }
 
 void tree_load(struct tree *t)
@@ -77,7 +76,7 @@ void tree_place(struct tree *t)
 {
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
-        const struct joint_cost *cost = joint_cost_of(b->joint);
+        const struct joint_cost *cost = body_cost(b);
         body_place(b, t->q + t->q_at[l], &t->pose[l]);
         body_rate(&t->pose[l], t->u + t->u_at[l], tree_at(t->h, l));
         t->work.flop += (uint64_t)(cost->place + cost->rate);
@@ -91,10 +90,10 @@ void tree_place(struct tree *t)
 /* add_motion: v += X^T u. */
 static void add_motion(struct tree *t, real *v, const struct xform *x, const real *u)
 {
-    real moved[6];
+    real moved[SPACE];
     xform_motion(moved, x, u);
-    six_add(v, moved);
-    t->work.flop += XFORM_MOTION_FLOP + SIX_ADD_FLOP;
+    screw_add(v, moved);
+    t->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
     t->work.call++;
 }
 
@@ -103,7 +102,7 @@ static void sweep_up(struct tree *t, const real *source, const real *entry, real
 {
     for (int l = 0; l < t->n; l++) {
         const int p = tree_parent(t, l);
-        if (x != source) six_copy(tree_at(x, l), source + 6 * l);
+        if (x != source) screw_copy(tree_at(x, l), source + SPACE * l);
         if (p >= 0) add_motion(t, tree_at(x, l), &t->pose[l].x, tree_at(x, p));
         else if (entry) add_motion(t, tree_at(x, l), &t->pose[l].x, entry);
     }
@@ -115,10 +114,11 @@ static void make_paths(struct tree *t)
     for (int l = 0; l < t->n; l++) {
         const int p = tree_parent(t, l);
         if (p < 0) {
-            memcpy(t->path + 12 * l, &t->pose[l].x, 12 * sizeof(real));
+            memcpy(t->path + XFORM_NUMBERS * l, &t->pose[l].x, XFORM_NUMBERS * sizeof(real));
             continue;
         }
-        xform_compose((struct xform *)(t->path + 12 * l), (struct xform *)(t->path + 12 * p), &t->pose[l].x);
+        xform_compose((struct xform *)(t->path + XFORM_NUMBERS * l), (struct xform *)(t->path + XFORM_NUMBERS * p),
+                      &t->pose[l].x);
         t->work.flop += XFORM_COMPOSE_FLOP;
         t->work.call++;
     }
@@ -132,11 +132,11 @@ static void hand_down(struct tree *t, const real *x, bool first, int tag)
 {
     int nkid;
     const int *kid = tree_kids(t, &nkid);
-    real message[18];
+    real message[XFORM_NUMBERS + SPACE];
     for (int k = 0; k < nkid; k++) {
         const int l = t->shared->plan->local[t->shared->plan->anchor[kid[k]]];
-        six_copy(message, x + 6 * l);
-        if (first) memcpy(message + 6, t->path + 12 * l, 12 * sizeof(real));
+        screw_copy(message, x + SPACE * l);
+        if (first) memcpy(message + SPACE, t->path + XFORM_NUMBERS * l, XFORM_NUMBERS * sizeof(real));
         comm_send(t->comm, kid[k], tag, message, first ? PAIR_BYTES : VECTOR_BYTES);
     }
 }
@@ -147,23 +147,23 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
     const struct tree_plan *plan = t->shared->plan;
     const int k = t->piece, a = tree_plan_ancestor(plan, j, k);
     const struct tree_lists *to = &plan->descendants[j];
-    real message[18], *T = t->level + 12 * j;
+    real message[XFORM_NUMBERS + SPACE], *T = t->level + XFORM_NUMBERS * j;
     /* what leaves: E, and while composing the transform that goes on from the anchor's ancestor */
     const bool onward = first && (a >= 0 || t->poses);
-    six_copy(message, E);
-    if (onward) memcpy(message + 6, a >= 0 ? T : (const real *)t->base_pose, 12 * sizeof(real));
+    screw_copy(message, E);
+    if (onward) memcpy(message + SPACE, a >= 0 ? T : (const real *)t->base_pose, XFORM_NUMBERS * sizeof(real));
     for (int i = to->at[k]; i < to->at[k + 1]; i++)
         comm_send(t->comm, to->item[i], tag + j, message, onward ? PAIR_BYTES : VECTOR_BYTES);
     if (a < 0 || grounded(t, a)) {
-        if (first && a >= 0) memcpy(t->base_pose, T, 12 * sizeof(real));
+        if (first && a >= 0) memcpy(t->base_pose, T, XFORM_NUMBERS * sizeof(real));
         return;
     }
     const bool further = tree_plan_ancestor(plan, j, a) >= 0, composes = first && (further || t->poses);
     comm_recv(t->comm, a, tag + j, t->in, composes ? PAIR_BYTES : VECTOR_BYTES);
     add_motion(t, E, (struct xform *)T, t->in);
     if (composes) {
-        struct xform *next = further ? (struct xform *)(T + 12) : t->base_pose;
-        xform_compose(next, (struct xform *)(t->in + 6), (struct xform *)T);
+        struct xform *next = further ? (struct xform *)(T + XFORM_NUMBERS) : t->base_pose;
+        xform_compose(next, (struct xform *)(t->in + SPACE), (struct xform *)T);
         t->work.flop += XFORM_COMPOSE_FLOP;
         t->work.call++;
     }
@@ -174,7 +174,7 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
 static void scan_up(struct tree *t, real *x, bool first, int tag)
 {
     const struct tree_plan *plan = t->shared->plan;
-    real E[6] = {0}, *inside = t->f; /* free until the forces */
+    real E[SPACE] = {0}, *inside = t->f; /* free until the forces */
     if (t->piece < 0) return;
     int nkid;
     tree_kids(t, &nkid);
@@ -184,8 +184,8 @@ static void scan_up(struct tree *t, real *x, bool first, int tag)
     hand_down(t, inside, first, tag);
     if (!grounded(t, t->piece)) {
         comm_recv(t->comm, plan->parent[t->piece], tag, t->in, first ? PAIR_BYTES : VECTOR_BYTES);
-        six_copy(E, t->in);
-        if (first) memcpy(t->level, t->in + 6, 12 * sizeof(real));
+        screw_copy(E, t->in);
+        if (first) memcpy(t->level, t->in + SPACE, XFORM_NUMBERS * sizeof(real));
     } else if (first) {
         xform_identity(t->base_pose);
     }
@@ -196,7 +196,7 @@ static void scan_up(struct tree *t, real *x, bool first, int tag)
 
 void tree_velocity(struct tree *t)
 {
-    memcpy(t->v, t->h, (size_t)(6 * t->n) * sizeof(real));
+    memcpy(t->v, t->h, (size_t)(SPACE * t->n) * sizeof(real));
     scan_up(t, t->v, true, TAG_VELOCITY);
 }
 
@@ -205,19 +205,19 @@ void tree_bias(struct tree *t)
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         body_bias(b, &t->pose[l], tree_at(t->v, l), tree_at(t->h, l), t->u + t->u_at[l], tree_at(t->b, l));
-        t->work.flop += (uint64_t)joint_cost_of(b->joint)->bias;
+        t->work.flop += (uint64_t)body_cost(b)->bias;
         t->work.call++;
     }
 }
 
 void tree_acceleration(struct tree *t, const real *ud)
 {
-    memcpy(t->a, t->b, (size_t)(6 * t->n) * sizeof(real));
+    memcpy(t->a, t->b, (size_t)(SPACE * t->n) * sizeof(real));
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         if (ud) {
             subspace_h(&t->pose[l].s, ud + t->u_at[l], tree_at(t->a, l));
-            t->work.flop += (uint64_t)joint_cost_of(b->joint)->h;
+            t->work.flop += (uint64_t)body_cost(b)->h;
         }
         if (b->parent < 0) add_motion(t, tree_at(t->a, l), &t->pose[l].x, t->shared->base);
     }
@@ -232,23 +232,23 @@ void tree_gyro(struct tree *t, int l, real *f)
     t->work.flop += BODY_GYRO_FLOP;
     t->work.call++;
     if (!fext) return;
-    real load[6];
+    real load[SPACE];
     body_load(b, fext + 6 * t->bodies[l], load);
-    six_sub(f, load);
-    t->work.flop += BODY_LOAD_FLOP + SIX_ADD_FLOP;
+    screw_sub(f, load);
+    t->work.flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
 }
 
-/* sweep_down: f_parent += X f inside the piece, in place; `out` (6) gets what leaves at the anchor. */
+/* sweep_down: f_parent += X f inside the piece, in place; `out` (SPACE) gets what leaves at the anchor. */
 static void sweep_down(struct tree *t, real *f, real *out)
 {
-    six_zero(out);
+    screw_zero(out);
     for (int l = t->n - 1; l >= 0; l--) {
         const int p = tree_parent(t, l);
-        real moved[6];
+        real moved[SPACE];
         if (p < 0 && grounded(t, t->piece)) continue;
         xform_force(moved, &t->pose[l].x, tree_at(f, l));
-        six_add(p >= 0 ? tree_at(f, p) : out, moved);
-        t->work.flop += XFORM_FORCE_FLOP + SIX_ADD_FLOP;
+        screw_add(p >= 0 ? tree_at(f, p) : out, moved);
+        t->work.flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
         t->work.call++;
     }
 }
@@ -258,15 +258,15 @@ static void scan_down(struct tree *t)
 {
     const struct tree_plan *plan = t->shared->plan;
     real *inside = t->a; /* the accelerations have been used */
-    real g[6], moved[6];
+    real g[SPACE], moved[SPACE];
     if (t->piece < 0) return;
-    memcpy(inside, t->f, (size_t)(6 * t->n) * sizeof(real));
+    memcpy(inside, t->f, (size_t)(SPACE * t->n) * sizeof(real));
     if (!grounded(t, t->piece)) sweep_down(t, inside, g);
     for (int j = 0; j < plan->nlevel; j++) {
         const int a = tree_plan_ancestor(plan, j, t->piece);
         const struct tree_lists *from = &plan->descendants[j];
         if (a >= 0 && !grounded(t, a)) {
-            xform_force(moved, (struct xform *)(t->level + 12 * j), g);
+            xform_force(moved, (struct xform *)(t->level + XFORM_NUMBERS * j), g);
             t->work.flop += XFORM_FORCE_FLOP;
             t->work.call++;
             tree_report(t);
@@ -274,8 +274,8 @@ static void scan_down(struct tree *t)
         }
         for (int i = from->at[t->piece]; i < from->at[t->piece + 1]; i++) {
             comm_recv(t->comm, from->item[i], TAG_FORCE + 1 + j, moved, VECTOR_BYTES);
-            six_add(g, moved);
-            t->work.flop += SIX_ADD_FLOP;
+            screw_add(g, moved);
+            t->work.flop += SCREW_ADD_FLOP;
         }
         tree_report(t);
     }
@@ -284,8 +284,8 @@ static void scan_down(struct tree *t)
     const int *kid = tree_kids(t, &nkid);
     for (int k = 0; k < nkid; k++) {
         comm_recv(t->comm, kid[k], TAG_FORCE, moved, VECTOR_BYTES);
-        six_add(tree_at(t->f, plan->local[plan->anchor[kid[k]]]), moved);
-        t->work.flop += SIX_ADD_FLOP;
+        screw_add(tree_at(t->f, plan->local[plan->anchor[kid[k]]]), moved);
+        t->work.flop += SCREW_ADD_FLOP;
     }
     sweep_down(t, t->f, g);
 }
@@ -293,24 +293,24 @@ static void scan_down(struct tree *t)
 void tree_force(struct tree *t, real *tau, const real *more)
 {
     for (int l = 0; l < t->n; l++) {
-        real inertial[6], *f = tree_at(t->f, l);
+        real inertial[SPACE], *f = tree_at(t->f, l);
         tree_gyro(t, l, f);
         body_force(tree_body(t, l), tree_at(t->a, l), inertial);
-        six_add(f, inertial);
-        if (more) six_add(f, more + 6 * l);
-        t->work.flop += (uint64_t)(BODY_FORCE_FLOP + (more ? SIX_ADD_FLOP : 0));
+        screw_add(f, inertial);
+        if (more) screw_add(f, more + SPACE * l);
+        t->work.flop += (uint64_t)(BODY_FORCE_FLOP + (more ? SCREW_ADD_FLOP : 0));
         t->work.call++;
     }
     scan_down(t);
     for (int l = 0; l < t->n; l++) {
         subspace_h_transposed(&t->pose[l].s, tree_at(t->f, l), tau + t->u_at[l]);
-        t->work.flop += (uint64_t)joint_cost_of(tree_body(t, l)->joint)->h_transposed;
+        t->work.flop += (uint64_t)body_cost(tree_body(t, l))->h_transposed;
     }
     tree_report(t);
 }
 
 void tree_base_pose(struct tree *t, int l, struct xform *x)
 {
-    xform_compose(x, t->base_pose, (struct xform *)(t->path + 12 * l));
+    xform_compose(x, t->base_pose, (struct xform *)(t->path + XFORM_NUMBERS * l));
     t->work.flop += XFORM_COMPOSE_FLOP;
 }

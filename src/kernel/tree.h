@@ -16,7 +16,7 @@ struct tree_shared {
     const struct tree_plan *plan;
     const struct body *body;              /* (nbody) */
     const struct closure_shared *closure; /* NULL without loops */
-    real base[6];                         /* acceleration of the base minus gravity */
+    real base[SPACE];                     /* acceleration of the base minus gravity */
 };
 
 /* Arrays over own bodies are in the order of plan.bodies; index l. */
@@ -32,11 +32,11 @@ struct tree {
     struct work work;
     real *q, *u;
     struct body_pose *pose;
-    real *h, *v, *a, *f, *b; /* (6) joint velocity; velocity, acceleration, force; bias */
-    real *level;             /* composites of the anchor, (12) each: to the anchors 2^j pieces down */
+    real *h, *v, *a, *f, *b; /* (SPACE) joint velocity; velocity, acceleration, force; bias */
+    real *level;             /* composites of the anchor, (XFORM_NUMBERS) each: to the anchors 2^j pieces down */
     struct xform *base_pose; /* poses: anchor to base */
-    real *path;              /* (12) body to the piece's anchor */
-    real *in;                /* (18) messages */
+    real *path;              /* (XFORM_NUMBERS) body to the piece's anchor */
+    real *in;                /* messages: a pair (transform, vector) */
 };
 
 /* tree_shared_make: from a job's model, state and number of ranks. */
@@ -48,7 +48,7 @@ struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena 
 void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank);
 
 /* tree_load, tree_place, tree_velocity, tree_bias, tree_acceleration, tree_force: as those of chain.h; `more` (own
- * bodies x 6) is added to the bodies' forces, NULL: nothing. */
+ * bodies x SPACE) is added to the bodies' forces, NULL: nothing. */
 #define tree_load REAL_NAME(tree_load)
 void tree_load(struct tree *t);
 #define tree_place REAL_NAME(tree_place)
@@ -62,7 +62,7 @@ void tree_acceleration(struct tree *t, const real *ud);
 #define tree_force REAL_NAME(tree_force)
 void tree_force(struct tree *t, real *tau, const real *more);
 
-/* tree_gyro: P - Fext of own body l into f (6). */
+/* tree_gyro: P - Fext of own body l into f (SPACE). */
 #define tree_gyro REAL_NAME(tree_gyro)
 void tree_gyro(struct tree *t, int l, real *f);
 
@@ -81,7 +81,7 @@ static inline int tree_parent(const struct tree *t, int l)
 static inline const struct body *tree_body(const struct tree *t, int l) { return &t->shared->body[t->bodies[l]]; }
 
 /* tree_at: element l of an array of 6-vectors. */
-static inline real *tree_at(real *array, int l) { return array + 6 * l; }
+static inline real *tree_at(real *array, int l) { return array + SPACE * l; }
 
 /* tree_kids: pieces hanging at this one, (*n) of them. */
 static inline const int *tree_kids(const struct tree *t, int *n)

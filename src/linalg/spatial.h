@@ -8,6 +8,7 @@
 #define LINALG_SPATIAL_H
 
 #include "linalg/real.h"
+#include "linalg/space.h"
 #include "linalg/vec3.h"
 
 /* 12 numbers, 96 bytes in double: this is what scans send. */
@@ -17,38 +18,40 @@ struct xform {
 };
 
 enum {
+    XFORM_NUMBERS = 12,
     XFORM_FORCE_FLOP = 42,
     XFORM_MOTION_FLOP = 42,
     XFORM_COMPOSE_FLOP = 63,
     XFORM_INVERSE_FLOP = 18,
-    SIX_ADD_FLOP = 6,
-    SIX_DOT_FLOP = 11
+    SCREW_ADD_FLOP = 6,
+    SCREW_DOT_FLOP = 11,
+    SCREW_AXPY_FLOP = 12
 };
 
-/* six_copy: y = x. six_zero: y = 0. six_add: y += x. six_sub: y -= x. six_axpy: y += a x (12 flops). */
-static inline void six_copy(real *y, const real *x)
+/* screw_copy: y = x. screw_zero: y = 0. screw_add: y += x. screw_sub: y -= x. screw_axpy: y += a x (12 flops). */
+static inline void screw_copy(real *y, const real *x)
 {
     for (int i = 0; i < 6; i++) y[i] = x[i];
 }
-static inline void six_zero(real *y)
+static inline void screw_zero(real *y)
 {
     for (int i = 0; i < 6; i++) y[i] = 0;
 }
-static inline void six_add(real *y, const real *x)
+static inline void screw_add(real *y, const real *x)
 {
     for (int i = 0; i < 6; i++) y[i] += x[i];
 }
-static inline void six_sub(real *y, const real *x)
+static inline void screw_sub(real *y, const real *x)
 {
     for (int i = 0; i < 6; i++) y[i] -= x[i];
 }
-static inline void six_axpy(real *y, real a, const real *x)
+static inline void screw_axpy(real *y, real a, const real *x)
 {
     for (int i = 0; i < 6; i++) y[i] += a * x[i];
 }
 
-/* six_dot: x^T y. */
-static inline real six_dot(const real *x, const real *y)
+/* screw_dot: x^T y. */
+static inline real screw_dot(const real *x, const real *y)
 {
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] + x[3] * y[3] + x[4] * y[4] + x[5] * y[5];
 }
@@ -87,6 +90,16 @@ static inline void xform_compose(struct xform *c, const struct xform *a, const s
     mat3_mul(c->r, a->r, b->r);
     mat3_mul_vec(c->p, a->r, b->p);
     vec3_add(c->p, a->p);
+}
+
+/* xform_factors: zeroed `shift`, `turn` (6 x 6) become those whose product is X as a matrix: [U p~; 0 U] [r 0; 0 r]. */
+static inline void xform_factors(const struct xform *x, real *shift, real *turn)
+{
+    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    shift[4] = -x->p[2], shift[5] = x->p[1], shift[9] = x->p[2];
+    shift[11] = -x->p[0], shift[15] = -x->p[1], shift[16] = x->p[0];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) turn[6 * i + j] = turn[6 * (i + 3) + j + 3] = x->r[3 * i + j];
 }
 
 /* xform_inverse: y = x^-1 = (r^T, -r^T p). */

@@ -29,10 +29,10 @@ static void to_joint_axes(const struct subspace *s, const struct articulated *b,
         return;
     }
     for (int j = 0; j < 6; j++)
-        for (int i = 0; i < 6; i++) t[6 * j + i] = six_dot(full + 6 * i, s->col + 6 * j);
+        for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * j);
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j <= i; j++) m[6 * i + j] = m[6 * j + i] = six_dot(s->col + 6 * i, t + 6 * j);
-        p[i] = six_dot(s->col + 6 * i, b->p);
+        for (int j = 0; j <= i; j++) m[6 * i + j] = m[6 * j + i] = screw_dot(s->col + 6 * i, t + 6 * j);
+        p[i] = screw_dot(s->col + 6 * i, b->p);
     }
 }
 
@@ -85,11 +85,11 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
         along_w[i] = p[d + i];
         for (int k = 0; k < d; k++) along_w[i] += b->wh[d * i + k] * b->e[k];
     }
-    six_zero(pa);
+    screw_zero(pa);
     subspace_h(s, tau, pa);
     subspace_w(s, along_w, pa);
     sym6_mul(t, ia, bias);
-    six_add(pa, t);
+    screw_add(pa, t);
     return true;
 }
 
@@ -97,9 +97,9 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
 static void start(const struct dynamics *d, int i, bool moving, struct articulated *b)
 {
     sym6_from_inertia(&b->inertia, &d->body[i].inertia);
-    six_zero(b->p);
+    screw_zero(b->p);
     if (moving) body_gyro(&d->body[i], d->v + 6 * i, b->p);
-    if (d->load) six_sub(b->p, d->load + 6 * i);
+    if (d->load) screw_sub(b->p, d->load + 6 * i);
 }
 
 /* u' = I_hh^-1 (e - I_hw a_w) - a_h, and the body's acceleration. */
@@ -111,7 +111,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
     real *a = d->a + 6 * i, h[6], w[6], z[6];
     struct work uncounted = {0};
     xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : moving ? d->base : still);
-    if (moving) six_add(a, d->bias + 6 * i);
+    if (moving) screw_add(a, d->bias + 6 * i);
     subspace_h_transposed(s, a, h);
     subspace_w_transposed(s, a, w);
     for (int k = 0; k < s->d; k++) {
@@ -124,7 +124,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
         z[k] = b->e[k] - z[k];
         ud[k] = z[k] - h[k];
     }
-    six_zero(a);
+    screw_zero(a);
     subspace_w(s, w, a);
     subspace_h(s, z, a);
 }
@@ -146,7 +146,7 @@ static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);
         xform_force(pa, &d->pose[i].x, pa);
-        six_add(b[body->parent].p, pa);
+        screw_add(b[body->parent].p, pa);
     }
     for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, moving, &b[i], ud + d->body[i].u_at);
     arena_release(d->arena, mark);

@@ -102,9 +102,24 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
     return b;
 }
 
+void base_motion(const struct model *m, const struct state *s, real *a)
+{
+    for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
+}
+
+void body_inertia_factors(const struct body *b, real *shift, real *about)
+{
+    static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 6; i++) shift[7 * i] = 1;
+    shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
+    shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
+    for (int i = 0; i < 9; i++) about[6 * (i / 3) + i % 3] = b->jc[at[i]];
+    for (int i = 3; i < 6; i++) about[7 * i] = b->m;
+}
+
 void body_load(const struct body *b, const double *fext, real *f)
 {
-    six_zero(f);
+    screw_zero(f);
     if (!fext) return;
     for (int i = 0; i < 3; i++) f[i] = (real)fext[3 + i], f[3 + i] = (real)fext[i];
     if (!b->turned) return;

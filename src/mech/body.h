@@ -60,6 +60,10 @@ void body_make(const struct model *m, int i, struct body *b);
 #define bodies_make REAL_NAME(bodies_make)
 const struct body *bodies_make(const struct model *m, struct arena *a);
 
+/* base_motion: acceleration of the base minus gravity (6), [angular; linear]. */
+#define base_motion REAL_NAME(base_motion)
+void base_motion(const struct model *m, const struct state *s, real *a);
+
 /* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
 #define body_place REAL_NAME(body_place)
 void body_place(const struct body *b, const real *q, struct body_pose *pose);
@@ -106,8 +110,16 @@ static inline void body_force(const struct body *b, const real *a, real *f)
     vec3_cross_add(f, b->s, f + 3);
 }
 
-/* body_accelerate: a = Phi f (6), SYM6_MUL_FLOP; the body must have a Phi (model.has_phi). */
+/* body_accelerate: a = Phi f (6), BODY_ACCELERATE_FLOP; the body must have a Phi (model.has_phi). */
+enum { BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP };
 static inline void body_accelerate(const struct body *b, const real *f, real *a) { sym6_mul(a, &b->phi, f); }
+
+/* body_phi: Phi as a full matrix (6 x 6). */
+static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
+
+/* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about shift^T is I. */
+#define body_inertia_factors REAL_NAME(body_inertia_factors)
+void body_inertia_factors(const struct body *b, real *shift, real *about);
 
 /* body_load: the external wrench on body i in internal axes and order, from the user's [force; moment] in `fext`
  * (6); zero when fext is NULL. */
@@ -130,5 +142,6 @@ void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
 /* joint_cost_of: by type, never NULL. The table is the same in every precision. */
 #define joint_cost_of REAL_NAME(joint_cost_of)
 const struct joint_cost *joint_cost_of(enum model_joint joint);
+static inline const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(b->joint); }
 
 #endif

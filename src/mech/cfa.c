@@ -35,11 +35,11 @@ static void accelerations(struct cfa_run *r)
     struct arena_mark mark = arena_mark(d->arena);
     real *net = TAKE(d->arena, 6 * d->nbody, real), t[6];
     for (int i = 0; i < d->nbody; i++) {
-        six_add(net + 6 * i, r->f + 6 * i);
-        if (r->full) six_sub(net + 6 * i, r->gyro + 6 * i);
+        screw_add(net + 6 * i, r->f + 6 * i);
+        if (r->full) screw_sub(net + 6 * i, r->gyro + 6 * i);
         if (d->body[i].parent < 0) continue;
         xform_force(t, &d->pose[i].x, r->f + 6 * i);
-        six_sub(net + 6 * d->body[i].parent, t);
+        screw_sub(net + 6 * d->body[i].parent, t);
     }
     loops_force(&r->loops, r->lambda, net);
     for (int i = 0; i < d->nbody; i++) body_accelerate(&d->body[i], net + 6 * i, r->y + 6 * i);
@@ -55,7 +55,7 @@ static void relative(const struct cfa_run *r, int i, real *z)
     int parent = d->body[i].parent;
     xform_motion(z, &d->pose[i].x, parent >= 0 ? r->y + 6 * parent : r->full ? d->base : still);
     for (int k = 0; k < 6; k++) z[k] = r->y[6 * i + k] - z[k];
-    if (r->full) six_sub(z, d->bias + 6 * i);
+    if (r->full) screw_sub(z, d->bias + 6 * i);
 }
 
 /* z = W^T Z of all joints. */
@@ -218,7 +218,7 @@ static void velocity_terms(struct cfa_run *r, const real *u)
     work_count_velocities(d, &r->work);
     for (int i = 0; i < d->nbody; i++) {
         body_gyro(&d->body[i], d->v + 6 * i, r->gyro + 6 * i);
-        if (d->load) six_sub(r->gyro + 6 * i, d->load + 6 * i);
+        if (d->load) screw_sub(r->gyro + 6 * i, d->load + 6 * i);
     }
     r->work.flop += (uint64_t)d->nbody * (BODY_GYRO_FLOP + (d->load ? 6 : 0));
 }

@@ -57,9 +57,9 @@ static void project(const struct subspace *s, const struct sym6 *phi, real *g)
         return;
     }
     for (int j = 0; j < s->c; j++)
-        for (int i = 0; i < 6; i++) t[6 * j + i] = six_dot(full + 6 * i, s->col + 6 * (s->d + j));
+        for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * (s->d + j));
     for (int i = 0; i < s->c; i++)
-        for (int j = 0; j <= i; j++) g[packed_index(i, j)] = six_dot(s->col + 6 * (s->d + i), t + 6 * j);
+        for (int j = 0; j <= i; j++) g[packed_index(i, j)] = screw_dot(s->col + 6 * (s->d + i), t + 6 * j);
 }
 
 /* phi -= y^T D^-1 y for y (c x 6). */
@@ -105,8 +105,8 @@ static int couple(const struct body_pose *pose, const struct sym6 *phi, real *u,
             int first = is_angular(&pose->s, j) ? j : k, other = first == j ? k : j;
             bool short_dot = is_angular(&pose->s, first);
             g[packed_index(k, j)] +=
-                short_dot ? vec3_dot(xw + 6 * first, u + 6 * other) : six_dot(xw + 6 * first, u + 6 * other);
-            flop += short_dot ? VEC3_DOT_FLOP + 1 : SIX_DOT_FLOP + 1;
+                short_dot ? vec3_dot(xw + 6 * first, u + 6 * other) : screw_dot(xw + 6 * first, u + 6 * other);
+            flop += short_dot ? VEC3_DOT_FLOP + 1 : SCREW_DOT_FLOP + 1;
         }
     }
     return flop;
@@ -131,7 +131,7 @@ static bool eliminate(struct dynamics *d, int i, struct cfa_system *s, struct wo
         if (alone)
             subspace_w_transposed(ps, u + 6 * k, row->y + row->width * k);
         else
-            six_copy(row->y + 6 * k, u + 6 * k);
+            screw_copy(row->y + 6 * k, u + 6 * k);
     }
     dense_forward(c, row->width, row->g, row->y, w);
     if (alone)
@@ -169,7 +169,7 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
     bool alone = parent >= 0 && child_count(d, parent) == 1, carried = parent >= 0 && !alone;
     real t[6] = {0}, z[6];
     if (carried) xform_motion(t, &pose->x, beta + 6 * parent);
-    if (child_count(d, i) > 1) six_sub(t, beta + 6 * i);
+    if (child_count(d, i) > 1) screw_sub(t, beta + 6 * i);
     subspace_w_transposed(&pose->s, t, z);
     for (int k = 0; k < c; k++) r[6 * i + k] += z[k];
     dense_forward(c, 1, row->g, r + 6 * i, w);
@@ -195,13 +195,13 @@ static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i,
         for (int j = 0; j < row->width; j++) r[6 * i + k] += row->y[row->width * k + j] * from[j];
     dense_scale(c, 1, row->g, r + 6 * i, w);
     dense_backward(c, 1, row->g, r + 6 * i, w);
-    six_zero(force);
+    screw_zero(force);
     subspace_w(&pose->s, r + 6 * i, force);
-    six_copy(g + 6 * i, force);
+    screw_copy(g + 6 * i, force);
     w->flop += (uint64_t)(2 * c * row->width + joint_cost_of(d->body[i].joint)->w);
     if (parent < 0 || alone) return;
     xform_force(t, &pose->x, force);
-    six_sub(g + 6 * parent, t);
+    screw_sub(g + 6 * parent, t);
     w->flop += XFORM_FORCE_FLOP + 6;
 }
 

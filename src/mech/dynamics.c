@@ -56,11 +56,11 @@ void dynamics_velocities(struct dynamics *d, const real *u)
         const struct body *b = &d->body[i];
         real h[6], *v = d->v + 6 * i;
         body_rate(&d->pose[i], u + b->u_at, h);
-        six_copy(v, h);
+        screw_copy(v, h);
         if (b->parent >= 0) {
             real carried[6];
             xform_motion(carried, &d->pose[i].x, d->v + 6 * b->parent);
-            six_add(v, carried);
+            screw_add(v, carried);
         }
         body_bias(b, &d->pose[i], v, h, u + b->u_at, d->bias + 6 * i);
     }

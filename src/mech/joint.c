@@ -202,7 +202,7 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
 
 void body_rate(const struct body_pose *pose, const real *u, real *h)
 {
-    six_zero(h);
+    screw_zero(h);
     subspace_h(&pose->s, u, h);
 }
 

@@ -1,7 +1,7 @@
 /* joint_cost.c - what the local computations of each joint type execute. */
 #include "mech/body.h"
 
-/* Columns that are not unit vectors cost 12 flops to expand (six_axpy) and 11 to reduce (six_dot); a projection of a
+/* Columns that are not unit vectors cost 12 flops to expand (screw_axpy), 11 to reduce (screw_dot); a projection of a
  * full matrix costs 66 per column and 11 per entry. */
 #define DENSE(d)                                                                                                       \
     .h = 12 * (d), .h_transposed = 11 * (d), .w = 12 * (6 - (d)), .w_transposed = 11 * (6 - (d)),                      \

@@ -70,8 +70,8 @@ static void joint_columns(const struct loop *l, const real *r, struct loop_pose 
 static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
 {
     for (int k = 0; k < l->c; k++) {
-        p->g[k] = six_dot(p->w + 6 * k, error);
-        p->rho[k] = six_dot(p->w + 6 * k, relative);
+        p->g[k] = screw_dot(p->w + 6 * k, error);
+        p->rho[k] = screw_dot(p->w + 6 * k, relative);
         p->stabilise[k] = 2 * l->alpha * p->rho[k] + l->beta * l->beta * p->g[k];
     }
 }
@@ -96,7 +96,7 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
     centripetal(vb, l->b.p, cb);
     mat3_mul_vec_transposed(ca, p->ta.r, ca);
     mat3_mul_vec_transposed(cb, p->tb.r, cb);
-    six_zero(p->gamma);
+    screw_zero(p->gamma);
     for (int k = 0; k < 3; k++) p->gamma[3 + k] = cb[k] - ca[k];
     between(&rel, &wa, &wb);
     small_angle(rel.r, error);
@@ -149,15 +149,15 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb)
 {
     real f[6], t[6];
-    six_zero(f);
-    for (int k = 0; k < p->c; k++) six_axpy(f, lambda[k], p->w + 6 * k);
+    screw_zero(f);
+    for (int k = 0; k < p->c; k++) screw_axpy(f, lambda[k], p->w + 6 * k);
     if (fb) {
         xform_force(t, &p->tb, f);
-        six_add(fb, t);
+        screw_add(fb, t);
     }
     if (fa) {
         xform_force(t, &p->ta, f);
-        six_sub(fa, t);
+        screw_sub(fa, t);
     }
 }
 
@@ -175,5 +175,5 @@ void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, re
     xform_motion(a, &p->ta, aa);
     xform_motion(b, &p->tb, ab);
     for (int k = 0; k < 6; k++) b[k] = (b[k] - a[k]) + p->gamma[k];
-    for (int k = 0; k < p->c; k++) r[k] = six_dot(p->w + 6 * k, b) + p->stabilise[k];
+    for (int k = 0; k < p->c; k++) r[k] = screw_dot(p->w + 6 * k, b) + p->stabilise[k];
 }

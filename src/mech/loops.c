@@ -61,8 +61,8 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
         struct loop_pose p = l->pose[k];
         int ba = l->loop[k].body_a, bb = l->loop[k].body_b;
         if (homogeneous) {
-            six_zero(p.gamma);
-            six_zero(p.stabilise);
+            screw_zero(p.gamma);
+            screw_zero(p.stabilise);
         }
         loop_residual(&p, ba < 0 ? base : a + 6 * ba, bb < 0 ? base : a + 6 * bb, r + l->loop[k].row_at);
     }
@@ -75,7 +75,7 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
     if (body < 0) return 0;
     if (d->model->has_phi) {
         sym6_mul(a, &d->body[body].phi, column);
-        return six_dot(a, column);
+        return screw_dot(a, column);
     }
     real m = d->body[body].m;
     return m > 0 ? vec3_dot(column + 3, column + 3) / m : 0;

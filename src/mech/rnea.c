@@ -19,11 +19,11 @@ static void outward(struct dynamics *d, const real *u, const real *ud)
         body_bias(b, pose, v, h, u + b->u_at, a);
         subspace_h(&pose->s, ud + b->u_at, a);
         xform_motion(carried, &pose->x, b->parent >= 0 ? d->a + 6 * b->parent : d->base);
-        six_add(a, carried);
+        screw_add(a, carried);
         body_force(b, a, f);
         body_gyro(b, v, carried);
-        six_add(f, carried);
-        if (d->load) six_sub(f, d->load + 6 * i);
+        screw_add(f, carried);
+        if (d->load) screw_sub(f, d->load + 6 * i);
     }
 }
 
@@ -37,7 +37,7 @@ static void inward(struct dynamics *d, real *tau)
         if (b->parent < 0) continue;
         real g[6];
         xform_force(g, &d->pose[i].x, f);
-        six_add(d->f + 6 * b->parent, g);
+        screw_add(d->f + 6 * b->parent, g);
     }
 }
 

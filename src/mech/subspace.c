@@ -8,13 +8,13 @@ static void expand(const struct subspace *s, int k0, int n, const real *x, real 
         if (s->pick)
             y[s->pick[k0 + k]] += x[k];
         else
-            six_axpy(y, x[k], s->col + 6 * (k0 + k));
+            screw_axpy(y, x[k], s->col + 6 * (k0 + k));
 }
 
 /* y = columns' products with x. */
 static void reduce(const struct subspace *s, int k0, int n, const real *x, real *y)
 {
-    for (int k = 0; k < n; k++) y[k] = s->pick ? x[s->pick[k0 + k]] : six_dot(s->col + 6 * (k0 + k), x);
+    for (int k = 0; k < n; k++) y[k] = s->pick ? x[s->pick[k0 + k]] : screw_dot(s->col + 6 * (k0 + k), x);
 }
 
 void subspace_h(const struct subspace *s, const real *x, real *y) { expand(s, 0, s->d, x, y); }
@@ -24,11 +24,11 @@ void subspace_w_transposed(const struct subspace *s, const real *x, real *y) { r
 
 void subspace_column(const struct subspace *s, int k, real *y)
 {
-    six_zero(y);
+    screw_zero(y);
     if (s->pick)
         y[s->pick[k]] = 1;
     else
-        six_copy(y, s->col + 6 * k);
+        screw_copy(y, s->col + 6 * k);
 }
 
 void subspace_project(const struct subspace *a, bool a_w, const real *m, const struct subspace *b, bool b_w, real *out)
@@ -37,8 +37,8 @@ void subspace_project(const struct subspace *a, bool a_w, const real *m, const s
     real t[36]; /* M B, (6 x nb) */
     for (int j = 0; j < nb; j++)
         for (int i = 0; i < 6; i++)
-            t[6 * j + i] = b->pick ? m[6 * i + b->pick[b0 + j]] : six_dot(m + 6 * i, b->col + 6 * (b0 + j));
+            t[6 * j + i] = b->pick ? m[6 * i + b->pick[b0 + j]] : screw_dot(m + 6 * i, b->col + 6 * (b0 + j));
     for (int j = 0; j < nb; j++)
         for (int i = 0; i < na; i++)
-            out[nb * i + j] = a->pick ? t[6 * j + a->pick[a0 + i]] : six_dot(a->col + 6 * (a0 + i), t + 6 * j);
+            out[nb * i + j] = a->pick ? t[6 * j + a->pick[a0 + i]] : screw_dot(a->col + 6 * (a0 + i), t + 6 * j);
 }

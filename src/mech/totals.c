@@ -66,10 +66,10 @@ void forward_kinematics(struct dynamics *d, const real *q, const real *u, const 
         const struct body *b = &d->body[i];
         static const real still[6] = {0};
         real *a = d->a + 6 * i, carried[6];
-        six_copy(a, d->bias + 6 * i);
+        screw_copy(a, d->bias + 6 * i);
         subspace_h(&d->pose[i].s, ud + b->u_at, a);
         xform_motion(carried, &d->pose[i].x, b->parent >= 0 ? d->a + 6 * b->parent : still);
-        six_add(a, carried);
+        screw_add(a, carried);
         struct body_motion *o = &out[i];
         mat3_mul_transposed(o->r, x[i].r, b->user);
         vec3_copy(o->p, x[i].p);

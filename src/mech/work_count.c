@@ -17,7 +17,7 @@ void work_count_velocities(const struct dynamics *d, struct work *w)
     if (!w) return;
     for (int i = 0; i < d->nbody; i++) {
         const struct joint_cost *c = joint_cost_of(d->body[i].joint);
-        w->flop += (uint64_t)(c->rate + c->bias + (d->body[i].parent >= 0 ? XFORM_MOTION_FLOP + SIX_ADD_FLOP : 0));
+        w->flop += (uint64_t)(c->rate + c->bias + (d->body[i].parent >= 0 ? XFORM_MOTION_FLOP + SCREW_ADD_FLOP : 0));
     }
 }
 
@@ -28,7 +28,7 @@ enum { RNEA_REVOLUTE_OUT = 18 + 69 + 15 + 24 + 45, RNEA_REVOLUTE_IN = 48 };
 void work_count_rnea(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
-    int load = d->load ? SIX_ADD_FLOP : 0;
+    int load = d->load ? SCREW_ADD_FLOP : 0;
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         const struct joint_cost *c = joint_cost_of(b->joint);
@@ -40,8 +40,8 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
             continue;
         }
         w->flop += (uint64_t)(c->place + c->rate + c->bias + c->h + c->h_transposed + (child ? MAT3_VEC_FLOP + 3 : 0) +
-                              XFORM_MOTION_FLOP + SIX_ADD_FLOP + BODY_FORCE_FLOP + BODY_GYRO_FLOP + load +
-                              (child ? XFORM_FORCE_FLOP + SIX_ADD_FLOP : 0));
+                              XFORM_MOTION_FLOP + SCREW_ADD_FLOP + BODY_FORCE_FLOP + BODY_GYRO_FLOP + load +
+                              (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
         w->trig += (uint64_t)c->place_trig;
         w->div += (uint64_t)c->place_div;
     }
@@ -75,7 +75,7 @@ void work_count_aba(const struct dynamics *d, struct work *w)
         const struct body *b = &d->body[i];
         bool child = b->parent >= 0;
         w->call += 1;
-        if (d->load) w->flop += SIX_ADD_FLOP;
+        if (d->load) w->flop += SCREW_ADD_FLOP;
         if (d->revolute) {
             w->flop += (uint64_t)(ABA_REVOLUTE_OUT + (child ? ABA_REVOLUTE_IN : 0));
             w->trig += 2;

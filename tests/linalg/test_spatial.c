@@ -65,7 +65,7 @@ static void transforms_equal_their_matrices(void **state)
         dense_of(&x, m), dense_of(&y, n);
         fill(&r, f, 6);
         xform_force(got, &x, f);
-        for (int i = 0; i < 6; i++) assert_near(got[i], six_dot(m + 6 * i, f), 1e-14);
+        for (int i = 0; i < 6; i++) assert_near(got[i], screw_dot(m + 6 * i, f), 1e-14);
         xform_motion(got, &x, f);
         for (int i = 0; i < 6; i++) {
             double sum = 0;
@@ -79,7 +79,7 @@ static void transforms_equal_their_matrices(void **state)
         xform_compose(&xy, &x, &back);
         dense_of(&xy, composed);
         for (int i = 0; i < 36; i++) assert_near(composed[i], i % 7 == 0, 1e-14);
-        six_copy(got, f);
+        screw_copy(got, f);
         xform_force(got, &x, got), xform_force(f, &x, f);
         for (int i = 0; i < 6; i++) assert_true(got[i] == f[i]); /* in place is the same */
     }
@@ -96,7 +96,7 @@ static void symmetric_matrices_move_as_their_matrices(void **state)
         fill(&r, s.a, 6), fill(&r, s.b, 9), fill(&r, s.c, 6), fill(&r, v, 6);
         dense_of(&x, m), sym6_expand(full, &s);
         sym6_mul(y, &s, v);
-        for (int i = 0; i < 6; i++) assert_near(y[i], six_dot(full + 6 * i, v), 1e-14);
+        for (int i = 0; i < 6; i++) assert_near(y[i], screw_dot(full + 6 * i, v), 1e-14);
         dense_mul(m, full, false, t), dense_mul(t, m, true, want);
         sym6_move(&moved, &x, &s);
         sym6_expand(got, &moved);

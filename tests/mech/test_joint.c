@@ -102,7 +102,7 @@ static void subspaces_are_orthonormal(void **state)
                 real x[6], y[6];
                 subspace_column(&s, i, x);
                 subspace_column(&pose.s, j, y);
-                assert_true(fabsq(six_dot(x, y) - (i == j)) < 1e-32Q);
+                assert_true(fabsq(screw_dot(x, y) - (i == j)) < 1e-32Q);
             }
         scene_end(&c.scene);
     }
@@ -126,8 +126,8 @@ static void projection_is_the_product_with_columns(void **state)
                 for (int j = 0; j < n; j++) {
                     subspace_column(&s, at + i, x);
                     subspace_column(&s, at + j, y);
-                    for (int k = 0; k < 6; k++) t[k] = six_dot(m + 6 * k, y);
-                    assert_true(fabsq(six_dot(x, t) - out[n * i + j]) < 1e-30Q);
+                    for (int k = 0; k < 6; k++) t[k] = screw_dot(m + 6 * k, y);
+                    assert_true(fabsq(screw_dot(x, t) - out[n * i + j]) < 1e-30Q);
                 }
         }
         scene_end(&c.scene);
