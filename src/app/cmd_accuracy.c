@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/flag.h"
+#include "app/levels.h"
 #include "app/verb.h"
 #include "report/report.h"
 #include "run/accuracy.h"
@@ -30,19 +31,6 @@ static bool read_within(const char *text, double *within, struct err *e)
     return true;
 }
 
-static bool store_rung(struct store *s, const struct accuracy_report *r, int i, struct err *e)
-{
-    static const char *const name[] = {"scenario", "ladder", "at", "method", "rung", "ordinal", "quantity", "reference",
-                                       "relative_error", "host_s", "machine_ps", "status", "text"};
-    const struct accuracy_rung *x = &r->rung[i];
-    const struct store_value value[] = {
-        store_text(r->scenario), store_text(x->ladder), store_text(x->at), store_text(x->method), store_text(x->rung),
-        store_int(i), store_text(x->quantity), store_text(x->reference), store_real(x->error), store_real(x->host_s),
-        x->machine_ps >= 0 ? store_int(x->machine_ps) : store_null(), store_text(rung_status_word(x->status)),
-        store_text(x->text)};
-    return store_insert(s, "ladder", 13, name, value, e);
-}
-
 static bool store_choice(struct store *s, const char *scenario, const struct accuracy_choice *c, struct err *e)
 {
     static const char *const name[] = {"scenario", "ladder", "at", "quantity", "tolerance", "method", "rung",
@@ -59,7 +47,7 @@ static bool store_all(struct store *s, const struct accuracy_report *r, struct e
 {
     if (!store_begin(s, e)) return false;
     bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e);
-    for (int i = 0; ok && i < r->nrung; i++) ok = store_rung(s, r, i, e);
+    ok = ok && ladder_store(s, r, e);
     for (int i = 0; ok && i < r->nchoice; i++) ok = store_choice(s, r->scenario, &r->choice[i], e);
     if (ok) return store_commit(s, e);
     store_rollback(s);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/levels.h"
 #include "app/parameters.h"
 #include "app/sampling.h"
 #include "app/verb.h"
@@ -77,7 +78,8 @@ static bool run_plans(struct paper *p)
             spec[at] = p->plan[i].run[k];
             skip[at] = !p->common->force && store_has(p->store, &spec[at]);
         }
-    bool ok = run_campaign(spec, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    bool ok = levels_settle(p->store, spec, n, skip, p->common->quiet, p->e) &&
+              run_campaign(spec, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
     free(spec);
     free(skip);
     return ok;

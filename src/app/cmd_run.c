@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/flag.h"
+#include "app/levels.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "report/report.h"
@@ -102,7 +103,8 @@ static bool answer(const struct common *c, const struct plan *p, struct keep *k,
     k->store = store_open(c->database, STORE_WRITE, e);
     if (!k->store) return false;
     bool *skip = stored_already(k->store, p, c->force);
-    bool ok = run_campaign(p->run, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    bool ok = levels_settle(k->store, p->run, p->nrun, skip, c->quiet, e) &&
+              run_campaign(p->run, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
     return ok && print_table(k->store, p, c->json, e);
 }

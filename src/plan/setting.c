@@ -55,6 +55,17 @@ static bool make_number(struct setting *s, struct err *e)
     return err_set_at(e, ERR_DATA, s->file, s->line, "%s: '%.80s': %s", s->key, s->text, why);
 }
 
+static const char tolerance_word[] = "auto-tolerance";
+
+/* What follows the level in "auto-tolerance 2%"; NULL: not such a text. */
+static const char *tolerance_of(const struct setting *s)
+{
+    const size_t n = sizeof tolerance_word - 1;
+    if (strcmp(s->key, "machine.network.level") != 0 || strncmp(s->text, tolerance_word, n) != 0) return NULL;
+    const char *rest = s->text + n + strspn(s->text + n, " ");
+    return rest > s->text + n && *rest ? rest : NULL;
+}
+
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,
                   struct err *e)
 {
@@ -64,6 +75,13 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     if (strcmp(s->key, "machine.name") == 0) return s->kind = SETTING_MACHINE, true;
     if (strcmp(s->key, "n_over_p") == 0) return s->kind = SETTING_N_OVER_P, make_number(s, e);
     if (strcmp(s->key, "ranks") == 0 && strcmp(text, "n") == 0) return s->kind = SETTING_RANKS_ARE_N, true;
+    const char *tolerance = tolerance_of(s);
+    if (tolerance != NULL) {
+        struct setting *also = TAKE(a, 1, struct setting);
+        if (!setting_make(also, "machine.network.tolerance", tolerance, file, line, a, e)) return false;
+        s->also = also;
+        s->text = text = tolerance_word;
+    }
     s->field = settable(s->key, &s->table);
     if (s->field == NULL) return setting_unknown("", key, file, line, e);
     struct arena_mark mark = arena_mark(a);
@@ -77,6 +95,7 @@ void setting_apply(const struct setting *s, struct run_spec *run, struct arena *
     char why[512];
     if (s->kind == SETTING_FIELD)
         CHECK(field_set(s->field, (char *)run + s->table->offset, s->text, a, why, (int)sizeof why));
+    if (s->also != NULL) setting_apply(s->also, run, a);
 }
 
 /* The distinct names that may follow group `group` ("" or "machine.network"). */

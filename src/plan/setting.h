@@ -23,6 +23,7 @@ struct setting {
     const struct field_table *table;
     const char *text;
     int number;       /* SETTING_N_OVER_P */
+    const struct setting *also; /* a second value that was written with the first: auto-tolerance 2%; or NULL */
     const char *file; /* a path or "--set" */
     int line;         /* 0: none */
 };

@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "run/accuracy_ladder.h"
+#include "run/level_choice.h"
 #include "run/run.h"
 
 const char *rung_status_word(enum rung_status s)
@@ -30,6 +31,7 @@ struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const cha
     struct accuracy_rung *x = &r->rung[r->nrung++];
     text_copy(x->ladder, sizeof x->ladder, l->name);
     text_copy(x->at, sizeof x->at, l->at);
+    text_copy(x->family, sizeof x->family, l->family);
     text_copy(x->method, sizeof x->method, method);
     text_copy(x->rung, sizeof x->rung, rung);
     text_copy(x->quantity, sizeof x->quantity, quantity);
@@ -111,6 +113,8 @@ static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const stru
                          int nbody, struct err *e)
 {
     *l = (struct ladder){.report = r, .name = ladder_name[which], .spec = *spec, .arena = arena_create()};
+    level_family(spec, l->family);
+    if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE) l->spec.machine.network.level = LEVEL_LINK;
     if (nbody == spec->nrank) snprintf(l->at, sizeof l->at, "n=P=%d", nbody);
     else if (nbody > 0) snprintf(l->at, sizeof l->at, "n=%d P=%d", nbody, spec->nrank);
     else snprintf(l->at, sizeof l->at, "P=%d", spec->nrank);
@@ -121,27 +125,48 @@ static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const stru
     return true;
 }
 
-bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
-                      struct accuracy_report *r, struct err *e)
+static bool climb(struct accuracy_report *r, const struct run_spec *spec, const struct run_estimate *size, int nspec,
+                  int which, struct err *e)
 {
-    static void (*const climb[LADDERS])(struct ladder *) = {ladder_network, ladder_arithmetic, ladder_integration};
+    static void (*const ladder[LADDERS])(struct ladder *) = {ladder_network, ladder_arithmetic, ladder_integration};
+    int at = point_choose(spec, size, nspec, which);
+    if (at < 0) return true;
+    struct ladder l;
+    double begin = host_seconds();
+    bool good = ladder_begin(&l, r, &spec[at], which, (int)size[at].nbody, e);
+    if (good) ladder[which](&l);
+    arena_destroy(l.arena);
+    r->host_s[which] = host_seconds() - begin;
+    return good;
+}
+
+static bool begin(struct accuracy_report *r, const struct run_spec *spec, int nspec, struct arena *a,
+                  struct run_estimate **size, struct err *e)
+{
     *r = (struct accuracy_report){.arena = a};
     if (nspec == 0) return err_set(e, ERR_CONFIG, "the scenario has no runs");
     text_copy(r->scenario, sizeof r->scenario, spec[0].scenario);
-    struct run_estimate *size = TAKE(a, nspec, struct run_estimate);
+    *size = TAKE(a, nspec, struct run_estimate);
     for (int i = 0; i < nspec; i++)
-        if (!run_explain(&spec[i], &size[i], e)) return false;
+        if (!run_explain(&spec[i], &(*size)[i], e)) return false;
+    return true;
+}
+
+bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a, struct accuracy_report *r,
+                      struct err *e)
+{
+    struct run_estimate *size;
+    return begin(r, spec, nspec, a, &size, e) && climb(r, spec, size, nspec, NETWORK, e);
+}
+
+bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
+                      struct accuracy_report *r, struct err *e)
+{
+    struct run_estimate *size;
+    if (!begin(r, spec, nspec, a, &size, e)) return false;
     struct progress p = progress_make("ladders", LADDERS, quiet);
     for (int k = 0; k < LADDERS; k++) {
-        int at = point_choose(spec, size, nspec, k);
-        if (at < 0) continue;
-        struct ladder l;
-        double begin = host_seconds();
-        bool good = ladder_begin(&l, r, &spec[at], k, (int)size[at].nbody, e);
-        if (good) climb[k](&l);
-        arena_destroy(l.arena);
-        if (!good) return false;
-        r->host_s[k] = host_seconds() - begin;
+        if (!climb(r, spec, size, nspec, k, e)) return false;
         progress_show(&p, k + 1);
     }
     progress_end(&p);

@@ -21,6 +21,7 @@ enum rung_status { RUNG_OK, RUNG_DEGRADED, RUNG_FAILED };
 
 struct accuracy_rung {
     char ladder[16], at[48];  /* "network", "n=P=128" */
+    char family[65];          /* runs alike but for their size: level_choice.h */
     char method[48], rung[32];/* a curve, and a point on it */
     char quantity[24], reference[40];
     double error;             /* relative; NaN: failed */
@@ -60,6 +61,11 @@ struct accuracy_report {
  *   Returns false with ERR_CONFIG or ERR_DATA when no ladder can be climbed. */
 bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
                       struct accuracy_report *r, struct err *e);
+
+/* accuracy_network: the network ladder alone, at the largest point of `spec` (nspec) that takes seconds; no choices.
+ * Returns as accuracy_measure. */
+bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a, struct accuracy_report *r,
+                      struct err *e);
 
 /* accuracy_choose: the cheapest rung of ladder `ladder` for `quantity` with status ok and error <= tolerance. Cost is
  * the host's time on the network ladder, the machine's on the others; rungs without a cost are passed over. */

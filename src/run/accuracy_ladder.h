@@ -9,7 +9,7 @@
 struct ladder {
     struct accuracy_report *report;
     const char *name;
-    char at[48];
+    char at[48], family[65];
     struct run_spec spec;
     struct model *model; /* NULL: the kernel needs none */
     struct state *state;

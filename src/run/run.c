@@ -77,7 +77,9 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
     if (!kernel) return false;
     struct arena *scratch = arena_create();
     struct kernel_job job;
-    bool ok = make_job(&job, kernel, spec, scratch, e);
+    bool ok = spec->machine.network.level != LEVEL_AUTO_TOLERANCE ||
+              err_set(e, ERR_CONFIG, "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
+    ok = ok && make_job(&job, kernel, spec, scratch, e);
     if (ok) {
         struct machine_spec machine = omission_machine(spec);
         struct record_spec record = omission_record(spec);

@@ -12,7 +12,7 @@ static const char *const families[] = {"crossbar",  "torus",    "mesh",      "hy
                                        "full-mesh", "fat-tree", "dragonfly", "graph",     NULL};
 static const char *const ties[] = {"positive", "parity", NULL};
 static const char *const routings[] = {"minimal", "valiant", NULL};
-static const char *const levels[] = {"loggp", "link", "packet", "flit", "auto", NULL};
+static const char *const levels[] = {"loggp", "link", "packet", "flit", "auto", "auto-tolerance", NULL};
 static const char *const arbitrations[] = {"round-robin", "first-come", NULL};
 static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
@@ -50,6 +50,11 @@ static const char *idle_unless_hypercube(const struct run_spec *r)
 static const char *idle_unless_graph(const struct run_spec *r)
 {
     return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only family 'graph' takes its links from the file";
+}
+
+static const char *idle_unless_tolerance(const struct run_spec *r)
+{
+    return r->machine.network.level == LEVEL_AUTO_TOLERANCE ? NULL : "network.level is not 'auto-tolerance'";
 }
 
 /* Packets, flits and buffers: what only the levels that know them can use. */
@@ -167,7 +172,10 @@ static const struct field fields[] = {
      .max = 1e15, .fallback = "0 B/s", .doc = "memory to memory copies of the program (packing), 0: free"},
 
     {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels, .fallback = "link",
-     .doc = "how finely the network is simulated"},
+     .doc = "how finely the network is simulated; 'auto-tolerance 2%': the cheapest that is within 2%"},
+    {.key = "network.tolerance", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(network.tolerance), .min = 0, .max = 1,
+     .fallback = "2 %", .idle = idle_unless_tolerance,
+     .doc = "level 'auto-tolerance': relative error of the makespan that may be"},
     {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.link_bandwidth),
      .min = 0, .max = 1e15, .doc = "payload rate of one link and direction, 0: without limit (loggp and link only)"},
     {.key = "network.injection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,

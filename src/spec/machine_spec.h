@@ -58,13 +58,17 @@ struct node_spec {
     double copy_bandwidth; /* memory copies [B/s] */
 };
 
-enum network_level { LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT, LEVEL_AUTO };
+enum network_level {
+    LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT, LEVEL_AUTO,
+    LEVEL_AUTO_TOLERANCE /* the cheapest whose measured error is within `tolerance`; replaced by it before a run */
+};
 enum arbitration { ARBITRATION_ROUND_ROBIN, ARBITRATION_FIRST_COME };
 
 /* The wire. Zero-load time of a message of b bytes over R = links + 1 resources after injection:
  *   R hop_latency + serialisation(b) + end_latency, counted from its injection. */
 struct network_spec {
     enum network_level level;
+    double tolerance;           /* auto-tolerance: relative error of the makespan that may be */
     double link_bandwidth;      /* payload rate of one link and direction [B/s] */
     double injection_bandwidth; /* node into network [B/s]; 0: the link's */
     double ejection_bandwidth;  /* network into node [B/s]; 0: the link's */

@@ -19,6 +19,13 @@ struct record_spec {
 enum keep_bit { KEEP_START_EVENTS = 1, KEEP_SPANS = 2, KEEP_LINKS = 4, KEEP_BASELINE = 8, KEEP_CONTENTION = 16,
             KEEP_EXTERNAL = 32, KEEP_ALL = 63 };
 
+/* How level 'auto-tolerance' was settled: no setting, no part of a run's identity. */
+struct level_choice {
+    bool made;
+    double error;            /* of the makespan, relative, as measured for the level that was taken */
+    char at[64];             /* where it was measured: "n=P=128" */
+};
+
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
     struct machine_spec machine;
@@ -30,6 +37,7 @@ struct run_spec {
     int rep;                 /* repetition number, 0-based */
     char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
     const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
+    struct level_choice level_choice;
     unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */
 };
 

@@ -21,9 +21,10 @@
       " messages, sent_bytes, events, ties, switches, digest,"                                                         \
       " accounting_error_ps,"                                                                                          \
       " finish_min_ps, finish_max_ps, rank_compute_min_ps, rank_compute_max_ps, links, host_s, host_total_s,"          \
-      " host_peak_bytes, stack_peak_bytes, left_out, config_text, build_id, created_utc) VALUES"                       \
+      " host_peak_bytes, stack_peak_bytes, level_asked, level_error, level_error_at, inner_added, outer_added,"        \
+      " residual_before, left_out, config_text, build_id, created_utc) VALUES"                                         \
       " (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"  \
-      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                          \
+      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")        \
     X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
     X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
     X(SETTING_ADD, "INSERT INTO setting (key, value) VALUES (?1, ?2)")                                                 \
@@ -49,7 +50,7 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 1,              /* of schema.sql, in user_version */
+    STORE_VERSION = 2,              /* of schema.sql, in user_version */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */

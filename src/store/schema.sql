@@ -67,6 +67,12 @@ CREATE TABLE run (
     host_total_s     REAL,
     host_peak_bytes  INTEGER,
     stack_peak_bytes INTEGER,
+    level_asked      TEXT,              -- 'auto-tolerance 2 %': `level` was taken for its measured error
+    level_error      REAL,              -- of the makespan, relative, at level_error_at
+    level_error_at   TEXT,
+    inner_added      INTEGER NOT NULL,  -- refinements that were switched on because the first answer needed them:
+    outer_added      INTEGER NOT NULL,  -- `residual` and all times are those with them
+    residual_before  REAL,              -- of that first answer
     left_out         TEXT NOT NULL,     -- what the plan left out, with reasons
     config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash
     build_id         INTEGER NOT NULL REFERENCES build (id),
@@ -250,6 +256,7 @@ CREATE TABLE ladder (
     scenario       TEXT NOT NULL,
     ladder         TEXT NOT NULL,
     at             TEXT NOT NULL,      -- point of the scenario: "n=P=128"
+    family         TEXT NOT NULL,      -- SHA-256 of the settings without sizes, level and seeds: what it holds for
     method         TEXT NOT NULL,      -- a curve
     rung           TEXT NOT NULL,      -- a point on it: level, step size, tolerance
     ordinal        INTEGER NOT NULL,
@@ -260,7 +267,7 @@ CREATE TABLE ladder (
     machine_ps     INTEGER,            -- predicted time on the machine
     status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),
     text           TEXT NOT NULL DEFAULT '',
-    PRIMARY KEY (scenario, ladder, at, method, rung, quantity)
+    PRIMARY KEY (scenario, ladder, family, at, method, rung, quantity)
 ) STRICT, WITHOUT ROWID;
 CREATE TABLE ladder_choice (
     scenario       TEXT NOT NULL,

@@ -222,14 +222,27 @@ static void bind_result(struct binding *b, const struct run_result *r, char dige
     bind_int(b, r->stack_peak_bytes);
 }
 
+static void bind_level_choice(struct binding *b, const struct run_spec *spec, char asked[64])
+{
+    const struct level_choice *c = &spec->level_choice;
+    snprintf(asked, 64, "auto-tolerance %.9g %%", 100 * spec->machine.network.tolerance);
+    bind_text(b, c->made ? asked : NULL);
+    bind_real(b, c->made ? c->error : NAN);
+    bind_text(b, c->made ? c->at : NULL);
+}
+
 static bool put_run(struct store *s, const struct run_spec *spec, const struct run_result *r, const char *left_out,
                     int64_t *id, struct err *e)
 {
     struct binding b;
-    char digest[17];
+    char digest[17], asked[64];
     if (!bind_start(s, STATEMENT_RUN_INSERT, &b, e)) return false;
     bind_spec(&b, spec, r);
     bind_result(&b, r, digest);
+    bind_level_choice(&b, spec, asked);
+    bind_int(&b, r->inner_added);
+    bind_int(&b, r->outer_added);
+    bind_real(&b, r->inner_added + r->outer_added > 0 ? r->residual_before : NAN);
     bind_text(&b, left_out ? left_out : "");
     bind_text(&b, spec->config_text ? spec->config_text : "");
     bind_int(&b, s->build_id);

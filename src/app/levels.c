@@ -1,0 +1,120 @@
+/* levels.c - see levels.h. */
+#include "app/levels.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "run/level_choice.h"
+
+enum { MOST_LEVELS = 8, HEX = 65 };
+
+bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *e)
+{
+    static const char *const name[] = {"scenario", "ladder", "at", "family", "method", "rung", "ordinal", "quantity",
+                                       "reference", "relative_error", "host_s", "machine_ps", "status", "text"};
+    for (int i = 0; i < r->nrung; i++) {
+        const struct accuracy_rung *x = &r->rung[i];
+        const struct store_value value[] = {
+            store_text(r->scenario), store_text(x->ladder), store_text(x->at), store_text(x->family),
+            store_text(x->method), store_text(x->rung), store_int(i), store_text(x->quantity),
+            store_text(x->reference), store_real(x->error), store_real(x->host_s),
+            x->machine_ps >= 0 ? store_int(x->machine_ps) : store_null(), store_text(rung_status_word(x->status)),
+            store_text(x->text)};
+        if (!store_insert(s, "ladder", 14, name, value, e)) return false;
+    }
+    return true;
+}
+
+/* The errors that are known of one family's levels. */
+struct known {
+    int n;
+    struct level_error level[MOST_LEVELS];
+};
+
+static bool add_known(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct known *k = context;
+    (void)ncolumn;
+    (void)name;
+    if (k->n == MOST_LEVELS) return false;
+    struct level_error *x = &k->level[k->n++];
+    text_copy(x->level, sizeof x->level, value[0]);
+    x->error = strtod(value[1], NULL);
+    text_copy(x->at, sizeof x->at, value[2]);
+    return true;
+}
+
+/* The largest error of each level over all points where this family was measured. */
+static bool find_known(struct store *s, const char *family, struct known *k, struct err *e)
+{
+    k->n = 0;
+    return store_select(s,
+                        "SELECT method, max(relative_error), at FROM ladder WHERE ladder = 'network' AND quantity ="
+                        " 'makespan' AND family = ?1 AND relative_error IS NOT NULL GROUP BY method ORDER BY method",
+                        1, &family, add_known, k, e);
+}
+
+/* Climb the network ladder of the runs of one family and keep it. */
+static bool measure(struct store *s, const struct run_spec *run, int nrun, const char *family, struct err *e)
+{
+    struct run_spec *alike = calloc((size_t)nrun, sizeof *alike);
+    struct arena *a = arena_create();
+    struct accuracy_report r;
+    int n = 0;
+    CHECK(alike);
+    for (int i = 0; i < nrun; i++) {
+        char hex[HEX];
+        level_family(&run[i], hex);
+        if (strcmp(hex, family) == 0) alike[n++] = run[i];
+    }
+    bool ok = accuracy_network(alike, n, a, &r, e) && store_begin(s, e);
+    if (ok && ladder_store(s, &r, e)) ok = store_commit(s, e);
+    else if (ok) ok = false, store_rollback(s);
+    arena_destroy(a);
+    free(alike);
+    return ok;
+}
+
+/* The level of one family for one tolerance. */
+static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, const char *family, bool quiet,
+                   struct level_error *taken, struct err *e)
+{
+    const double tolerance = run[which].machine.network.tolerance;
+    struct known k;
+    bool stored = true;
+    if (!find_known(s, family, &k, e)) return false;
+    if (k.n == 0) {
+        stored = false;
+        if (!measure(s, run, nrun, family, e) || !find_known(s, family, &k, e)) return false;
+    }
+    int best = level_cheapest(k.level, k.n, tolerance);
+    if (best < 0)
+        return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be within %.3g %%",
+                       run[which].kernel.name, run[which].machine.name, 100 * tolerance);
+    *taken = k.level[best];
+    if (!quiet)
+        fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; up to %.3g %% may be)\n",
+                run[which].kernel.name, run[which].machine.name, taken->level, taken->at, 100 * taken->error,
+                stored ? "stored" : "measured now", 100 * tolerance);
+    return true;
+}
+
+bool levels_settle(struct store *s, struct run_spec *run, int nrun, const bool *skip, bool quiet, struct err *e)
+{
+    char family[HEX], last[HEX] = "";
+    double tolerance = -1;
+    struct level_error taken;
+    for (int i = 0; i < nrun; i++) {
+        if (run[i].machine.network.level != LEVEL_AUTO_TOLERANCE || (skip && skip[i])) continue;
+        level_family(&run[i], family);
+        bool again = strcmp(family, last) == 0 && tolerance == run[i].machine.network.tolerance;
+        if (!again && !settle(s, run, nrun, i, family, quiet, &taken, e)) return false;
+        memcpy(last, family, sizeof last);
+        tolerance = run[i].machine.network.tolerance;
+        level_take(&run[i], &taken);
+    }
+    return true;
+}
