@@ -299,7 +299,11 @@ static void refine_outside(struct contraction *k)
     /* the paper's residual does not see the errors of its bias forces */
     const real known = k->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, c, TAG_EXTREME, known);
-    for (int pass = 0; going && pass < outer; pass++) going = refine(k, &course);
+    k->refined = k->tree.job->spec->kernel.inner_refinements;
+    for (int pass = 0; going && pass < outer; pass++) {
+        going = refine(k, &course);
+        k->refined += going;
+    }
     k->residual = residual;
     k->residual_scale = scale;
 }
@@ -349,6 +353,7 @@ static void store(const struct contraction *k)
     if (job->residual) job->residual[rank] = (double)k->residual;
     if (job->residual_scale) job->residual_scale[rank] = (double)k->residual_scale;
     if (rank != 0) return;
+    if (job->refined) *job->refined = k->refined;
     for (int j = 0; j + 1 < k->room && job->lambda; j++) job->lambda[j] = (double)k->lambda[j];
     if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;
 }

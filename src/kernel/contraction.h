@@ -49,6 +49,7 @@ struct contraction {
     real *side_room;
     real *lambda; /* (nrow) loop forces, summed over refinements */
     struct motion motion;
+    int refined; /* corrections applied */
     bool stored; /* the first evaluation's answer is in the job's arrays */
     real residual, residual_scale; /* largest constraint residual over this */
     bool broken;

@@ -435,7 +435,11 @@ static void refine_outside(struct forward *f)
     /* the paper's residual does not see the errors of its bias forces */
     const real known = f->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, ch->comm, TAG_EXTREME, known);
-    for (int pass = 0; going && pass < outer; pass++) going = refine(f, &course);
+    f->refined = ch->job->spec->kernel.inner_refinements;
+    for (int pass = 0; going && pass < outer; pass++) {
+        going = refine(f, &course);
+        f->refined += going;
+    }
     f->residual = residual;
     f->residual_scale = scale;
 }
@@ -462,6 +466,7 @@ static void store(const struct forward *f)
     for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
     if (job->residual) job->residual[k] = (double)f->residual;
     if (job->residual_scale) job->residual_scale[k] = (double)f->residual_scale;
+    if (job->refined && k == 0) *job->refined = f->refined;
     if (job->condition) job->condition[k] = (double)f->blocks.reduction.condition;
 }
 

@@ -27,6 +27,7 @@ struct forward {
     real *D, *E;                    /* paper: Q^T D Q of own joints, Q^T E Q also of joint hi (SQUARE each) */
     real *message;                  /* coordinates or forces of an edge joint */
     struct motion motion;
+    int refined;   /* corrections applied */
     bool stored;   /* the first evaluation's answer is in the job's arrays */
     real residual; /* largest |W^T z| over the largest term in it */
     real residual_scale; /* that term */

@@ -33,6 +33,7 @@ struct kernel_job {
     double *residual_scale; /* out (nrank): what each rank's residual is relative to; may be NULL */
     double *condition;      /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
                                condition of the block-scaled system; 0: not seen by the solver; may be NULL */
+    int *refined;           /* out (1): corrections applied by the first evaluation, inner and outer; may be NULL */
     int *loop_rank;         /* out (1): rank of the loops' constraint matrix; may be NULL */
 };
 

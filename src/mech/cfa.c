@@ -293,6 +293,7 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
         else
             solve_paper(&r, tau, options->inner, ud);
         own.residual = residual_of(&r);
+        own.inner_done = options->inner;
         real *sum = TAKE(d->arena, r.loops.nrow, real);
         for (int k = 0; k < r.loops.nrow; k++) sum[k] = r.lambda[k];
         refine_outer(&r, q, u, tau, options, ud, sum, &own);

@@ -92,7 +92,7 @@ struct cfa_report {
     double residual;          /* largest |W^T Z| of the answer over the largest acceleration */
     double correction;        /* last outer correction over the answer, 0 without one */
     int rank, nrow;           /* of the loops' constraint matrix; nrow - rank are redundant */
-    int outer_done;           /* outer corrections applied */
+    int inner_done, outer_done; /* corrections applied to the first solution; outer corrections applied */
     bool fell_back;           /* forward_robust: articulated bodies had to solve it */
 };
 

@@ -23,6 +23,7 @@ enum forward_method {
 struct forward_report {
     double residual;             /* see cfa_report */
     int rank, nrow;
+    int refined;                 /* cfa-robust: corrections applied, inner and outer */
     bool fell_back;              /* cfa-robust: articulated bodies had to solve it */
 };
 

@@ -67,7 +67,8 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     bool good = solve(&p, method, ud, force, &full, w);
     if (good) to_double(qdd, ud, m->nu);
     if (good && lambda) to_double(lambda, force, m->nrow);
-    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, full.fell_back};
+    const int refined = full.inner_done + full.outer_done;
+    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, refined, full.fell_back};
     arena_release(scratch, mark);
     return good;
 }

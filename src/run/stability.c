@@ -54,6 +54,7 @@ static bool measure_scene(struct stability_report *r, const struct scene *c, int
         good = scene_build(c, a, &m, &s, e);
         if (good) stability_accelerations(r, c->name, m, s, a);
         if (good && c->moves) stability_motion(r, c->name, m, s, c->spec.damping > 0, a);
+        else if (good) stability_energy(r, c->name, m, s, a);
     }
     arena_destroy(a);
     return good;

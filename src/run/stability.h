@@ -21,8 +21,10 @@ struct stability_row {
                              loops: of the constraints, as the algorithm sees it */
     double condition;     /* of the scene: change of the answer over that of the inputs; NaN: not measured */
     double growth;        /* of the reduction: largest diagonal element over its last pivot; NaN: none */
-    int refinements;      /* asked for; -1: does not apply */
-    double energy_drift;  /* of motions, relative; NaN otherwise */
+    int refinements;      /* corrections that were applied, inner and outer; -1: does not apply */
+    double energy_drift;  /* of motions: change of the energy over the kinetic energy or what was exchanged; of
+                             accelerations: power of the error, u . M (answer - reference), over the largest joint
+                             force times the sum of |u|; NaN: at rest */
     double step_s;        /* of motions: largest stable or mean step, in the model's time; NaN otherwise */
     char reason[160];
 };

@@ -48,19 +48,26 @@ static double condition_of(const struct judge *j)
     return moved;
 }
 
-/* Largest |tau - inverse dynamics(qdd)|, springs in tau, over j->force. The answer's own rounding is part of it. */
-static double residual_of(const struct judge *j, double *qdd)
+/* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force, and their power. The
+ * answer's own rounding is part of it. */
+static double residual_of(const struct judge *j, double *qdd, double *power)
 {
     const struct model *m = j->m;
     struct arena_mark mark = arena_mark(j->a);
     struct state s = *j->s;
-    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0;
+    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0, rates = 0;
     struct work w = {0};
     s.qdd = qdd;
     dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
     s.qdd = j->reference;
     dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, right, &w);
-    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fabs(tau[i] - right[i]));
+    *power = 0;
+    for (int i = 0; i < m->nu; i++) {
+        largest = fmax(largest, fabs(tau[i] - right[i]));
+        *power += s.qd[i] * (tau[i] - right[i]);
+        rates += fabs(s.qd[i]);
+    }
+    *power = rates > 0 && j->force > 0 ? fabs(*power) / (j->force * rates) : NAN;
     arena_release(j->a, mark);
     return j->force > 0 ? largest / j->force : largest;
 }
@@ -83,7 +90,11 @@ static double force_of(const struct judge *j)
 static void finish_row(const struct judge *j, struct stability_row *x, double *qdd, double own_residual, bool single)
 {
     row_grade(x, trial_error(qdd, j->reference, j->m->nu), single);
-    x->residual = j->m->nloop > 0 || !isfinite(x->error) ? own_residual : residual_of(j, qdd);
+    x->residual = own_residual;
+    if (isfinite(x->error)) {
+        double forces = residual_of(j, qdd, &x->energy_drift);
+        if (j->m->nloop == 0) x->residual = forces;
+    }
     x->condition = j->condition;
 }
 
@@ -98,6 +109,7 @@ static void serial_row(const struct judge *j, enum forward_method method, enum p
         text_copy(x->reason, sizeof x->reason, "a pivot was not positive");
         return;
     }
+    if (method == FORWARD_CFA_ROBUST) x->refinements = f.refined;
     if (f.fell_back) text_copy(x->reason, sizeof x->reason, "articulated bodies had to solve it");
     finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT);
 }
@@ -131,12 +143,12 @@ static void parallel_row(const struct judge *j, const struct variant *v)
                                        .part_solver = PART_CR, .precision = v->precision, .composites_incoming = true,
                                        .inner_refinements = v->inner, .outer_refinements = v->outer};
     struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
-    x->refinements = v->inner + v->outer;
     struct trial t = trial_run(&spec, j->m, j->s, j->a);
     if (!t.answered) {
         text_copy(x->reason, sizeof x->reason, t.text);
         return;
     }
+    x->refinements = t.refined;
     finish_row(j, x, t.qdd, t.residual, v->precision == PRECISION_FLOAT);
     if (t.condition > 0) x->growth = t.condition;
 }

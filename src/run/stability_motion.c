@@ -1,4 +1,4 @@
-/* stability_motion.c - steppers on stiff scenes: the largest stable step of the explicit ones, and what each costs. */
+/* stability_motion.c - steppers on stiff scenes: largest stable step and cost of each; energy kept by all other scenes. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "run/stability_scene.h"
 #include "run/trial.h"
 
-enum { STEPS = 400, MOST_EVALUATIONS = 300000 };
+enum { STEPS = 400, MOST_EVALUATIONS = 300000, SHORT_STEPS = 32, MOST_MOVED = 8192 };
 
 static struct state copy_of(const struct model *m, const struct state *s, struct arena *a)
 {
@@ -125,4 +125,82 @@ void stability_motion(struct stability_report *r, const char *subject, const str
         own_row(r, subject, m, s, (enum step_rule)rule, duration, &reference, scratch);
     for (size_t k = 0; k < sizeof stepper / sizeof *stepper; k++)
         library_row(r, subject, m, s, stepper[k], duration, &reference, scratch);
+}
+
+/* --- energy of scenes that are not stiff ------------------------------------------------------------------------- */
+
+/* The time in which the fastest joint turns by a third of a radian. */
+static double short_time(const struct model *m, const struct state *s, struct arena *a)
+{
+    double *qdd = TAKE(a, m->nu + 1, double), rate = 0, force = 0;
+    struct work w = {0};
+    if (!dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w)) return 0;
+    for (int i = 0; i < m->nu; i++) rate = fmax(rate, fabs(s->qd[i])), force = fmax(force, fabs(qdd[i]));
+    double fastest = fmax(rate, sqrt(force));
+    return isfinite(fastest) ? fastest > 0 ? 0.3 / fastest : 1 : 0;
+}
+
+/* Of one motion from `begin` to `end`, in error and energy. */
+static void judge_motion(struct stability_row *x, const struct model *m, const struct state *begin,
+                         const struct state *end, const struct state *reference, struct arena *a)
+{
+    struct dynamics_totals t[2];
+    dynamics_type_of(PRECISION_DOUBLE)->totals(m, begin, a, &t[0]);
+    dynamics_type_of(PRECISION_DOUBLE)->totals(m, end, a, &t[1]);
+    double scale = fmax(fmax(t[0].kinetic, t[1].kinetic), fabs(t[1].potential - t[0].potential));
+    double change = t[1].kinetic - t[0].kinetic + (t[1].potential - t[0].potential);
+    x->energy_drift = scale > 0 ? fabs(change) / scale : fabs(change);
+    double error = fmax(trial_error(end->q, reference->q, m->nq), trial_error(end->qd, reference->qd, m->nu));
+    row_grade(x, error, false);
+    if (x->status == STABILITY_OK && !(x->energy_drift <= 1e-6)) x->status = STABILITY_DEGRADED;
+}
+
+/* The end of a motion by a tight stepper; *duration shrinks by tens where the scene whips too fast to be followed. */
+static bool follow(const struct model *m, const struct state *begin, double *duration, struct state *end,
+                   struct arena *a, struct err *e)
+{
+    const double most = fmin(fmax(1e6 / m->nbody, 300), 4000);
+    const struct trajectory_options tight = {.stepper = "rkck", .tolerance = 1e-12, .most_evaluations = (long)most};
+    for (int k = 0; k < 4 && *duration > 0; k++, *duration /= 10) {
+        *end = copy_of(m, begin, a);
+        err_clear(e);
+        if (trajectory_advance(m, end, *duration, &tight, a, NULL, e)) return true;
+    }
+    return false;
+}
+
+void stability_energy(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
+                      struct arena *scratch)
+{
+    const struct trajectory_options usual = {.stepper = "rk8pd", .tolerance = 1e-10};
+    struct state begin = copy_of(m, s, scratch), reference = {0}, end;
+    struct err e;
+    err_clear(&e);
+    begin.tau = TAKE(scratch, m->nu + 1, double);
+    begin.fext = NULL;
+    struct stability_row *x = row_add(r, subject, "motion rk4", "double");
+    if (m->nbody > MOST_MOVED) {
+        snprintf(x->reason, sizeof x->reason, "not moved: an evaluation of %d bodies takes too long", m->nbody);
+        x->status = STABILITY_DEGRADED;
+        return;
+    }
+    double duration = short_time(m, &begin, scratch);
+    if (!follow(m, &begin, &duration, &reference, scratch, &e)) {
+        text_copy(x->reason, sizeof x->reason, duration > 0 ? e.text : "articulated bodies broke down");
+        return;
+    }
+    struct work w = {0};
+    end = copy_of(m, &begin, scratch);
+    x->step_s = duration / SHORT_STEPS;
+    if (dynamics_type_of(PRECISION_DOUBLE)->advance(m, &end, STEP_RK4, x->step_s, SHORT_STEPS, scratch, &w))
+        judge_motion(x, m, &begin, &end, &reference, scratch);
+    x = row_add(r, subject, "motion rk8pd", "double");
+    end = copy_of(m, &begin, scratch);
+    struct trajectory_report t = {0};
+    if (trajectory_advance(m, &end, duration, &usual, scratch, &t, &e)) {
+        x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
+        judge_motion(x, m, &begin, &end, &reference, scratch);
+    } else {
+        text_copy(x->reason, sizeof x->reason, e.text);
+    }
 }

@@ -21,17 +21,21 @@ static const struct scene scenes[] = {
     {.name = "mass light tip 1e12", .spec = {COIL(64)}, .spread = SPREAD_LIGHT_TIP, .ratio = 1e12},
     {.name = "mass graded up 1e6", .spec = {COIL(64)}, .spread = SPREAD_UP, .ratio = 1e6},
     {.name = "mass graded down 1e6", .spec = {COIL(64)}, .spread = SPREAD_DOWN, .ratio = 1e6},
+    {.name = "mass graded up 1e12", .spec = {COIL(64)}, .spread = SPREAD_UP, .ratio = 1e12},
+    {.name = "mass graded down 1e12", .spec = {COIL(64)}, .spread = SPREAD_DOWN, .ratio = 1e12},
     {.name = "mass random 1e6", .spec = {COIL(64)}, .spread = SPREAD_RANDOM, .ratio = 1e6},
     {.name = "mass random 1e12", .spec = {COIL(64)}, .spread = SPREAD_RANDOM, .ratio = 1e12},
     {.name = "mass alternating 1e2", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e2},
     {.name = "mass alternating 1e6", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e6},
     {.name = "mass alternating 1e8", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e8},
     {.name = "mass alternating 1e12", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e12},
+    {.name = "mass light base 1e12", .spec = {COIL(64)}, .spread = SPREAD_LIGHT_BASE, .ratio = 1e12},
     {.name = "length 1e-10 m", .spec = {COIL(64), .length = 1e-10, .radius = 5e-12}},
     {.name = "length 1e3 m", .spec = {COIL(64), .length = 1e3, .radius = 50}},
     {.name = "molecular SI", .spec = {COIL(64), .length = 1.5e-10, .radius = 1e-11, .mass = 2.3e-26}},
     {.name = "molecular amu", .spec = {COIL(64), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
     {.name = "pose straight planar", .spec = {CHAIN(64)}},
+    {.name = "pose nearly straight", .spec = {CHAIN(64)}, .nudge = 1e-8},
     {.name = "pose straight twisted", .spec = {TWIST(64)}},
     {.name = "pose folded", .spec = {CHAIN(64), .pose = POSE_FOLDED}},
     {.name = "pose nearly folded", .spec = {CHAIN(64), .pose = POSE_FOLDED}, .nudge = 1e-8},
@@ -52,12 +56,18 @@ static const struct scene scenes[] = {
     {.name = "slender rods", .spec = {COIL(64), .radius = 1e-6}},
     {.name = "nearly points", .spec = {COIL(64)}, .point = 1e-12},
     {.name = "torques 1e12 N m", .spec = {COIL(64), .torque = 1e12}},
+    {.name = "nearly points 1e-6", .spec = {COIL(64)}, .point = 1e-6},
     {.name = "zero gravity at rest", .spec = {COIL(64)}, .weightless = true, .at_rest = true},
+    {.name = "zero gravity", .spec = {COIL(64)}, .weightless = true},
     {.name = "free-floating", .spec = {COIL(64), .base = BASE_FLOATING}},
+    {.name = "free-floating 1e6", .spec = {COIL(64), .base = BASE_FLOATING, .inertia = INERTIA_RANDOM,
+                                           .mass_ratio = 1e6}},
     {.name = "spherical joints", .spec = {COIL(64), .joint = JOINT_SPHERICAL}},
     {.name = "star of 64", .spec = {COIL(64), .generator = MODEL_STAR}},
     {.name = "comb of 64", .spec = {COIL(64), .generator = MODEL_COMB, .branch = 4}},
     {.name = "dendrimer of 127", .spec = {COIL(127), .generator = MODEL_DENDRIMER, .branch = 2}},
+    {.name = "star of 1024", .spec = {COIL(1024), .generator = MODEL_STAR}},
+    {.name = "dendrimer of 1023", .spec = {COIL(1023), .generator = MODEL_DENDRIMER, .branch = 2}},
     {.name = "random tree 1e6", .spec = {COIL(64), .generator = MODEL_RANDOM_TREE, .inertia = INERTIA_RANDOM,
                                          .mass_ratio = 1e6}},
     {.name = "four-bar at its singularity", .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}}},
@@ -73,6 +83,7 @@ static const struct scene scenes[] = {
     {.name = "springs 1e4 undamped", .spec = {STIFF(1e4, 0)}, .moves = true},
     {.name = "springs 1e6 undamped", .spec = {STIFF(1e6, 0)}, .moves = true},
     {.name = "springs 1e8 undamped", .spec = {STIFF(1e8, 0)}, .moves = true},
+    {.name = "springs 1e8 in 64 joints", .spec = {COIL(64), .stiffness = 1e8}},
     {.name = "springs 1e2 damped", .spec = {STIFF(1e2, 1)}, .moves = true},
     {.name = "springs 1e4 damped", .spec = {STIFF(1e4, 1e2)}, .moves = true},
     {.name = "springs 1e6 damped", .spec = {STIFF(1e6, 1e4)}, .moves = true},
@@ -91,6 +102,7 @@ static double mass_factor(const struct scene *c, int i, int n)
     switch (c->spread) {
     case SPREAD_HEAVY_TIP: return i == n - 1 ? c->ratio : 1;
     case SPREAD_LIGHT_TIP: return i == n - 1 ? 1 / c->ratio : 1;
+    case SPREAD_LIGHT_BASE: return i == 0 ? 1 / c->ratio : 1;
     case SPREAD_UP: return pow(c->ratio, (double)i / (n - 1) - 1); /* the heaviest weighs 1 */
     case SPREAD_DOWN: return pow(c->ratio, -(double)i / (n - 1));
     case SPREAD_RANDOM: return pow(c->ratio, random_uniform(&r, -0.5, 0.5));

@@ -38,6 +38,7 @@ static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, c
     job->residual = TAKE(a, spec->nrank, double);
     job->condition = TAKE(a, spec->nrank, double);
     job->loop_rank = TAKE(a, 1, int);
+    job->refined = TAKE(a, 1, int);
     if (!kernel->needs_model) job->measured = TAKE(a, spec->nrank, double);
     if (m && kernel->does_inverse) job->tau = TAKE(a, m->nu + 1, double);
     if (m && kernel->does_forward) job->qdd = TAKE(a, m->nu + 1, double);
@@ -63,6 +64,7 @@ static void answer(struct trial *t, const struct kernel_job *job, const struct r
     t->qdd = job->qdd;
     t->residual = worst(job->residual, job->nrank);
     t->condition = worst(job->condition, job->nrank);
+    t->refined = *job->refined;
     t->makespan_ps = r->makespan_ps;
     t->finish_ps = r->finish_ps;
     t->host_s = r->host_s;

@@ -18,6 +18,7 @@ struct trial {
     char text[160];     /* why not */
     double *tau, *qdd;  /* (nu) NULL when the task has none */
     double residual;    /* largest over the ranks, relative; NaN when a rank's is */
+    int refined;        /* corrections applied, inner and outer */
     double condition;   /* largest over the ranks, a lower bound; 0: not known */
     int64_t makespan_ps;
     int64_t *finish_ps; /* (nrank) */

@@ -242,6 +242,38 @@ static void the_suite_knows_good_from_bad(void **state)
     assert_int_equal(row_of(&r, "direct cr")->status, STABILITY_DEGRADED);
     assert_int_equal(row_of(&r, "robust cr")->status, STABILITY_OK);
     assert_true(row_of(&r, "paper pcr")->residual > 1e3 * row_of(&r, "direct cr")->residual);
+    assert_true(row_of(&r, "paper pcr")->energy_drift > 1e3 * row_of(&r, "direct cr")->energy_drift);
+    assert_int_equal(row_of(&r, "direct pcr inner")->refinements, 1);
+    assert_int_equal(row_of(&r, "robust cr")->refinements, 2);
+    assert_true(row_of(&r, "cfa-robust")->refinements > 1);
+    arena_destroy(rows);
+    arena_destroy(a);
+}
+
+/* Energy is kept by a conservative scene and lost by a damped one; corrections that are not needed are not counted. */
+static void the_suite_tells_what_moves_and_what_was_refined(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create(), *rows = arena_create();
+    struct stability_report r = {.arena = rows};
+    struct scene c = {.name = "even", .spec = {.nbody = 8, .pose = POSE_COILED, .axes = AXES_TWISTED}};
+    struct model *m;
+    struct state *s;
+    struct err e;
+    err_clear(&e);
+    assert_true(scene_build(&c, a, &m, &s, &e));
+    stability_accelerations(&r, c.name, m, s, a);
+    stability_energy(&r, c.name, m, s, a);
+    assert_int_equal(row_of(&r, "robust cr")->refinements, 1); /* the outer one was asked for, too */
+    assert_true(row_of(&r, "motion rk8pd")->energy_drift < 1e-10);
+    assert_true(row_of(&r, "motion rk4")->energy_drift < 1e-8);
+    assert_int_equal(row_of(&r, "motion rk4")->status, STABILITY_OK);
+    c.spec.damping = 1;
+    r.nrow = 0;
+    assert_true(scene_build(&c, a, &m, &s, &e));
+    stability_energy(&r, c.name, m, s, a);
+    assert_true(row_of(&r, "motion rk8pd")->energy_drift > 1e-3);
+    assert_int_equal(row_of(&r, "motion rk8pd")->status, STABILITY_DEGRADED);
     arena_destroy(rows);
     arena_destroy(a);
 }
@@ -255,6 +287,7 @@ int main(void)
         cmocka_unit_test(nothing_left_out_changes_a_result),
         cmocka_unit_test(untrustworthy_answers_are_told),
         cmocka_unit_test(the_suite_knows_good_from_bad),
+        cmocka_unit_test(the_suite_tells_what_moves_and_what_was_refined),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
