@@ -1,9 +1,11 @@
 /* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will cost. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/flag.h"
 #include "app/verb.h"
+#include "base/check.h"
 #include "base/json.h"
 #include "base/units.h"
 #include "run/run.h"
@@ -14,6 +16,8 @@ static const char doc[] =
     "Example: mimdsim explain scenarios/speedup-t3e.yaml\n\v"
     "--measure: run the largest point with each of the omissions put back, and tell what it saves.";
 
+enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS };
+
 struct totals {
     double host_s, host_bytes;
 };
@@ -22,6 +26,34 @@ static void add(struct totals *t, const struct run_estimate *r)
 {
     t->host_s += r->host_s;
     if (r->host_bytes > t->host_bytes) t->host_bytes = r->host_bytes;
+}
+
+/* The omissions of a plan's runs, each kind once. */
+struct kinds {
+    int n;
+    struct kind {
+        struct omission omission;
+        int runs; /* that leave it out */
+    } kind[MOST_KINDS];
+};
+
+static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r)
+{
+    struct kinds *k = calloc(1, sizeof *k);
+    CHECK(k);
+    for (int i = 0; i < p->nrun; i++)
+        for (int j = 0; j < r[i].nomission; j++) {
+            const struct omission *o = &r[i].omission[j];
+            int at = 0;
+            while (at < k->n && (strcmp(k->kind[at].omission.what, o->what) != 0 ||
+                                 strcmp(k->kind[at].omission.why, o->why) != 0))
+                at++;
+            if (at == MOST_KINDS) continue;
+            if (at == k->n) k->kind[k->n++].omission = *o;
+            k->kind[at].runs++;
+            if (o->bound > k->kind[at].omission.bound) k->kind[at].omission.bound = o->bound;
+        }
+    return k;
 }
 
 static void print_text(const struct plan *p, const struct run_estimate *r)
@@ -39,9 +71,17 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
         printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre, r[0].kilogram, r[0].second);
     printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
-    for (int k = 0; p->nrun && k < r[0].nomission; k++)
-        printf("left out (%s): %s: %s\n", r[0].omission[k].exact ? "exact" : "bounded", r[0].omission[k].what,
-               r[0].omission[k].why);
+    struct kinds *k = kinds_of(p, r);
+    for (int i = 0; i < k->n; i++) {
+        const struct omission *o = &k->kind[i].omission;
+        printf("left out (");
+        if (o->bound > 0) printf("bounded by %.1e", o->bound);
+        else printf("exact");
+        printf("%s", k->kind[i].runs < p->nrun ? ", " : "");
+        if (k->kind[i].runs < p->nrun) printf("in %d of %d runs", k->kind[i].runs, p->nrun);
+        printf("): %s: %s\n", o->what, o->why);
+    }
+    free(k);
     for (int i = 0; i < p->nunused; i++) printf("unused: %s\n", p->unused[i]);
 }
 
@@ -51,10 +91,35 @@ static void json_pair(struct json *j, const char *key, double value)
     json_real(j, value);
 }
 
+static void json_kinds(struct json *j, const struct plan *p, const struct run_estimate *r)
+{
+    struct kinds *k = kinds_of(p, r);
+    json_key(j, "omissions");
+    json_array(j);
+    for (int i = 0; i < k->n; i++) {
+        const struct omission *o = &k->kind[i].omission;
+        json_object(j);
+        json_key(j, "bound");
+        if (o->bound > 0) json_real(j, o->bound);
+        else json_null(j);
+        json_key(j, "class");
+        json_text(j, o->bound > 0 ? "bounded" : "exact");
+        json_pair(j, "runs", k->kind[i].runs);
+        json_key(j, "what");
+        json_text(j, o->what);
+        json_key(j, "why");
+        json_text(j, o->why);
+        json_end(j);
+    }
+    json_end(j);
+    free(k);
+}
+
 static void print_json(const struct plan *p, const struct run_estimate *r)
 {
     struct json j = json_make(stdout);
     json_object(&j);
+    json_kinds(&j, p, r);
     json_key(&j, "question");
     json_text(&j, p->question);
     json_key(&j, "runs");

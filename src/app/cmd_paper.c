@@ -62,7 +62,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     if (r->status != RUN_OK)
         fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name, spec->model.nbody,
                 spec->nrank, r->text);
-    return store_put(p->store, spec, r, "", p->e);
+    return store_put(p->store, spec, r, p->e);
 }
 
 /* The runs of all scenarios as one campaign. */

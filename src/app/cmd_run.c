@@ -16,8 +16,8 @@ static const char doc[] =
     "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
     "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
     "the exit status is then 1; a deadlock ends with 70.\n\n"
-    "--keep-all: compute too what the scene does not need (mimdsim explain lists it); the answers are the same to the "
-    "last bit, the predicted time includes what is kept.";
+    "--keep-all: compute too what the scene does not need (mimdsim explain lists it, and how exact leaving it out is); "
+    "the predicted time includes what is kept.";
 
 struct keep {
     struct store *store;
@@ -25,18 +25,6 @@ struct keep {
     int invalid, deadlock, redundant;
     bool quiet;
 };
-
-/* What the run left out, as a list for its row. */
-static void list_omissions(const struct run_spec *spec, struct text *out)
-{
-    struct run_estimate estimate;
-    struct err e;
-    err_clear(&e);
-    if (!run_explain(spec, &estimate, &e)) return;
-    for (int i = 0; i < estimate.nomission; i++)
-        if (!(spec->keep & estimate.omission[i].keep))
-            text_add(out, "%s%s: %s", out->length > 0 ? "; " : "", estimate.omission[i].what, estimate.omission[i].why);
-}
 
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
@@ -49,11 +37,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
-    struct text left_out = {0};
-    list_omissions(spec, &left_out);
-    bool ok = store_put(k->store, spec, r, left_out.s ? left_out.s : "", k->error);
-    text_free(&left_out);
-    return ok;
+    return store_put(k->store, spec, r, k->error);
 }
 
 static bool *stored_already(struct store *s, const struct plan *p, bool force)

@@ -86,7 +86,7 @@ static bool from_scenario(struct shown *t)
         fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
     bool ok = run_one(&spec, t->arena, &t->result, t->e);
     t->store = ok ? store_open("timeline", STORE_MEMORY, t->e) : NULL;
-    ok = ok && t->store && store_put(t->store, &spec, &t->result, "", t->e);
+    ok = ok && t->store && store_put(t->store, &spec, &t->result, t->e);
     if (ok) t->run_id = store_run_id(t->store, &spec);
     plan_free(&plan);
     return ok;

@@ -214,7 +214,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
         p->passing = store_open("samples", STORE_MEMORY, p->e);
         if (!p->passing || !store_begin(p->passing, p->e)) return false;
     }
-    if (!store_put(p->passing, spec, r, "", p->e)) return false;
+    if (!store_put(p->passing, spec, r, p->e)) return false;
     p->kept++;
     return p->sample_of[p->kept] == sample || finish_sample(p, sample);
 }

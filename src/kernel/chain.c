@@ -85,9 +85,10 @@ void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job
     ch->u = CARVE(c, chain_nu(s, lo, hi), real);
     ch->pose = CARVE(c, (size_t)room * s->pose_bytes, char);
     ch->matrix = CARVE(c, ch->dense ? SQUARE * room : 0, real);
-    ch->h = CARVE(c, SPACE * (hi - lo), real);
-    ch->v = CARVE(c, SPACE * (hi - lo), real);
-    ch->b = CARVE(c, SPACE * (hi - lo), real);
+    const int moving = job->omit.velocity ? 0 : SPACE * (hi - lo);
+    ch->h = CARVE(c, moving, real);
+    ch->v = CARVE(c, moving, real);
+    ch->b = CARVE(c, moving, real);
     ch->a = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
     ch->f = CARVE(c, forces ? SPACE * (hi - lo) : 0, real);
 }
@@ -103,16 +104,18 @@ void chain_load(struct chain *ch)
 
 void chain_place(struct chain *ch)
 {
+    const bool moves = !ch->job->omit.velocity;
+    ch->composed = false;
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
         const struct joint_cost *cost = body_cost(b);
         struct body_pose *pose = chain_pose(ch, i);
         body_place(b, ch->q + chain_q_at(ch, i), pose);
-        body_rate(pose, ch->u + chain_u_at(ch, i), chain_at(ch, ch->h, i));
-        ch->work.flop += (uint64_t)(cost->place + (ch->dense ? SPACE * b->d : cost->rate));
+        if (moves) body_rate(pose, ch->u + chain_u_at(ch, i), chain_at(ch, ch->h, i));
+        ch->work.flop += (uint64_t)(cost->place + (!moves ? 0 : ch->dense ? SPACE * b->d : cost->rate));
         ch->work.trig += (uint64_t)cost->place_trig;
         ch->work.div += (uint64_t)cost->place_div;
-        ch->work.call += 2;
+        ch->work.call += moves ? 2 : 1;
         if (ch->dense) transform_expand(true, ch->matrix + SQUARE * (i - ch->lo), &pose->x, &ch->work);
     }
     chain_report(ch);
@@ -171,8 +174,9 @@ static void end_of_block(struct chain *ch, real *x, real *end)
 }
 
 /* scan_up: x_i += X_i^T x_{i-1} along the whole chain, in place (physics 3.1, 3.3). */
-static void scan_up(struct chain *ch, real *x, bool first, int tag)
+static void scan_up(struct chain *ch, real *x, int tag)
 {
+    const bool first = !ch->composed;
     struct comm *c = ch->comm;
     const int k = comm_rank(c), P = comm_size(c), m = ch->hi - ch->lo;
     const int next = k + 1 < P ? ch->shared->layout.first[k + 2] - ch->hi : 0;
@@ -182,6 +186,7 @@ static void scan_up(struct chain *ch, real *x, bool first, int tag)
     end_of_block(ch, x, end);
     if (first) scan_first(&ch->scan, tag, end, &ch->work);
     else scan_motion(&ch->scan, tag, end, &ch->work);
+    ch->composed = true;
     if (next > 1) comm_send(c, k + 1, shift, end, (int64_t)sizeof end);
     if (m > 1 && k > 0) {
         comm_recv(c, k - 1, shift, before, (int64_t)sizeof before);
@@ -230,13 +235,14 @@ static void entering(struct chain *ch, real *total)
 
 void chain_velocity(struct chain *ch)
 {
+    if (ch->job->omit.velocity) return;
     memcpy(ch->v, ch->h, (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real));
-    scan_up(ch, ch->v, true, TAG_VELOCITY);
+    scan_up(ch, ch->v, TAG_VELOCITY);
 }
 
 void chain_bias(struct chain *ch)
 {
-    for (int i = ch->lo; i < ch->hi; i++) {
+    for (int i = ch->lo; i < ch->hi && !ch->job->omit.velocity; i++) {
         const struct body *b = &ch->shared->body[i];
         body_bias(b, chain_pose(ch, i), chain_at(ch, ch->v, i), chain_at(ch, ch->h, i), ch->u + chain_u_at(ch, i),
                   chain_at(ch, ch->b, i));
@@ -247,28 +253,34 @@ void chain_bias(struct chain *ch)
 
 void chain_acceleration(struct chain *ch, const real *ud)
 {
-    memcpy(ch->a, ch->b, (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real));
+    const size_t size = (size_t)(SPACE * (ch->hi - ch->lo)) * sizeof(real);
+    if (ch->job->omit.velocity) memset(ch->a, 0, size);
+    else memcpy(ch->a, ch->b, size);
     for (int i = ch->lo; i < ch->hi && ud; i++) {
         const struct body *b = &ch->shared->body[i];
         subspace_h(&chain_pose(ch, i)->s, ud + chain_u_at(ch, i), chain_at(ch, ch->a, i));
         ch->work.flop += (uint64_t)(ch->dense ? SCREW_AXPY_FLOP * b->d : body_cost(b)->h);
     }
-    if (ch->lo == 0) {
+    if (ch->lo == 0 && !ch->job->omit.base) {
         real moved[SPACE];
         transform_motion(ch->dense, moved, chain_transform(ch, 0), ch->shared->base, &ch->work);
         screw_add(ch->a, moved);
         ch->work.flop += SCREW_ADD_FLOP;
     }
-    scan_up(ch, ch->a, false, TAG_ACCELERATION);
+    scan_up(ch, ch->a, TAG_ACCELERATION);
 }
 
 void chain_gyro(struct chain *ch, int i, real *f)
 {
     const struct body *b = &ch->shared->body[i];
     const double *fext = ch->job->state->fext;
-    body_gyro(b, chain_at(ch, ch->v, i), f);
-    ch->work.flop += BODY_GYRO_FLOP;
-    ch->work.call++;
+    if (ch->job->omit.velocity) {
+        screw_zero(f);
+    } else {
+        body_gyro(b, chain_at(ch, ch->v, i), f);
+        ch->work.flop += BODY_GYRO_FLOP;
+        ch->work.call++;
+    }
     if (!fext) return;
     real load[SPACE];
     body_load(b, fext + 6 * i, load);
@@ -327,4 +339,15 @@ void chain_force(struct chain *ch, real *tau)
         ch->work.flop += (uint64_t)(ch->dense ? SCREW_DOT_FLOP * b->d : body_cost(b)->h_transposed);
     }
     chain_report(ch);
+}
+
+void chain_bias_force(struct chain *ch, real *tau)
+{
+    comm_stage(ch->comm, STAGE_VELOCITY);
+    chain_velocity(ch);
+    comm_stage(ch->comm, STAGE_ACCELERATION);
+    chain_bias(ch);
+    chain_acceleration(ch, NULL);
+    comm_stage(ch->comm, STAGE_FORCE);
+    chain_force(ch, tau);
 }

@@ -30,6 +30,7 @@ struct chain {
     const struct chain_shared *shared;
     int n, lo, hi;
     bool dense;       /* operators as full square matrices */
+    bool composed;    /* a scan has built the composites at these coordinates */
     struct work work; /* done since the last report */
     real *q, *u;      /* coordinates and rates of own bodies, from q_at and u_at of body lo */
     char *pose;       /* struct body_pose of own bodies, pose_bytes apart; one more for body hi if asked for */
@@ -37,7 +38,7 @@ struct chain {
     struct scan scan;
     real *h;         /* (SPACE) joint velocity H u */
     real *v, *a, *f; /* (SPACE) velocity, acceleration, force */
-    real *b;         /* (SPACE) joint bias acceleration */
+    real *b;         /* (SPACE) joint bias acceleration; h, v and b have no room when the job omits velocities */
 };
 
 /* chain_shared_make: from a job's model, state and number of ranks. */
@@ -58,11 +59,12 @@ void chain_load(struct chain *ch);
 #define chain_place REAL_NAME(chain_place)
 void chain_place(struct chain *ch);
 
-/* chain_velocity: v of own bodies; builds the composites of the scan. Stage NE[1]. */
+/* chain_velocity: v of own bodies; nothing when the job omits velocities. The first of the scans upwards builds the
+ * composites of them all. Stage NE[1]. */
 #define chain_velocity REAL_NAME(chain_velocity)
 void chain_velocity(struct chain *ch);
 
-/* chain_bias: b of own bodies from v. */
+/* chain_bias: b of own bodies from v; nothing when the job omits velocities. */
 #define chain_bias REAL_NAME(chain_bias)
 void chain_bias(struct chain *ch);
 
@@ -73,6 +75,10 @@ void chain_acceleration(struct chain *ch, const real *ud);
 /* chain_force: f of own bodies, and joint forces tau over own joints. Stage NE[3]. */
 #define chain_force REAL_NAME(chain_force)
 void chain_force(struct chain *ch, real *tau);
+
+/* chain_bias_force: joint forces tau over own joints at u' = 0: the three stages NE[1] to NE[3]. */
+#define chain_bias_force REAL_NAME(chain_bias_force)
+void chain_bias_force(struct chain *ch, real *tau);
 
 /* chain_gyro: P - Fext of own body i into f (SPACE). */
 #define chain_gyro REAL_NAME(chain_gyro)

@@ -102,7 +102,7 @@ static void contribute(struct closure *cl, int side, const real *acceleration, r
     for (int j = 0; j < m; j++) {
         xform_motion(moved, here, acceleration + SPACE * j);
         for (int k = 0; k < SPACE; k++) moved[k] *= sign;
-        if (j == 0 && alone) {
+        if (j == 0 && alone && s->base) {
             xform_motion(accelerated, there, s->base);
             screw_axpy(moved, -sign, accelerated);
         }

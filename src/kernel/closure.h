@@ -23,7 +23,7 @@ struct closure_shared {
     const struct loop *loop; /* (nloop) */
     const int *owner;        /* (2 nloop) rank that owns the side's body; -1: the base */
     const struct body *body; /* (nbody) */
-    const real *base;        /* (SPACE) acceleration of the base minus gravity */
+    const real *base;        /* (SPACE) acceleration of the base minus gravity; NULL: zero */
 };
 
 struct closure {
@@ -40,7 +40,8 @@ struct closure {
     int rank;                      /* of S, on rank 0 */
 };
 
-/* closure_shared_make: the loops of a model; `owner` (2 nloop) as above, borrowed. NULL when there are none. */
+/* closure_shared_make: the loops of a model; `owner` (2 nloop) and `base` as above, borrowed. NULL when there are
+ * none. */
 #define closure_shared_make REAL_NAME(closure_shared_make)
 struct closure_shared *closure_shared_make(const struct model *m, const struct body *body, const real *base,
                                            const int *owner, struct arena *a);

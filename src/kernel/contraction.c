@@ -236,10 +236,13 @@ static void add_up(struct contraction *k)
 static void first_solution(struct contraction *k)
 {
     struct tree *t = &k->tree;
-    const real *bias = k->direct ? t->b : NULL, *base = k->direct ? t->shared->base : NULL;
+    const struct job_omit *omit = &t->job->omit;
+    const bool loads = k->direct && !omit->load;
+    const real *bias = k->direct && !omit->velocity ? t->b : NULL;
+    const real *base = k->direct && !omit->base ? t->shared->base : NULL;
     k->m = k->room;
-    make_loads(k, k->direct);
-    k->given = (struct contraction_given){k->active, bias, k->direct || has_loops(k) ? k->load : NULL, base};
+    make_loads(k, loads);
+    k->given = (struct contraction_given){k->active, bias, loads || has_loops(k) ? k->load : NULL, base};
     tree_report(t);
     comm_stage(t->comm, STAGE_SOLVE);
     contraction_solve(k);
@@ -324,7 +327,7 @@ static void evaluate(struct contraction *k)
     memset(k->answer, 0, (size_t)t->nu * sizeof(real));
     memset(k->offset, 0, (size_t)(SPACE * t->n) * sizeof(real));
     memset(k->lambda, 0, (size_t)(k->room - 1) * sizeof(real));
-    if (!k->direct) {
+    if (!k->direct && !t->job->omit.bias) {
         tree_report(t);
         comm_stage(t->comm, STAGE_ACCELERATION);
         tree_acceleration(t, NULL);

@@ -45,8 +45,8 @@ static void add(struct kernel_estimate *e, double messages, double numbers)
     e->bytes += messages * numbers * (double)sizeof(real);
 }
 
-/* velocity_scan, vector_scan: physics 3.1 to 3.3. */
-static void velocity_scan(const struct outline *o, bool incoming, struct kernel_estimate *e)
+/* first_scan, of velocities or, at rest, accelerations; vector_scan: physics 3.1 to 3.3. */
+static void first_scan(const struct outline *o, bool incoming, struct kernel_estimate *e)
 {
     const double inside = o->n - o->P;
     add(e, o->pairs, SPACE);
@@ -69,10 +69,11 @@ static void vector_scan(const struct outline *o, bool force, struct kernel_estim
 }
 
 /* bodies: local work of inverse dynamics. */
-static void local_inverse(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+static void local_inverse(const struct run_spec *spec, const struct outline *o, const struct job_omit *omit,
+                          struct kernel_estimate *e)
 {
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
-    const double place = 58, bias = 45, load = BODY_GYRO_FLOP + BODY_FORCE_FLOP;
+    const double place = 58, bias = omit->velocity ? 0 : 45 + BODY_GYRO_FLOP, load = BODY_FORCE_FLOP;
     e->flops += o->n * (place + bias + load + 3 * o->d) + (dense ? o->n * 3 * SQUARE_MUL_FLOP : 0);
 }
 
@@ -189,42 +190,46 @@ static void repeat(struct kernel_estimate *e, double times)
     e->flops *= times;
 }
 
-void estimate_inverse(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                      struct kernel_estimate *out)
 {
     const struct outline o = outline_of(spec, model);
     *out = (struct kernel_estimate){0};
     if (kernel_branches(model)) {
-        estimate_tree(spec, model, true, false, out);
+        estimate_tree(spec, model, omit, true, false, out);
         return;
     }
-    velocity_scan(&o, spec->kernel.composites_incoming, out);
-    vector_scan(&o, false, out);
+    first_scan(&o, spec->kernel.composites_incoming, out);
+    if (!omit->velocity) vector_scan(&o, false, out);
     vector_scan(&o, true, out);
-    local_inverse(spec, &o, out);
+    local_inverse(spec, &o, omit, out);
     out->rank_bytes =
         (o.n / o.P * (XFORM_NUMBERS + SQUARE + SQUARE) + o.T * (o.steps + 2)) * (double)sizeof(real) + 512;
 }
 
-void estimate_forward(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                      struct kernel_estimate *out)
 {
     const struct outline o = outline_of(spec, model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     *out = (struct kernel_estimate){0};
     if (kernel_branches(model)) {
-        estimate_tree(spec, model, false, true, out);
+        estimate_tree(spec, model, omit, false, true, out);
         repeat(out, evaluations(&spec->kernel));
         return;
     }
-    velocity_scan(&o, spec->kernel.composites_incoming, out);
-    if (!direct) {
-        vector_scan(&o, false, out);
+    const bool scans = direct ? !omit->velocity : !omit->bias;
+    if (scans) first_scan(&o, spec->kernel.composites_incoming, out);
+    if (!direct && scans) {
+        if (!omit->velocity) vector_scan(&o, false, out);
         vector_scan(&o, true, out);
     }
-    local_inverse(spec, &o, out);
+    if (scans) local_inverse(spec, &o, omit, out);
+    else out->flops += o.n * (58 + (spec->kernel.operators == OPERATORS_DENSE ? SQUARE_MUL_FLOP : 0));
     const double edges = o.P - 1;
     add(out, 2 * edges, o.nq);
     add(out, edges, o.d);
-    add(out, edges, o.d + (direct ? SPACE : 0));
+    add(out, edges, o.d + (direct && !omit->load ? SPACE : 0));
     solution(spec, &o, out);
     add(out, edges, o.c);
     out->flops += (o.n - 1) * (2 * SPACE * XFORM_MOTION_FLOP + PACKED);
@@ -236,11 +241,12 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, st
     repeat(out, evaluations(&spec->kernel));
 }
 
-void estimate_dynamics(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                       struct kernel_estimate *out)
 {
     struct kernel_estimate inverse, forward;
-    estimate_inverse(spec, model, &inverse);
-    estimate_forward(spec, model, &forward);
+    estimate_inverse(spec, model, omit, &inverse);
+    estimate_forward(spec, model, omit, &forward);
     *out = forward;
     out->messages += inverse.messages;
     out->bytes += inverse.bytes;

@@ -7,15 +7,19 @@
 #include "mech/model.h"
 
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
- * name. Messages and bytes are exact for open chains of equal joints, flops within a tenth. */
+ * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
+ * tenth. */
 #define estimate_inverse REAL_NAME(estimate_inverse)
-void estimate_inverse(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                      struct kernel_estimate *out);
 /* estimate_forward: see above. */
 #define estimate_forward REAL_NAME(estimate_forward)
-void estimate_forward(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                      struct kernel_estimate *out);
 /* estimate_dynamics: see above. */
 #define estimate_dynamics REAL_NAME(estimate_dynamics)
-void estimate_dynamics(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                      struct kernel_estimate *out);
 
 /* kernel_branches: the model is not a plain open chain, so the programs for trees run it. */
 static inline bool kernel_branches(const struct model *m) { return !m->is_chain || m->nloop > 0; }
@@ -23,7 +27,7 @@ static inline bool kernel_branches(const struct model *m) { return !m->is_chain 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
  * exact but for loops and refinements, flops roughly. */
 #define estimate_tree REAL_NAME(estimate_tree)
-void estimate_tree(const struct run_spec *spec, const struct model *model, bool inverse, bool forward,
-                   struct kernel_estimate *out);
+void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
+                   bool forward, struct kernel_estimate *out);
 
 #endif

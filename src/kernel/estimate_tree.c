@@ -65,8 +65,8 @@ static void contraction(const struct tree_plan *p, const struct model *model, do
     }
 }
 
-void estimate_tree(const struct run_spec *spec, const struct model *model, bool inverse, bool forward,
-                   struct kernel_estimate *out)
+void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
+                   bool forward, struct kernel_estimate *out)
 {
     struct arena *a = arena_create();
     const struct tree_plan *p = tree_plan_make(model, spec->nrank, a);
@@ -74,13 +74,14 @@ void estimate_tree(const struct run_spec *spec, const struct model *model, bool 
     const double n = model->nbody, m = 1 + model->nrow;
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     const double passes = (1.0 + spec->kernel.inner_refinements) * (1.0 + spec->kernel.outer_refinements);
-    const double scans = inverse ? 3 : 0;
-    if (inverse || forward) scan(&j, n, true, out);
-    for (int k = 1; k < scans || (forward && !direct && k < 3); k++) scan(&j, n, false, out);
+    /* up: velocities (loops need the places that their scan finds), accelerations; down: forces */
+    const bool forces = inverse || (!direct && !omit->bias);
+    const int scans = (!omit->velocity || model->nloop > 0) + 2 * forces;
+    for (int k = 0; k < scans; k++) scan(&j, n, k == 0, out);
     out->flops += n * BODY_FLOP;
     if (forward) {
         struct kernel_estimate one = {0};
-        contraction(p, model, m, direct, &one);
+        contraction(p, model, m, direct && !omit->velocity, &one);
         add(&one, j.entries, SPACE * m);
         out->messages += passes * one.messages;
         out->bytes += passes * one.bytes;

@@ -215,22 +215,24 @@ static void operator_form(struct forward *f, bool terms)
     struct chain *ch = &f->chain;
     const int lo = ch->lo, hi = ch->hi;
     real before[SPACE], y[SPACE], moved[SPACE], residual = 0, scale = 0;
-    if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, terms ? f->gain_left : NULL, before);
+    const struct job_omit *omit = &ch->job->omit;
+    const bool gain = terms && !omit->load, bias = terms && !omit->velocity, base = terms && !omit->base;
+    if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, gain ? f->gain_left : NULL, before);
     else screw_copy(before, ch->shared->base);
     for (int i = lo; i < hi; i++) {
         real *z = chain_at(ch, f->z, i), reaction[SPACE];
         const struct subspace *s = subspace_of(f, i);
         const real *next = i + 1 < hi ? chain_at(ch, f->force, i + 1) : has_right(f) ? f->force_right : NULL;
-        body_acceleration(f, i, chain_at(ch, f->force, i), next, terms ? chain_at(ch, f->gain, i) : NULL, y);
+        body_acceleration(f, i, chain_at(ch, f->force, i), next, gain ? chain_at(ch, f->gain, i) : NULL, y);
         screw_copy(z, y);
         scale = largest_size(scale, SPACE, y);
-        if (i > 0 || terms) {
+        if (i > 0 || base) {
             transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
             screw_sub(z, moved);
             ch->work.flop += SCREW_ADD_FLOP;
             scale = largest_size(scale, SPACE, moved);
         }
-        if (terms) {
+        if (bias) {
             screw_sub(z, chain_at(ch, ch->b, i));
             ch->work.flop += SCREW_ADD_FLOP;
             scale = largest_size(scale, SPACE, chain_at(ch, ch->b, i));
@@ -336,13 +338,13 @@ static void evaluate_direct(struct forward *f)
     chain_velocity(ch);
     comm_stage(ch->comm, STAGE_ASSEMBLY);
     chain_bias(ch);
-    for (int i = ch->lo; i < ch->hi; i++) {
+    for (int i = ch->lo; i < ch->hi && !ch->job->omit.load; i++) {
         real *gain = chain_at(ch, f->gain, i);
         chain_gyro(ch, i, gain);
         for (int k = 0; k < SPACE; k++) gain[k] = -gain[k];
     }
     assemble_direct(f);
-    begin_forces(f, f->tau, true);
+    begin_forces(f, f->tau, !ch->job->omit.load);
     solve_operator_form(f, true, false);
     joint_accelerations(f, f->ud);
 }
@@ -387,16 +389,11 @@ static void evaluate_paper(struct forward *f)
 {
     struct chain *ch = &f->chain;
     const int nu = chain_nu(ch->shared, ch->lo, ch->hi);
-    comm_stage(ch->comm, STAGE_VELOCITY);
-    chain_velocity(ch);
-    comm_stage(ch->comm, STAGE_ACCELERATION);
-    chain_bias(ch);
-    chain_acceleration(ch, NULL);
-    comm_stage(ch->comm, STAGE_FORCE);
-    chain_force(ch, f->ud);
+    const bool bias = !ch->job->omit.bias;
+    if (bias) chain_bias_force(ch, f->ud);
     comm_stage(ch->comm, STAGE_ASSEMBLY);
-    for (int k = 0; k < nu; k++) f->ud[k] = f->tau[k] - f->ud[k];
-    ch->work.flop += (uint64_t)nu;
+    for (int k = 0; k < nu; k++) f->ud[k] = bias ? f->tau[k] - f->ud[k] : f->tau[k];
+    ch->work.flop += (uint64_t)(bias ? nu : 0);
     assemble_paper(f);
     paper_solution(f, f->ud);
 }

@@ -21,7 +21,7 @@ struct forward {
     real *ud;                       /* own joints: the answer */
     real *force;                    /* own bodies (SPACE): F in the body's frame */
     real *force_left, *force_right; /* F of bodies lo-1 and hi */
-    real *gain;                     /* direct: Fext - P of own bodies (SPACE) */
+    real *gain;                     /* direct: Fext - P of own bodies (SPACE); unused when the job omits loads */
     real *gain_left;                /* of body lo-1 */
     real *z;                        /* own bodies (SPACE): acceleration of the joint, H^T z = u', W^T z = 0 */
     real *D, *E;                    /* paper: Q^T D Q of own joints, Q^T E Q also of joint hi (SQUARE each) */

@@ -18,10 +18,20 @@
 struct model;
 struct state;
 
+/* What of the general program a job leaves out because it would only add zeros; all false: nothing. run decides it from
+ * the scene (run/omission.h), the programs and the estimates only ask. */
+struct job_omit {
+    bool velocity; /* no joint moves, nor will: no velocities, bias accelerations and gyroscopic forces */
+    bool load;     /* nor are there external forces: bodies carry no loads of their own */
+    bool base;     /* the base does not accelerate, and there is no gravity */
+    bool bias;     /* all three: the joint forces that the paper's formulation subtracts are zero */
+};
+
 struct kernel_job {
     const struct run_spec *spec;
     const struct model *model; /* NULL for kernels that need none (micro-benchmarks) */
     const struct state *state; /* q, qd, qdd, tau, external forces */
+    struct job_omit omit;
     int nrank;
     const void *shared;     /* what prepare made: partition tables, constant inertias; read-only */
     double *tau;            /* out (nu): inverse dynamics, model order; NULL if the task has none */
@@ -68,7 +78,8 @@ struct kernel_type {
     void (*run)(struct comm *c, const struct kernel_job *job, void *workspace);
 
     /* estimate: counts by formula, without running. */
-    void (*estimate)(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out);
+    void (*estimate)(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                     struct kernel_estimate *out);
 };
 
 /* kernel_find: by name, in double precision; NULL when there is none. */

@@ -136,39 +136,45 @@ static void estimate_messages(const struct run_spec *spec, double messages, stru
     out->rank_bytes = 2.0 * (double)spec->kernel.message_bytes + 16;
 }
 
-static void estimate_pingpong(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_pingpong(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                              struct kernel_estimate *out)
 {
-    (void)model;
+    (void)model, (void)omit;
     estimate_messages(spec, 2, out);
 }
 
-static void estimate_shift(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_shift(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                           struct kernel_estimate *out)
 {
-    (void)model;
+    (void)model, (void)omit;
     estimate_messages(spec, spec->kernel.distance % spec->nrank ? spec->nrank : 0, out);
 }
 
-static void estimate_all_to_all(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_all_to_all(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                                struct kernel_estimate *out)
 {
-    (void)model;
+    (void)model, (void)omit;
     estimate_messages(spec, (double)spec->nrank * (spec->nrank - 1), out);
 }
 
-static void estimate_bisection(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_bisection(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                               struct kernel_estimate *out)
 {
-    (void)model;
+    (void)model, (void)omit;
     estimate_messages(spec, spec->nrank, out);
 }
 
-static void estimate_hot_spot(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_hot_spot(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                              struct kernel_estimate *out)
 {
-    (void)model;
+    (void)model, (void)omit;
     estimate_messages(spec, spec->nrank - 1, out);
 }
 
-static void estimate_barrier(const struct run_spec *spec, const struct model *model, struct kernel_estimate *out)
+static void estimate_barrier(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                             struct kernel_estimate *out)
 {
-    (void)spec, (void)model;
+    (void)spec, (void)model, (void)omit;
     *out = (struct kernel_estimate){.rank_bytes = 16}; /* a barrier's messages belong to the machine */
 }
 

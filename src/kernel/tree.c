@@ -25,7 +25,7 @@ struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena 
     s->plan = tree_plan_make(m, job->nrank, a);
     s->body = bodies_make(m, a);
     base_motion(m, job->state, s->base);
-    s->closure = closure_shared_make(m, s->body, s->base, side_owners(m, s->plan, a), a);
+    s->closure = closure_shared_make(m, s->body, job->omit.base ? NULL : s->base, side_owners(m, s->plan, a), a);
     return s;
 }
 
@@ -72,17 +72,22 @@ void tree_load(struct tree *t)
     }
 }
 
+/* scans_velocity: whether the velocities are wanted, or what their scan builds on the way. */
+static bool scans_velocity(const struct tree *t) { return !t->job->omit.velocity || t->poses; }
+
 void tree_place(struct tree *t)
 {
+    const bool moves = scans_velocity(t);
+    t->composed = false;
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         const struct joint_cost *cost = body_cost(b);
         body_place(b, t->q + t->q_at[l], &t->pose[l]);
-        body_rate(&t->pose[l], t->u + t->u_at[l], tree_at(t->h, l));
-        t->work.flop += (uint64_t)(cost->place + cost->rate);
+        if (moves) body_rate(&t->pose[l], t->u + t->u_at[l], tree_at(t->h, l));
+        t->work.flop += (uint64_t)(cost->place + (moves ? cost->rate : 0));
         t->work.trig += (uint64_t)cost->place_trig;
         t->work.div += (uint64_t)cost->place_div;
-        t->work.call += 2;
+        t->work.call += moves ? 2 : 1;
     }
     tree_report(t);
 }
@@ -171,10 +176,12 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
 }
 
 /* scan_up: x_i += X_i^T x_parent along the whole tree, in place. */
-static void scan_up(struct tree *t, real *x, bool first, int tag)
+static void scan_up(struct tree *t, real *x, int tag)
 {
+    const bool first = !t->composed;
     const struct tree_plan *plan = t->shared->plan;
     real E[SPACE] = {0}, *inside = t->f; /* free until the forces */
+    t->composed = true;
     if (t->piece < 0) return;
     int nkid;
     tree_kids(t, &nkid);
@@ -196,13 +203,14 @@ static void scan_up(struct tree *t, real *x, bool first, int tag)
 
 void tree_velocity(struct tree *t)
 {
+    if (!scans_velocity(t)) return;
     memcpy(t->v, t->h, (size_t)(SPACE * t->n) * sizeof(real));
-    scan_up(t, t->v, true, TAG_VELOCITY);
+    scan_up(t, t->v, TAG_VELOCITY);
 }
 
 void tree_bias(struct tree *t)
 {
-    for (int l = 0; l < t->n; l++) {
+    for (int l = 0; l < t->n && !t->job->omit.velocity; l++) {
         const struct body *b = tree_body(t, l);
         body_bias(b, &t->pose[l], tree_at(t->v, l), tree_at(t->h, l), t->u + t->u_at[l], tree_at(t->b, l));
         t->work.flop += (uint64_t)body_cost(b)->bias;
@@ -212,25 +220,31 @@ void tree_bias(struct tree *t)
 
 void tree_acceleration(struct tree *t, const real *ud)
 {
-    memcpy(t->a, t->b, (size_t)(SPACE * t->n) * sizeof(real));
+    const size_t size = (size_t)(SPACE * t->n) * sizeof(real);
+    if (t->job->omit.velocity) memset(t->a, 0, size);
+    else memcpy(t->a, t->b, size);
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         if (ud) {
             subspace_h(&t->pose[l].s, ud + t->u_at[l], tree_at(t->a, l));
             t->work.flop += (uint64_t)body_cost(b)->h;
         }
-        if (b->parent < 0) add_motion(t, tree_at(t->a, l), &t->pose[l].x, t->shared->base);
+        if (b->parent < 0 && !t->job->omit.base) add_motion(t, tree_at(t->a, l), &t->pose[l].x, t->shared->base);
     }
-    scan_up(t, t->a, false, TAG_ACCELERATION);
+    scan_up(t, t->a, TAG_ACCELERATION);
 }
 
 void tree_gyro(struct tree *t, int l, real *f)
 {
     const struct body *b = tree_body(t, l);
     const double *fext = t->job->state->fext;
-    body_gyro(b, tree_at(t->v, l), f);
-    t->work.flop += BODY_GYRO_FLOP;
-    t->work.call++;
+    if (t->job->omit.velocity) {
+        screw_zero(f);
+    } else {
+        body_gyro(b, tree_at(t->v, l), f);
+        t->work.flop += BODY_GYRO_FLOP;
+        t->work.call++;
+    }
     if (!fext) return;
     real load[SPACE];
     body_load(b, fext + 6 * t->bodies[l], load);

@@ -29,6 +29,7 @@ struct tree {
     const int *bodies;      /* (n) */
     const int *q_at, *u_at; /* (n + 1) places in q, u and all arrays over own joints */
     bool poses;             /* the base's place is wanted: composites all the way down */
+    bool composed;          /* a scan has built the composites at these coordinates */
     struct work work;
     real *q, *u;
     struct body_pose *pose;

@@ -11,7 +11,7 @@
 
 enum run_status { RUN_OK, RUN_INVALID, RUN_DEADLOCK, RUN_FAILED };
 
-enum { RUN_MAX_STAGES = 16, RUN_MAX_BASELINES = 16, RUN_MAX_ERRORS = 16 };
+enum { RUN_MAX_STAGES = 16, RUN_MAX_BASELINES = 16, RUN_MAX_ERRORS = 16, RUN_MAX_OMISSIONS = 20 };
 
 /* Where the time of one rank went in one stage [ps], and what it sent. */
 struct stage_time {
@@ -59,6 +59,13 @@ struct error_check {
     double tolerance;       /* above: the run is RUN_INVALID */
 };
 
+/* Something that was not computed because the scene does not need it. */
+struct omission {
+    char what[48], why[96];
+    double bound;           /* largest relative change of a result; 0: exact, the same numbers */
+    unsigned keep;          /* KEEP_* of run_spec.h that puts it back; 0: nothing does */
+};
+
 struct run_result {
     enum run_status status;
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
@@ -74,6 +81,9 @@ struct run_result {
     struct baseline baseline[RUN_MAX_BASELINES];
     int nerror;
     struct error_check error[RUN_MAX_ERRORS];
+
+    int nomission;
+    struct omission omission[RUN_MAX_OMISSIONS];
 
     double residual;           /* largest constraint residual that a rank saw, relative; NaN: no forward dynamics */
     double condition;          /* lower bound of the block-scaled system's condition, from its pivots; 0: not known */

@@ -8,6 +8,7 @@
 #include "machine/node_cost.h"
 #include "machine/topology.h"
 #include "run/accuracy_ladder.h"
+#include "run/omission.h"
 #include "run/trial.h"
 
 enum { LEVELS = 5, REPEATS = 3 };
@@ -76,7 +77,8 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
     double begin = host_seconds();
     struct topology *t = topology_create(&m->topology, l->arena, &e);
     if (!t || !kernel || !kernel->estimate) return false;
-    kernel->estimate(&l->spec, l->model, &x);
+    const struct job_omit omit = omission_job(&l->spec, l->model, l->state);
+    kernel->estimate(&l->spec, l->model, &omit, &x);
     int P = l->spec.nrank;
     double hops = 0, bytes = x.messages > 0 ? x.bytes / x.messages : 0;
     for (int i = 1; i < P && i < t->nnode; i++) hops += topology_distance(t, 0, i);

@@ -31,8 +31,7 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
         if (!m) return false;
         job->model = m;
         struct state *state = state_make(m, &spec->model, a);
-        if (spec->keep & KEEP_EXTERNAL) state_fext_need(state, m, a);
-        job->state = state;
+        omission_prepare(job, state, a);
         if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
         if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
         if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
@@ -86,6 +85,7 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
         ok = launch_job(kernel, &job, &machine, &record, spec->seed + (uint64_t)spec->rep,
                         omission_largest_message(spec, kernel, &job), scratch, a, out, e);
     }
+    if (ok) omission_note(spec, kernel, &job, out);
     if (ok && job.model) {
         out->nbody = job.model->nbody;
         out->nu = job.model->nu;
@@ -110,14 +110,16 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     if (ok) ok = kernel->accepts(spec, m, e);
     if (ok) {
         struct kernel_estimate k = {0};
-        kernel->estimate(spec, m, &k);
+        struct state *s = m ? state_make(m, &spec->model, scratch) : NULL;
+        const struct job_omit omit = omission_job(spec, m, s);
+        kernel->estimate(spec, m, &omit, &k);
         out->nbody = m ? m->nbody : 0;
         out->nu = m ? m->nu : 0;
         if (m) out->metre = m->metre, out->kilogram = m->kilogram, out->second = m->second;
         out->messages = k.messages;
         out->bytes = k.bytes;
         out->flops = k.flops;
-        omission_list(spec, kernel, m, out);
+        out->nomission = omission_list(spec, kernel, m, s, out->omission);
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
         double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;

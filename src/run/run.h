@@ -25,12 +25,8 @@ struct run_estimate {
     double messages, bytes, flops;
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
-    int nomission;
-    struct omission {
-        char what[48], why[96];
-        bool exact; /* proof class: bit-identical; otherwise bounded */
-        unsigned keep;           /* KEEP_* that brings it back; 0: nothing does */
-    } omission[16];
+    int nomission;     /* what the run leaves out, whatever spec->keep says */
+    struct omission omission[RUN_MAX_OMISSIONS];
 };
 
 /* run_explain: estimate one run without making it. Returns false as run_one. */

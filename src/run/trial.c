@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "kernel/kernel.h"
 #include "run/launch.h"
+#include "run/omission.h"
 
 double trial_error(const double *x, const double *reference, int n)
 {
@@ -35,6 +36,7 @@ static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, c
                      const struct model *m, const struct state *s, struct arena *a, struct err *e)
 {
     *job = (struct kernel_job){.spec = spec, .model = m, .state = s, .nrank = spec->nrank};
+    job->omit = omission_job(spec, m, s);
     job->residual = TAKE(a, spec->nrank, double);
     job->condition = TAKE(a, spec->nrank, double);
     job->loop_rank = TAKE(a, 1, int);

@@ -7,6 +7,7 @@
 #include "kernel/kernel.h"
 #include "run/verify_rows.h"
 #include "run/launch.h"
+#include "run/omission.h"
 
 /* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
 struct variant {
@@ -72,6 +73,7 @@ static bool job_make(struct verify_case *v, const struct kernel_type *kernel, co
                                .nrank = spec->nrank, .residual = TAKE(v->arena, spec->nrank, double),
                                .condition = TAKE(v->arena, spec->nrank, double),
                                .loop_rank = TAKE(v->arena, 1, int)};
+    job->omit = omission_job(spec, m, job->state);
     if (kernel->does_inverse) job->tau = TAKE(v->arena, m->nu + 1, double);
     if (kernel->does_forward) job->qdd = TAKE(v->arena, m->nu + 1, double);
     if (m->nrow > 0) job->lambda = TAKE(v->arena, m->nrow, double);

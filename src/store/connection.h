@@ -36,6 +36,7 @@
     X(RANK_STAGE, "INSERT INTO rank_stage VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")                                   \
     X(BASELINE, "INSERT INTO baseline VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")                                          \
     X(ERROR_CHECK, "INSERT INTO error_check VALUES (?, ?, ?, ?, ?, ?, ?)")                                             \
+    X(OMISSION, "INSERT INTO run_omission VALUES (?, ?, ?, ?, ?)")                                                     \
     X(LINK_LOAD, "INSERT INTO link_load VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")                                           \
     X(SPAN, "INSERT INTO span VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")                                                  \
     X(BEGIN, "BEGIN IMMEDIATE")                                                                                        \
@@ -50,7 +51,7 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 2,              /* of schema.sql, in user_version */
+    STORE_VERSION = 3,              /* of schema.sql, in user_version */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */

@@ -73,7 +73,7 @@ CREATE TABLE run (
     inner_added      INTEGER NOT NULL,  -- refinements that were switched on because the first answer needed them:
     outer_added      INTEGER NOT NULL,  -- `residual` and all times are those with them
     residual_before  REAL,              -- of that first answer
-    left_out         TEXT NOT NULL,     -- what the plan left out, with reasons
+    left_out         TEXT NOT NULL,     -- what it left out, with reasons: run_omission as text
     config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash
     build_id         INTEGER NOT NULL REFERENCES build (id),
     created_utc      TEXT NOT NULL,
@@ -301,7 +301,17 @@ CREATE TABLE stability (
     PRIMARY KEY (suite, subject, algorithm, precision)
 ) STRICT, WITHOUT ROWID;
 
--- What was not computed because the scene does not need it, and what that saves.
+-- What was not computed because the scene of the run does not need it.
+CREATE TABLE run_omission (
+    run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    what   TEXT NOT NULL,
+    why    TEXT NOT NULL,
+    class  TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),
+    bound  REAL,                       -- largest relative change of a result, of bounded ones
+    PRIMARY KEY (run_id, what)
+) STRICT, WITHOUT ROWID;
+
+-- The omissions of a scenario, and what they save.
 CREATE TABLE omission (
     scenario         TEXT NOT NULL,
     what             TEXT NOT NULL,

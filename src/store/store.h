@@ -30,9 +30,8 @@ void store_close(struct store *s);
 /* store_has: whether a run that ended RUN_OK with this identity is stored (RUN_INVALID and others are run again). */
 bool store_has(struct store *s, const struct run_spec *spec);
 
-/* store_put: the run with provenance, in one transaction; nothing is stored on failure. `left_out` is a text list. */
-bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, const char *left_out,
-               struct err *e);
+/* store_put: the run with provenance, in one transaction; nothing is stored on failure. */
+bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e);
 
 /* One value of a row, as stored: non-finite reals become NULL. */
 struct store_value {

@@ -1,4 +1,5 @@
-/* store_put.c - one finished run becomes rows: run, settings, stages, ranks, baselines, checks, links, spans.
+/* store_put.c - one finished run becomes rows: run, settings, stages, ranks, baselines, checks, omissions, links,
+ * spans.
  *
  * All of them in one transaction. Sums over ranks are made here, so that a run of a million ranks stores as many rows
  * as one of two. */
@@ -11,45 +12,10 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/text.h"
 #include "spec/field.h"
+#include "store/binding.h"
 #include "store/build.h"
-#include "store/connection.h"
-
-/* A statement whose parameters are bound one after the other. */
-struct binding {
-    sqlite3_stmt *statement;
-    int next;
-};
-
-static void bind_int(struct binding *b, int64_t v) { sqlite3_bind_int64(b->statement, b->next++, v); }
-
-static void bind_count(struct binding *b, uint64_t v) { bind_int(b, (int64_t)v); }
-
-static void bind_null(struct binding *b) { sqlite3_bind_null(b->statement, b->next++); }
-
-static void bind_real(struct binding *b, double v)
-{
-    if (isfinite(v)) sqlite3_bind_double(b->statement, b->next++, v);
-    else bind_null(b);
-}
-
-static void bind_text(struct binding *b, const char *v)
-{
-    sqlite3_bind_text(b->statement, b->next++, v, -1, SQLITE_STATIC);
-}
-
-static void bind_int_if(struct binding *b, bool known, int64_t v)
-{
-    if (known) bind_int(b, v);
-    else bind_null(b);
-}
-
-/* Starts a statement; false with the error set. */
-static bool bind_start(struct store *s, enum statement which, struct binding *b, struct err *e)
-{
-    *b = (struct binding){store_statement(s, which, e), 1};
-    return b->statement != NULL;
-}
 
 /* Run a statement that finds one row id; 0 when there is none. */
 static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err *e)
@@ -231,24 +197,35 @@ static void bind_level_choice(struct binding *b, const struct run_spec *spec, ch
     bind_text(b, c->made ? c->at : NULL);
 }
 
-static bool put_run(struct store *s, const struct run_spec *spec, const struct run_result *r, const char *left_out,
-                    int64_t *id, struct err *e)
+/* The omissions as one text. */
+static void join_omissions(const struct run_result *r, struct text *out)
+{
+    text_add(out, "%s", "");
+    for (int i = 0; i < r->nomission; i++)
+        text_add(out, "%s%s: %s", i > 0 ? "; " : "", r->omission[i].what, r->omission[i].why);
+}
+
+static bool put_run(struct store *s, const struct run_spec *spec, const struct run_result *r, int64_t *id,
+                    struct err *e)
 {
     struct binding b;
     char digest[17], asked[64];
+    struct text left_out = {0};
     if (!bind_start(s, STATEMENT_RUN_INSERT, &b, e)) return false;
+    join_omissions(r, &left_out);
     bind_spec(&b, spec, r);
     bind_result(&b, r, digest);
     bind_level_choice(&b, spec, asked);
     bind_int(&b, r->inner_added);
     bind_int(&b, r->outer_added);
     bind_real(&b, r->inner_added + r->outer_added > 0 ? r->residual_before : NAN);
-    bind_text(&b, left_out ? left_out : "");
+    bind_text(&b, left_out.s);
     bind_text(&b, spec->config_text ? spec->config_text : "");
     bind_int(&b, s->build_id);
-    if (!store_step(s, b.statement, e)) return false;
-    *id = sqlite3_last_insert_rowid(s->db);
-    return true;
+    const bool ok = store_step(s, b.statement, e);
+    text_free(&left_out);
+    if (ok) *id = sqlite3_last_insert_rowid(s->db);
+    return ok;
 }
 
 /* The row of a setting, made when it is new. */
@@ -408,6 +385,22 @@ static bool put_errors(struct store *s, int64_t run, const struct run_result *r,
     return true;
 }
 
+static bool put_omissions(struct store *s, int64_t run, const struct run_result *r, struct err *e)
+{
+    for (int i = 0; i < r->nomission; i++) {
+        const struct omission *o = &r->omission[i];
+        struct binding b;
+        if (!bind_start(s, STATEMENT_OMISSION, &b, e)) return false;
+        bind_int(&b, run);
+        bind_text(&b, o->what);
+        bind_text(&b, o->why);
+        bind_text(&b, o->bound > 0 ? "bounded" : "exact");
+        bind_real(&b, o->bound > 0 ? o->bound : NAN);
+        if (!store_step(s, b.statement, e)) return false;
+    }
+    return true;
+}
+
 /* Busiest first: longest queues, then longest use, then place. */
 static int compare_load(const void *a, const void *b)
 {
@@ -481,16 +474,16 @@ static bool remove_old(struct store *s, const struct run_spec *spec, struct err 
     return store_step(s, b.statement, e);
 }
 
-bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, const char *left_out,
-               struct err *e)
+bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e)
 {
     bool alone = !s->in_transaction;
     int64_t run = 0;
     CHECK(s->writable);
     if (alone && !store_begin(s, e)) return false;
-    bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, r, left_out, &run, e) &&
+    bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, r, &run, e) &&
               put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) && put_baselines(s, run, r, e) &&
-              put_errors(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e);
+              put_errors(s, run, r, e) && put_omissions(s, run, r, e) && put_links(s, run, r, e) &&
+              put_spans(s, run, r, e);
     if (!alone) return ok;
     if (ok) return store_commit(s, e);
     store_rollback(s);

@@ -133,7 +133,7 @@ static void estimates_equal_what_is_sent(void **state)
             struct err err = {0};
             struct arena *a = arena_create();
             const struct kernel_type *kernel = kernel_find("dynamics");
-            kernel->estimate(&spec, model_build(&spec.model, a, &err), &e);
+            kernel->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
             arena_destroy(a);
             assert_int_equal((int64_t)e.messages, r.messages);
             assert_int_equal((int64_t)e.bytes, r.bytes);
@@ -164,7 +164,7 @@ static void estimates_of_all_rows_and_of_trees(void **state)
             struct kernel_estimate e;
             struct err err = {0};
             struct arena *a = arena_create();
-            kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err), &e);
+            kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
             arena_destroy(a);
             assert_int_equal((int64_t)e.messages, r.messages);
             assert_int_equal((int64_t)e.bytes, r.bytes);

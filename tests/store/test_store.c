@@ -71,7 +71,7 @@ static double number(struct fixture *f, const char *sql) { return strtod(cell(f,
 
 static void put(struct fixture *f, const struct run_spec *spec, const struct run_result *r)
 {
-    if (!store_put(f->s, spec, r, "base terms: the base is fixed", &f->e)) fail_msg("%s", f->e.text);
+    if (!store_put(f->s, spec, r, &f->e)) fail_msg("%s", f->e.text);
 }
 
 static void a_run_comes_back_as_it_was_put(void **state)
@@ -81,6 +81,9 @@ static void a_run_comes_back_as_it_was_put(void **state)
     struct run_result r = made_result(f->a, &spec);
     r.status = RUN_INVALID;
     strcpy(r.text, "tau is wrong: 'x' \"y\" \xc3\xa9");
+    r.nomission = 2;
+    r.omission[0] = (struct omission){.what = "base terms", .why = "the base is fixed"};
+    r.omission[1] = (struct omission){.what = "joints", .why = "all are fixed", .bound = 0.25};
     r.digest = UINT64_C(0xfedcba9876543210);
     put(f, &spec, &r);
     assert_string_equal(cell(f, "SELECT config_hash FROM run"), spec.config_hash);
@@ -90,7 +93,10 @@ static void a_run_comes_back_as_it_was_put(void **state)
     assert_string_equal(hash, spec.config_hash);
     assert_string_equal(cell(f, "SELECT status || '|' || text FROM run"), "invalid|tau is wrong: 'x' \"y\" \xc3\xa9");
     assert_string_equal(cell(f, "SELECT digest FROM run"), "fedcba9876543210");
-    assert_string_equal(cell(f, "SELECT left_out FROM run"), "base terms: the base is fixed");
+    assert_string_equal(cell(f, "SELECT left_out FROM run"), "base terms: the base is fixed; joints: all are fixed");
+    assert_string_equal(cell(f, "SELECT group_concat(what||'|'||why||'|'||class||'|'||ifnull(bound, 'NULL'), '; ')"
+                                " FROM (SELECT * FROM run_omission ORDER BY what)"),
+                        "base terms|the base is fixed|exact|NULL; joints|all are fixed|bounded|0.25");
     assert_string_equal(
         cell(f, "SELECT machine||level||topology||kernel||formulation||solver||operators||precision"
                 "||model||base||joint||n||'/'||P||'/'||rep FROM run"),
@@ -370,7 +376,7 @@ static void a_run_that_fails_half_way_leaves_no_row(void **state)
                                   "BEGIN SELECT RAISE(ABORT, 'planted'); END",
                                   NULL, NULL, NULL),
                      SQLITE_OK);
-    assert_false(store_put(f->s, &spec, &r, NULL, &f->e));
+    assert_false(store_put(f->s, &spec, &r, &f->e));
     assert_non_null(strstr(f->e.text, "planted"));
     assert_int_equal(number(f, "SELECT count(*) FROM run"), 1);
     assert_int_equal(number(f, "SELECT count(DISTINCT run_id) FROM rank_stage"), 1);
@@ -410,7 +416,7 @@ static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **stat
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     char answer[8192];
-    assert_true(store_put(passing, &spec, &r, NULL, &f->e));
+    assert_true(store_put(passing, &spec, &r, &f->e));
     assert_true(store_has(passing, &spec));
     assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "1");

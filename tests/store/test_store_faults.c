@@ -71,7 +71,7 @@ static void fill(const char *path, int count)
     for (int i = 0; i < count; i++) {
         struct run_spec spec = made_spec(a, "t3e-300", 16, 16, i);
         struct run_result r = made_result(a, &spec);
-        assert_true(store_put(s, &spec, &r, NULL, &e));
+        assert_true(store_put(s, &spec, &r, &e));
     }
     store_close(s);
     arena_destroy(a);
@@ -161,9 +161,9 @@ static void a_newer_schema_is_refused_with_both_versions(void **state)
     struct fixture *f = *state;
     fill(f->path, 1);
     sql(f->path, "PRAGMA user_version = 42");
-    expect(f, f->path, STORE_READ, ERR_DATA, "version 42, this program knows version 2");
+    expect(f, f->path, STORE_READ, ERR_DATA, "version 42, this program knows version 3");
     expect(f, f->path, STORE_WRITE, ERR_DATA, "newer mimdsim");
-    sql(f->path, "PRAGMA user_version = 2");
+    sql(f->path, "PRAGMA user_version = 3");
     assert_int_equal(count_runs(f->path), 1);
 }
 
@@ -290,7 +290,7 @@ static void put_on_full_disk(struct fixture *f)
     struct run_spec spec = made_spec(a, "t3e-300", 256, 256, 99);
     struct run_result r = made_result(a, &spec);
     limit_files(30000);
-    REQUIRE(!store_put(s, &spec, &r, NULL, &f->e));
+    REQUIRE(!store_put(s, &spec, &r, &f->e));
     REQUIRE(f->e.kind == ERR_IO);
     REQUIRE(!store_has(s, &spec));
 }
@@ -316,7 +316,7 @@ static void run_for_ever(struct fixture *f, int told)
     for (int i = 0;; i++) {
         struct run_spec spec = made_spec(a, "t3e-300", 64, 64, i);
         struct run_result r = made_result(a, &spec);
-        REQUIRE(store_put(s, &spec, &r, NULL, &f->e));
+        REQUIRE(store_put(s, &spec, &r, &f->e));
         REQUIRE(write(told, &i, sizeof i) == sizeof i);
     }
 }
@@ -376,7 +376,7 @@ static void two_writers_at_once_lose_nothing(void **state)
         for (int i = 0; i < 30; i++) {
             struct run_spec spec = made_spec(a, "t3e-300", 8, 8, i * 2 + c);
             struct run_result r = made_result(a, &spec);
-            REQUIRE(store_put(s, &spec, &r, NULL, &f->e));
+            REQUIRE(store_put(s, &spec, &r, &f->e));
         }
         store_close(s);
         _exit(0);

@@ -1,0 +1,295 @@
+/* test_omission.c - leaving out what a scene does not need changes no result beyond the omission's class. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/random.h"
+#include "run/launch.h"
+#include "run/omission.h"
+#include "run/run.h"
+#include "run/trial.h"
+
+enum { SCENES = 260, MOST_NUMBERS = 400 };
+
+/* Everything that a run answers. */
+struct answer {
+    int n;
+    double x[MOST_NUMBERS]; /* tau, qdd, q and qd at the end, loop forces */
+    int part[6];            /* where each of them begins */
+    int64_t makespan_ps;
+    int64_t finish_ps[64];
+    int nrank;
+};
+
+static void append(struct answer *v, int part, const double *x, int n)
+{
+    v->part[part] = v->n;
+    assert_true(v->n + n <= MOST_NUMBERS);
+    for (int i = 0; x && i < n; i++) v->x[v->n++] = x[i];
+    v->part[part + 1] = v->n;
+}
+
+/* One of the words, each as likely as the others. */
+static int any(struct random *r, int n) { return (int)random_below(r, (uint64_t)n); }
+static bool often(struct random *r, int one_in) { return any(r, one_in) != 0; }
+
+static void draw_model(struct random *r, struct model_spec *m)
+{
+    static const enum model_generator kinds[] = {MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN, MODEL_SERIAL_CHAIN,
+                                                 MODEL_COMB,         MODEL_STAR,         MODEL_RANDOM_TREE,
+                                                 MODEL_DENDRIMER,    MODEL_RING,         MODEL_FOUR_BAR};
+    static const enum model_joint joints[] = {JOINT_REVOLUTE,  JOINT_REVOLUTE,    JOINT_PRISMATIC,
+                                              JOINT_SPHERICAL, JOINT_CYLINDRICAL, JOINT_MIXED};
+    *m = (struct model_spec){.generator = kinds[any(r, 9)],
+                             .nbody = 1 + any(r, 13),
+                             .joint = joints[any(r, 6)],
+                             .base = (enum model_base)any(r, 3),
+                             .inertia = INERTIA_RANDOM,
+                             .pose = POSE_RANDOM,
+                             .axes = AXES_TWISTED,
+                             .length = 1,
+                             .radius = 0.05,
+                             .mass = 1,
+                             .mass_ratio = 4,
+                             .torque = 1,
+                             .branch = 2,
+                             .seed = random_u64(r) >> 40};
+    if (m->generator == MODEL_FOUR_BAR) m->nbody = 3;
+    if (m->generator == MODEL_RING) {
+        m->nbody += 3;
+        m->joint = JOINT_REVOLUTE;
+    }
+    if (m->generator == MODEL_FOUR_BAR || m->generator == MODEL_RING) m->base = BASE_FIXED;
+    if (often(r, 2)) m->gravity[2] = -9.81, m->gravity[0] = 1;
+    if (!often(r, 3)) m->rate = 1;
+    if (!often(r, 4)) m->external_force = 2;
+    if (!often(r, 4)) m->stiffness = 3, m->damping = 0.1;
+    for (int i = any(r, 2) * 3; i < 6; i++) m->base_acceleration[i] = random_normal(r);
+}
+
+static void draw_kernel(struct random *r, const struct model_spec *m, struct kernel_spec *k)
+{
+    static const char *const names[] = {"inverse", "forward", "dynamics"};
+    const bool chain = m->generator == MODEL_SERIAL_CHAIN;
+    *k = (struct kernel_spec){.formulation = (enum formulation)any(r, 2),
+                              .solver = (enum solver)any(r, 6),
+                              .part_solver = (enum part_solver)any(r, 2),
+                              .operators = chain && !often(r, 4) ? OPERATORS_DENSE : OPERATORS_STRUCTURED,
+                              .precision = often(r, 4) ? PRECISION_DOUBLE : (enum precision)any(r, 3),
+                              .partition = (enum partition_rule)any(r, 2),
+                              .composites_incoming = often(r, 3),
+                              .hybrid_levels = 1,
+                              .inner_refinements = often(r, 3) ? 0 : 1,
+                              .outer_refinements = often(r, 3) ? 0 : 1,
+                              .steps = often(r, 6) ? 0 : 2,
+                              .step_size = 1e-3,
+                              .step = (enum step_rule)any(r, 3)};
+    snprintf(k->name, sizeof k->name, "%s", names[any(r, 3)]);
+    if (k->solver == SOLVER_PCR) k->inner_refinements = k->outer_refinements = 0;
+}
+
+/* Scene number `number` of a stream that is the same on every host. */
+static struct run_spec draw(int number)
+{
+    static const enum network_level levels[] = {LEVEL_LOGGP, LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_AUTO};
+    struct random r = random_make(20, (uint64_t)number, 1);
+    struct run_spec s = {0};
+    draw_model(&r, &s.model);
+    draw_kernel(&r, &s.model, &s.kernel);
+    s.nrank = 1 + any(&r, s.model.nbody);
+    s.machine = trial_machine(s.nrank);
+    s.machine.network.level = levels[any(&r, 5)];
+    s.machine.network.packet_bytes = 256;
+    s.machine.network.flit_bytes = 8;
+    s.machine.network.buffer_flits = 64;
+    return s;
+}
+
+/* answer_of: the spec's run with what spec->keep says; false: the kernel does not do such scenes. `left_out` (may be
+ * NULL): what it leaves out. */
+static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v, struct omission *left_out, int *n)
+{
+    struct err e = {0};
+    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
+    struct model *m = model_build(&spec->model, a, &e);
+    if (!m) fail_msg("%s", e.text);
+    struct state *s = state_make(m, &spec->model, a);
+    struct kernel_job job = {.spec = spec, .model = m, .nrank = spec->nrank};
+    if (left_out) *n = omission_list(spec, k, m, s, left_out);
+    omission_prepare(&job, s, a);
+    m = (struct model *)job.model;
+    const bool steps = spec->kernel.steps > 0;
+    if (k->does_inverse) job.tau = TAKE(a, m->nu + 1, double);
+    if (k->does_forward) job.qdd = TAKE(a, m->nu + 1, double);
+    if (steps) job.q_end = TAKE(a, m->nq + 1, double), job.qd_end = TAKE(a, m->nu + 1, double);
+    if (m->nrow) job.lambda = TAKE(a, m->nrow, double);
+    if (!k->accepts(spec, m, &e) || !k->prepare(&job, a, &e)) return false;
+    struct machine_spec machine = omission_machine(spec);
+    struct record_spec record = omission_record(spec);
+    struct run_result *result = TAKE(a, 1, struct run_result);
+    if (!launch_job(k, &job, &machine, &record, 1, omission_largest_message(spec, k, &job), a, a, result, &e))
+        fail_msg("%s", e.text);
+    assert_int_equal(result->status, RUN_OK);
+    *v = (struct answer){.nrank = spec->nrank, .makespan_ps = result->makespan_ps};
+    append(v, 0, job.tau, m->nu);
+    append(v, 1, job.qdd, m->nu);
+    append(v, 2, job.q_end, m->nq);
+    append(v, 3, job.qd_end, m->nu);
+    append(v, 4, job.lambda, m->nrow);
+    memcpy(v->finish_ps, result->finish_ps, (size_t)spec->nrank * sizeof(int64_t));
+    return true;
+}
+
+/* change: largest difference of two answers, each quantity relative to its largest number; 0: all numbers are equal, a
+ * NaN to a NaN. */
+static double change(const struct answer *a, const struct answer *b)
+{
+    double worst = a->n == b->n ? 0 : INFINITY;
+    for (int part = 0; part < 5 && a->n == b->n; part++) {
+        double scale = 0, difference = 0;
+        for (int i = a->part[part]; i < a->part[part + 1]; i++) {
+            if (a->x[i] == b->x[i] || (isnan(a->x[i]) && isnan(b->x[i]))) continue;
+            if (isnan(a->x[i]) || isnan(b->x[i])) return INFINITY;
+            difference = fmax(difference, fabs(a->x[i] - b->x[i]));
+        }
+        for (int i = a->part[part]; i < a->part[part + 1]; i++) scale = fmax(scale, fabs(a->x[i]));
+        if (difference > 0) worst = fmax(worst, scale > 0 ? difference / scale : difference);
+    }
+    return worst;
+}
+
+static void describe(const struct run_spec *s, char *text, size_t size)
+{
+    snprintf(text, size, "%s, generator %d, n %d, P %d, joint %d, formulation %d, solver %d, precision %d, steps %d",
+             s->kernel.name, s->model.generator, s->model.nbody, s->nrank, s->model.joint, s->kernel.formulation,
+             s->kernel.solver, s->kernel.precision, s->kernel.steps);
+}
+
+/* What only the simulator and the references leave out: no simulated time may change. */
+enum { ON_THE_HOST = KEEP_START_EVENTS | KEEP_SPANS | KEEP_LINKS | KEEP_BASELINE | KEEP_CONTENTION };
+
+/* held_against: the answer with something put back against the one without. */
+static void held_against(int number, const struct run_spec *spec, const struct answer *lean, const struct answer *full,
+                         const char *what, double bound, bool same_times)
+{
+    char text[300];
+    const double c = change(lean, full);
+    describe(spec, text, sizeof text);
+    if (c > bound) fail_msg("scene %d: %s: changed by %g, more than %g (%s)", number, what, c, bound, text);
+    if (lean->makespan_ps > full->makespan_ps)
+        fail_msg("scene %d: %s makes it slower: %lld, not %lld (%s)", number, what, (long long)lean->makespan_ps,
+                 (long long)full->makespan_ps, text);
+    if (same_times && memcmp(lean->finish_ps, full->finish_ps, (size_t)lean->nrank * sizeof(int64_t)) != 0)
+        fail_msg("scene %d: %s: other times (%s)", number, what, text);
+}
+
+/* How many scenes had each omission. */
+struct tally {
+    unsigned keep;
+    char what[48];
+    int scenes;
+};
+
+static void count(struct tally *t, const struct omission *o)
+{
+    while (t->scenes > 0 && strcmp(t->what, o->what) != 0) t++;
+    memcpy(t->what, o->what, sizeof t->what);
+    t->keep = o->keep;
+    t->scenes++;
+}
+
+static int try_scene(int number, struct tally *tally)
+{
+    struct omission left_out[RUN_MAX_OMISSIONS];
+    struct answer lean, full;
+    struct run_spec spec = draw(number);
+    struct arena *a = arena_create();
+    int n = 0;
+    double bounds = 0;
+    const bool does = answer_of(&spec, a, &lean, left_out, &n);
+    for (int i = 0; does && i < n; i++) {
+        count(tally, &left_out[i]);
+        bounds += left_out[i].bound;
+        if (left_out[i].keep == 0) continue;
+        spec.keep = left_out[i].keep;
+        if (!answer_of(&spec, a, &full, NULL, NULL)) continue;
+        held_against(number, &spec, &lean, &full, left_out[i].what, left_out[i].bound,
+                     (left_out[i].keep & ~(unsigned)ON_THE_HOST) == 0);
+    }
+    spec.keep = KEEP_ALL;
+    if (does && answer_of(&spec, a, &full, NULL, NULL))
+        held_against(number, &spec, &lean, &full, "all of them", bounds, false);
+    arena_destroy(a);
+    return does;
+}
+
+static void no_omission_changes_a_result_beyond_its_class(void **state)
+{
+    (void)state;
+    struct tally tally[RUN_MAX_OMISSIONS + 1] = {0};
+    int scenes = 0;
+    for (int number = 0; number < SCENES; number++) scenes += try_scene(number, tally);
+    assert_true(scenes >= 200);
+    static const unsigned rare[] = {KEEP_EXTERNAL, KEEP_VELOCITY, KEEP_BASE, KEEP_BIAS, KEEP_START_EVENTS,
+                                    KEEP_CONTENTION};
+    for (size_t i = 0; i < sizeof rare / sizeof *rare; i++) {
+        int found = 0;
+        for (const struct tally *t = tally; t->scenes > 0; t++) found += t->keep == rare[i] ? t->scenes : 0;
+        if (found < 8) fail_msg("keep bit %u: only %d scenes", rare[i], found);
+    }
+}
+
+static void a_changed_digit_is_seen(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct run_spec spec = draw(0);
+    struct answer v, w;
+    for (int number = 1; !answer_of(&spec, a, &v, NULL, NULL); number++) spec = draw(number);
+    w = v;
+    assert_true(change(&v, &w) == 0);
+    for (int i = 0; i < v.n; i++) {
+        w.x[i] = nextafter(v.x[i], INFINITY);
+        assert_true(change(&v, &w) > 0);
+        w.x[i] = NAN;
+        assert_true(change(&v, &w) == INFINITY);
+        w.x[i] = v.x[i];
+    }
+    w.n--;
+    assert_true(change(&v, &w) == INFINITY);
+    arena_destroy(a);
+}
+
+/* A moving scene whose velocity terms are dropped all the same must not pass for the same. */
+static void a_wrong_omission_is_seen(void **state)
+{
+    (void)state;
+    for (int number = 0, found = 0; found < 20; number++) {
+        struct run_spec spec = draw(number), rest = spec;
+        struct arena *a = arena_create();
+        struct answer v, w;
+        rest.model.rate = 0;
+        if (spec.model.rate > 0 && spec.model.nbody > 2 && spec.model.joint == JOINT_REVOLUTE &&
+            answer_of(&spec, a, &v, NULL, NULL) && answer_of(&rest, a, &w, NULL, NULL)) {
+            assert_true(change(&v, &w) > 1e-9);
+            found++;
+        }
+        arena_destroy(a);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_omission_changes_a_result_beyond_its_class),
+        cmocka_unit_test(a_changed_digit_is_seen),
+        cmocka_unit_test(a_wrong_omission_is_seen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
