@@ -298,7 +298,7 @@ static void refine_outside(struct contraction *k)
     const int outer = k->tree.job->spec->kernel.outer_refinements;
     /* of the answer itself; the corrections have their own */
     const real residual = k->residual, scale = k->residual_scale;
-    struct refinement course;
+    struct refinement course = {.before = 1};
     /* the paper's residual does not see the errors of its bias forces */
     const real known = k->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, c, TAG_EXTREME, known);
@@ -307,7 +307,7 @@ static void refine_outside(struct contraction *k)
         going = refine(k, &course);
         k->refined += going;
     }
-    k->residual = residual;
+    k->residual = course.before < residual ? course.before : residual; /* the error that the last pass found */
     k->residual_scale = scale;
 }
 

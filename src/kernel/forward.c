@@ -208,6 +208,13 @@ static void body_acceleration(struct forward *f, int i, const real *force, const
     ch->work.call++;
 }
 
+/* force_above: F of joint i + 1; NULL: there is none. */
+static const real *force_above(struct forward *f, int i)
+{
+    if (i + 1 < f->chain.hi) return chain_at(&f->chain, f->force, i + 1);
+    return has_right(f) ? f->force_right : NULL;
+}
+
 /* operator_form: z_i = y_i - X_i^T y_{i-1} - b_i of own bodies (physics 4.8); without `terms` the velocity terms, the
  * external forces and the base are left out. Notes the residual. */
 static void operator_form(struct forward *f, bool terms)
@@ -222,8 +229,7 @@ static void operator_form(struct forward *f, bool terms)
     for (int i = lo; i < hi; i++) {
         real *z = chain_at(ch, f->z, i), reaction[SPACE];
         const struct subspace *s = subspace_of(f, i);
-        const real *next = i + 1 < hi ? chain_at(ch, f->force, i + 1) : has_right(f) ? f->force_right : NULL;
-        body_acceleration(f, i, chain_at(ch, f->force, i), next, gain ? chain_at(ch, f->gain, i) : NULL, y);
+        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL, y);
         screw_copy(z, y);
         scale = largest_size(scale, SPACE, y);
         if (i > 0 || base) {
@@ -281,7 +287,8 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
     }
 }
 
-/* paper_residual: largest |W^T D F| over the largest term; it is a monitor, so it costs the machine nothing. */
+/* paper_residual: largest |W^T D F|, an acceleration that a joint forbids, over the largest acceleration of a body; it is
+ * a monitor, so it costs the machine nothing. */
 static void paper_residual(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -289,10 +296,9 @@ static void paper_residual(struct forward *f)
     real residual = 0, scale = 0, y[SPACE];
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = subspace_of(f, i)->d;
-        multiply_rows(f, i, 0, SPACE, false, y);
+        multiply_rows(f, i, d, SPACE, false, y);
         residual = largest_size(residual, SPACE - d, y + d);
-        scale = largest_size(scale, SPACE, y);
-        multiply_rows(f, i, 0, SPACE, true, y);
+        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), NULL, y);
         scale = largest_size(scale, SPACE, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
@@ -428,7 +434,7 @@ static void refine_outside(struct forward *f)
     const int outer = ch->job->spec->kernel.outer_refinements;
     /* of the answer itself; the corrections have their own */
     const real residual = f->residual, scale = f->residual_scale;
-    struct refinement course;
+    struct refinement course = {.before = 1};
     /* the paper's residual does not see the errors of its bias forces */
     const real known = f->direct ? residual : (real)INFINITY;
     bool going = outer > 0 && refinement_begin(&course, ch->comm, TAG_EXTREME, known);
@@ -437,7 +443,7 @@ static void refine_outside(struct forward *f)
         going = refine(f, &course);
         f->refined += going;
     }
-    f->residual = residual;
+    f->residual = course.before < residual ? course.before : residual; /* the error that the last pass found */
     f->residual_scale = scale;
 }
 
