@@ -1,21 +1,64 @@
--- Work-precision diagram: the error of every rung of a scenario's ladders against the host's seconds and against the
--- seconds that the simulated machine would take. An error of nothing is drawn at the bottom; rungs that failed have no
--- error and are listed below the figure, never dropped.
+-- Work-precision diagrams of one scenario: the error of every rung of its ladders against the host's seconds and against
+-- the seconds that the simulated machine would take. Methods that give the same bits at the same predicted cost share a
+-- curve. Rungs that failed are listed, never dropped.
 -- needs: mimdsim accuracy scenarios/speedup-t3e.yaml
-WITH one AS (SELECT min(scenario) AS scenario FROM ladder),
+-- each: SELECT DISTINCT scenario, 'accuracy-' || scenario FROM ladder ORDER BY 1
+WITH place AS ( -- of several points that were measured, the one that takes the machine longest
+    SELECT DISTINCT ladder, first_value(at) OVER one AS at, first_value(family) OVER one AS family FROM ladder
+    WHERE scenario = ?1 WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
 rung AS (
-    SELECT l.*, dense_rank() OVER (ORDER BY CASE l.ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2
-                                                          WHEN 'integration' THEN 3 ELSE 4 END, l.ladder) AS panel
-    FROM ladder l JOIN one o ON o.scenario = l.scenario
-    WHERE l.quantity = (SELECT quantity FROM ladder q WHERE q.scenario = l.scenario AND q.ladder = l.ladder
-                        ORDER BY ordinal LIMIT 1)
-          AND l.at = (SELECT at FROM ladder q WHERE q.scenario = l.scenario AND q.ladder = l.ladder
-                      ORDER BY machine_ps DESC LIMIT 1))
-SELECT panel, ladder, dense_rank() OVER (PARTITION BY panel ORDER BY method) AS series, replace(method, ',', ' –') AS method,
-       replace(rung, ',', ' –') AS rung, at, quantity, reference, relative_error,
-       iif(relative_error = 0, 1e-20, relative_error) AS shown_error, host_s, machine_ps / 1e12 AS machine_s, status, scenario,
-       coalesce((SELECT group_concat(replace(method, ',', ' –') || ' (' || n || ')', '; ')
-        FROM (SELECT method, count(*) AS n FROM rung f WHERE f.panel = rung.panel AND f.status = 'failed'
-              GROUP BY method ORDER BY min(ordinal))) , 'none') AS failed
-FROM rung
-ORDER BY panel, series, ordinal;
+    SELECT l.*, CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END AS block,
+           CASE WHEN ladder = 'network' THEN 1
+                WHEN method LIKE 'paper %' THEN 2 WHEN method LIKE 'direct %' THEN 3
+                WHEN method LIKE 'own %' THEN 3
+                WHEN method IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2 ELSE 1 END AS panel,
+           CASE WHEN ladder <> 'arithmetic' THEN 0 WHEN rung LIKE 'float%' THEN 1 WHEN rung LIKE 'double%' THEN 2
+                ELSE 3 END AS precision,
+           CASE WHEN ladder <> 'arithmetic' THEN 0 WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
+                ELSE 0 END AS refinement
+    FROM ladder l JOIN place USING (ladder, at, family)
+    WHERE scenario = ?1 AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd'
+                                                   ELSE 'state' END),
+method AS (
+    SELECT block, panel, method, min(ordinal) AS first,
+           iif(block = 2, group_concat(rung || ' ' || ifnull(relative_error, status) || ' ' || ifnull(machine_ps, ''), ';'),
+               method) AS same
+    FROM (SELECT * FROM rung ORDER BY ordinal) GROUP BY block, panel, method),
+curve AS (
+    SELECT block, panel, same, min(first) AS first, row_number() OVER (PARTITION BY block, panel ORDER BY min(first)) AS series,
+           group_concat(CASE WHEN block = 2 OR method LIKE 'own %' THEN substr(method, instr(method, ' ') + 1) ELSE method END,
+                        ' = ') AS name
+    FROM (SELECT * FROM method ORDER BY first) GROUP BY block, panel, same)
+SELECT r.block, r.panel, c.series, r.precision, r.refinement, c.name, r.method, r.rung, r.at, r.quantity, r.reference,
+       r.relative_error, r.host_s, r.machine_ps / 1e12 AS machine_s, r.status, m.first = c.first AS drawn,
+       (SELECT f.relative_error FROM ladder f WHERE f.scenario = r.scenario AND f.at = r.at AND f.family = r.family AND f.ladder = r.ladder
+               AND f.method = r.method AND f.rung = r.rung AND f.quantity = 'finish times') AS finish_error,
+       r.text, r.scenario
+FROM rung r JOIN method m ON m.block = r.block AND m.panel = r.panel AND m.method = r.method
+     JOIN curve c ON c.block = m.block AND c.panel = m.panel AND c.same = m.same
+ORDER BY r.block, r.panel, c.series, drawn DESC, r.precision, r.refinement, r.ordinal;
+
+-- table: failed
+WITH place AS (
+    SELECT DISTINCT ladder, first_value(at) OVER one AS at, first_value(family) OVER one AS family FROM ladder
+    WHERE scenario = ?1 WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
+failed AS (
+    SELECT CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END AS block, ladder, method,
+           CASE WHEN ladder = 'network' THEN 1
+                WHEN method LIKE 'paper %' THEN 2 WHEN method LIKE 'direct %' THEN 3
+                WHEN method LIKE 'own %' THEN 3
+                WHEN method IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2 ELSE 1 END AS panel,
+           replace(replace(rung, 'tolerance ', ''), ' steps', '') AS rung, ordinal, relative_error,
+           iif(relative_error IS NULL, replace(text, ',', ' –'), 'error above 0.1') AS reason
+    FROM ladder JOIN place USING (ladder, at, family)
+    WHERE scenario = ?1 AND status = 'failed'
+          AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd' ELSE 'state' END),
+grouped AS (
+    SELECT block, panel, min(ordinal) AS first, method || ': ' || group_concat(rung, '; ') AS which, reason
+    FROM (SELECT * FROM failed ORDER BY ordinal) GROUP BY block, panel, method, reason),
+line AS (
+    SELECT block, panel, first, 1 AS part, which || iif(reason LIKE 'error%', ' – ' || reason, '') AS text FROM grouped
+    UNION ALL SELECT block, panel, first, 2, '    ' || iif(length(reason) > 55, substr(reason, 1, instr(reason || ':', ':') - 1), reason) FROM grouped WHERE reason NOT LIKE 'error%')
+SELECT block, panel, row_number() OVER (PARTITION BY block, panel ORDER BY first, part) AS line, text FROM line
+UNION ALL SELECT 0, 0, 0, ''
+ORDER BY block, panel, line;

@@ -1,40 +1,100 @@
-# stability.gp - a table of marks: rows are cases, columns algorithms; in each cell the power of ten of the error.
+# stability.gp - a table of marks: rows are cases, columns algorithms; in each cell the power of ten of the error. Below it
+# the motions of stiff cases: in each cell error, step, evaluations and energy drift.
 data = figure.".csv"
-stats data using "x" nooutput
+cases = figure.".cases.csv"
+stats data using (column("motion") == 0 ? column("x") : NaN) nooutput
 columns = int(STATS_max)
-stats data using "y" nooutput
-cases = int(STATS_max)
-array case[cases]; array algorithm[columns]
-ok = 0; degraded = 0; failed = 0
-stats data using (case[int(column("y"))] = strcol("subject"), algorithm[int(column("x"))] = strcol("algorithm"), \
-    g = column("grade"), ok = ok + (g == 0), degraded = degraded + (g == 1), failed = failed + (g == 2), 0) nooutput
-headline = "Stability: extreme and stiff cases against algorithms"
-subline = sprintf("%d ok, %d degraded, %d failed; numbers: power of ten of the relative error, – unknown", ok, degraded, failed)
-is(grade, v) = column("grade") == grade ? v : NaN
+stats data using (column("motion") == 0 ? column("y") : NaN) nooutput
+high_rows = int(STATS_max)
+motions = 0; steppers = 0; explicit = 0; own = 0
+array algorithm[columns + 1]
+array grade_count[3]; do for [i=1:3] { grade_count[i] = 0 }
+stats data using (column("motion") == 1 ? (motions = column("y") > motions ? int(column("y")) : motions, \
+        steppers = column("x") > steppers ? int(column("x")) : steppers, \
+        own = strcol("algorithm")[1:4] eq "own " && column("x") > own ? int(column("x")) : own, \
+        explicit = column("implicit") == 0 && column("x") > explicit ? int(column("x")) : explicit) : \
+        (algorithm[int(column("x"))] = strcol("algorithm"), 0), \
+    grade_count[int(column("grade")) + 1] = grade_count[int(column("grade")) + 1] + 1, \
+    headline = strcol("suite") eq "suite" ? "Stability: stiff and extreme cases against algorithms" : "Stability: ".strcol("suite"), 0) nooutput
+array stepper[steppers + 1]
+if (motions > 0) { stats data using (column("motion") == 1 ? (stepper[int(column("x"))] = strcol("algorithm")[1:4] eq "own " ? strcol("algorithm")[5:*] : strcol("algorithm"), 0) : 0) nooutput }
+subline = sprintf("%d ok, %d degraded, %d failed", grade_count[1], grade_count[2], grade_count[3])
 array grade_name[3] = ["ok", "degraded", "failed"]
 array grade_colour[3] = ["#d5e8f3", "#f0c060", "#b0401a"]
+array grade_ink[3] = ["#000000", "#000000", "#ffffff"]
+is(m, grade) = column("motion") == m && column("grade") == grade
+
+wide = 1100.0; left_edge = 190.0; right_edge = 70.0; # of the cells; names stand left of them
+ cell_high = 17.0; stiff_high = 62.0
+upper = 218.0
+upper_end = upper + cell_high*(high_rows + 0.5)
+lower = upper_end + 112
+lower_end = lower + stiff_high*motions
+total = (motions > 0 ? lower_end : upper_end) + 30
+at_x(px) = px/wide; at_y(px) = 1.0 - px/total
+info = 3.0                                # columns of numbers beside the accelerations
+place(x) = x > explicit ? x + 0.25 : x    # explicit and implicit steppers stand apart
 
 do for [format in formats] {
-    high = 215 + 22*cases
-    eval page(format, 860, high); tiny = small(format)
+    eval page(format, wide, total); tiny = format eq "png" ? ",15" : ",10.5"; strong = format eq "png" ? ",20" : ",13.5"
     set multiplot
-    unset grid
-    set lmargin at screen 0.30; set rmargin at screen 0.985
-    set tmargin at screen 1.0 - 100.0/high; set bmargin at screen 100.0/high
-    set xrange [0.5:columns + 0.5]; set yrange [cases + 0.5:0.5]
-    unset border
-    set xtics scale 0 rotate by 35 right noenhanced font tiny; set ytics scale 0 noenhanced font tiny
-    set xtics (0); set ytics (0)
-    do for [i=1:columns] { set xtics add (algorithm[i] i) }
-    do for [i=1:cases] { set ytics add (case[i] i) }
-    eval title_at(format, 1.0 - 16.0/high); set label 98 subline at screen 0.5,(1.0 - 42.0/high) center noenhanced textcolor rgb grey; eval foot(format)
-    set key at screen 0.5,(1.0 - 72.0/high) center top horizontal maxrows 1 samplen 1.2 width 1
-    plot for [j=0:2] data using (is(j, column("x"))):"y":(0.47):(0.44) with boxxyerror linewidth 0.3 \
+    unset grid; unset border; unset tics
+    eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey; eval foot(format)
+    set label 1 "Accelerations" at screen at_x(14),at_y(72) left font strong
+    set label 2 "number in a cell: power of ten of the relative error against quad precision;  =0: no error at all;  ×: no answer;  –: not known;  blank: does not apply" \
+        at screen at_x(14),at_y(92) left noenhanced font tiny textcolor rgb "#505050"
+    set lmargin at screen at_x(14); set rmargin at screen at_x(wide - right_edge)
+    set tmargin at screen at_y(upper); set bmargin at screen at_y(upper_end)
+    across = columns + 0.4 + 1.35*info
+    unit = (wide - left_edge - right_edge)/across
+    set xrange [0.5 - (left_edge - 14)/unit:across + 0.5]; set yrange [high_rows + 0.9:0.4]
+    set key at screen at_x(wide - 20),at_y(64) right top horizontal maxrows 1 samplen 1.2 width 1
+    do for [i=1:columns] { set label 10+i algorithm[i] at first i,graph 1.0 left rotate by 50 noenhanced font tiny offset 0,0.4 }
+    array info_name[3] = ["condition of the scene", "growth of the reduction", "worst residual (double)"]
+    do for [i=1:3] { set label 50+i info_name[i] at first (columns + 0.2 + 1.35*i),graph 1.0 left rotate by 50 noenhanced font tiny offset 0,0.4 textcolor rgb "#505050" }
+    power(x) = x > 0 ? sprintf("%.0e", x) : x == 0 ? "=0" : ""
+    plot for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(0.48):(0.47) with boxxyerror linewidth 0.3 \
             fillcolor rgb grade_colour[j+1] title grade_name[j+1], \
-         data using (is(2, column("x"))):"y":(stringcolumn("decade")) with labels \
-            font tiny textcolor rgb "#ffffff", \
-         data using (column("grade") < 2 ? column("x") : NaN):"y":(stringcolumn("decade")) \
-            with labels font tiny textcolor rgb "#000000"
+         for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(stringcolumn("decade")) with labels font tiny textcolor rgb grade_ink[j+1], \
+         cases using (column("motion") == 0 && column("heading") == 0 ? 0.35 : NaN):"y":(strcol("name")) with labels right noenhanced font tiny, \
+         cases using (column("motion") == 0 && column("heading") == 1 ? 0.35 : NaN):(column("y") + 0.1):(strcol("name")) with labels right noenhanced \
+            font tiny textcolor rgb "#0072b2", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 1.55 : NaN):"y":(power(column("condition"))) with labels font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 2.9 : NaN):"y":(power(column("growth"))) with labels font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 4.25 : NaN):"y":(power(column("residual"))) with labels font tiny textcolor rgb "#505050"
+    do for [i=1:columns] { unset label 10+i }
+    do for [i=1:3] { unset label 50+i }
+    unset label 97; unset label 98; unset label 99
+    if (motions > 0) {
+        set label 1 "Motions of stiff cases" at screen at_x(14),at_y(lower - 82) left font strong
+        set label 2 "own steppers: the largest stable step by bisection (in the model's time), and a run at half of it;  others: tolerance 1e-6 and the mean step they took" \
+            at screen at_x(14),at_y(lower - 62) left noenhanced font tiny textcolor rgb "#505050"
+        set tmargin at screen at_y(lower); set bmargin at screen at_y(lower_end)
+        unit = (wide - left_edge - 90 - 14)/(steppers + 1.75)
+        set rmargin at screen at_x(wide - 14); set xrange [0.5 - (left_edge + 90 - 14)/unit:steppers + 2.25]; set yrange [motions + 0.5:0.5]
+        unset key
+        do for [i=1:steppers] { set label 10+i stepper[i] at first place(i),graph 1.0 center noenhanced font tiny offset 0,0.5 }
+        if (own > 0) { set label 55 "own, explicit" at first (1 + own)/2.0,graph 1.0 center font tiny offset 0,2 textcolor rgb "#0072b2" }
+        set label 51 "explicit" at first (own + 1 + explicit)/2.0,graph 1.0 center font tiny offset 0,2 textcolor rgb "#0072b2"
+        set label 52 "implicit" at first (explicit + steppers + 1)/2.0 + 0.25,graph 1.0 center font tiny offset 0,2 textcolor rgb "#0072b2"
+        set label 53 "evaluations:" at first steppers + 1.5,graph 1.0 center font tiny offset 0,2 textcolor rgb "#505050"
+        set label 54 "explicit / implicit" at first steppers + 1.5,graph 1.0 center font tiny offset 0,0.5 textcolor rgb "#505050"
+        count(x) = x > 0 ? (x < 1e6 ? sprintf("%.0f", x) : sprintf("%.1e", x)) : "–"
+        plot for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):"y":(0.49):(0.47) with boxxyerror linewidth 0.3 fillcolor rgb grade_colour[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.33):(strcol("error_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.11):(strcol("step_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.11):(count(column("evaluations"))) with labels font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.33):(strcol("drift_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
+             cases using (column("motion") == 1 ? steppers + 1.5 : NaN):"y":(strcol("ratio")) with labels font tiny, \
+             cases using (column("motion") == 1 ? 0.5 - 84/unit : NaN):"y":(strcol("name")) with labels right noenhanced font tiny, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.33):("error") with labels right font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.11):("step") with labels right font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.11):("evaluations") with labels right font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.33):("energy drift") with labels right font tiny textcolor rgb grey
+        do for [i=1:steppers] { unset label 10+i }
+        do for [i=51:55] { unset label i }
+    }
+    unset label 1; unset label 2
     unset multiplot
     unset output
 }

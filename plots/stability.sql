@@ -1,13 +1,72 @@
--- The stability suite: every stiff or extreme case against every algorithm: ok, degraded or failed, and how wrong.
+-- The stability suite, or the scenes of one scenario: every stiff or extreme case against every algorithm: ok, degraded or
+-- failed, and how wrong. Accelerations and motions are two tables, since their columns mean other things.
 -- needs: mimdsim stability
-WITH cases AS (SELECT subject, row_number() OVER (ORDER BY min(ordinal), subject) AS y FROM stability GROUP BY subject),
-algorithms AS (SELECT algorithm, precision, row_number() OVER (ORDER BY precision <> 'double', min(ordinal), algorithm) AS x
-               FROM stability GROUP BY algorithm, precision)
-SELECT a.x, c.y, s.subject, s.algorithm || iif(s.precision = 'double', '', ' (' || s.precision || ')') AS algorithm, s.status,
-       s.relative_error, CASE s.status WHEN 'ok' THEN 0 WHEN 'degraded' THEN 1 ELSE 2 END AS grade,
-       CASE WHEN s.relative_error IS NULL THEN iif(s.status = 'failed', '×', '–') WHEN s.relative_error = 0 THEN '0'
-            ELSE format('%d', round(log10(s.relative_error))) END AS decade,
-       s.residual, s.condition, s.growth, s.refinements, s.energy_drift, s.step_s, s.reason
-FROM stability s JOIN cases c ON c.subject = s.subject
-     JOIN algorithms a ON a.algorithm = s.algorithm AND a.precision = s.precision
-ORDER BY c.y, a.x;
+-- each: SELECT DISTINCT suite, iif(suite = 'suite', 'stability', 'stability-' || suite) FROM stability ORDER BY suite <> 'suite', 1
+WITH mine AS (
+    SELECT *, algorithm LIKE 'own %' OR algorithm IN ('rk2', 'rk4', 'rkf45', 'rkck', 'rk8pd', 'msadams', 'rk1imp', 'rk2imp',
+           'rk4imp', 'bsimp', 'msbdf') AS motion,
+           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,
+           CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
+                WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
+                WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5
+                WHEN subject IN ('slender rods', 'nearly points') THEN 6
+                WHEN subject LIKE 'torques %' OR subject LIKE 'zero gravity%' OR subject LIKE 'denormal%' THEN 7
+                WHEN subject LIKE 'four-bar%' OR subject LIKE 'redundant%' OR subject LIKE '%loop%' THEN 9
+                WHEN subject LIKE 'springs %' THEN 10 ELSE 8 END AS part
+    FROM stability WHERE suite = ?1),
+cases AS (
+    SELECT motion, subject, row_number() OVER (PARTITION BY motion ORDER BY part, min(ordinal)) AS r,
+           dense_rank() OVER (PARTITION BY motion ORDER BY part) AS g
+    FROM mine GROUP BY motion, subject),
+algorithms AS (
+    SELECT motion, algorithm, precision, row_number() OVER (PARTITION BY motion
+           ORDER BY precision <> 'double', implicit, algorithm LIKE '%contraction', min(ordinal)) AS x
+    FROM mine GROUP BY motion, algorithm, precision)
+SELECT m.motion, m.implicit, a.x, iif(m.motion, c.r, c.r + c.g) AS y, m.subject,
+       m.algorithm || iif(m.precision = 'double', '', ' (' || m.precision || ')') AS algorithm, m.status, m.relative_error,
+       CASE m.status WHEN 'ok' THEN 0 WHEN 'degraded' THEN 1 ELSE 2 END AS grade,
+       CASE WHEN m.relative_error IS NULL THEN iif(m.status = 'failed', '×', '–') WHEN m.relative_error = 0 THEN '=0'
+            ELSE format('%d', round(log10(m.relative_error))) END AS decade,
+       CASE WHEN m.relative_error IS NULL THEN iif(m.status = 'failed', 'gave up', 'not run') WHEN m.relative_error = 0 THEN '=0'
+            ELSE format('%.0e', m.relative_error) END AS error_text,
+       iif(m.step_s IS NULL, '–', format('%.1e', m.step_s)) AS step_text,
+       CASE WHEN m.reason GLOB '[0-9]*evaluations*' THEN CAST(m.reason AS REAL) END AS evaluations,
+       iif(m.energy_drift IS NULL, '–', iif(m.energy_drift = 0, '=0', format('%.0e', m.energy_drift))) AS drift_text,
+       m.residual, m.condition, m.growth, m.refinements, m.energy_drift, m.step_s, replace(m.reason, ',', ' –') AS reason, m.suite
+FROM mine m JOIN cases c ON c.motion = m.motion AND c.subject = m.subject
+     JOIN algorithms a ON a.motion = m.motion AND a.algorithm = m.algorithm AND a.precision = m.precision
+ORDER BY m.motion, y, a.x;
+
+-- table: cases
+WITH mine AS (
+    SELECT *, algorithm LIKE 'own %' OR algorithm IN ('rk2', 'rk4', 'rkf45', 'rkck', 'rk8pd', 'msadams', 'rk1imp', 'rk2imp',
+           'rk4imp', 'bsimp', 'msbdf') AS motion,
+           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,
+           CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
+                WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
+                WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5
+                WHEN subject IN ('slender rods', 'nearly points') THEN 6
+                WHEN subject LIKE 'torques %' OR subject LIKE 'zero gravity%' OR subject LIKE 'denormal%' THEN 7
+                WHEN subject LIKE 'four-bar%' OR subject LIKE 'redundant%' OR subject LIKE '%loop%' THEN 9
+                WHEN subject LIKE 'springs %' THEN 10 ELSE 8 END AS part,
+           CASE WHEN reason GLOB '[0-9]*evaluations*' AND status = 'ok' THEN CAST(reason AS REAL) END AS evaluations
+    FROM stability WHERE suite = ?1),
+cases AS (
+    SELECT motion, subject, part, row_number() OVER (PARTITION BY motion ORDER BY part, min(ordinal)) AS r,
+           dense_rank() OVER (PARTITION BY motion ORDER BY part) AS g, max(condition) AS condition, max(growth) AS growth,
+           max(iif(precision = 'double', residual, NULL)) AS residual,
+           min(iif(implicit, NULL, evaluations)) AS explicit_evaluations,
+           min(iif(implicit, evaluations, NULL)) AS implicit_evaluations
+    FROM mine GROUP BY motion, subject)
+SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, subject AS name, condition, growth, residual,
+       CASE WHEN NOT motion THEN '' WHEN implicit_evaluations IS NULL AND explicit_evaluations IS NULL THEN 'neither is ok'
+            WHEN implicit_evaluations IS NULL THEN 'no implicit is ok' WHEN explicit_evaluations IS NULL THEN 'no explicit is ok'
+            ELSE format('%.3g', explicit_evaluations / implicit_evaluations) END AS ratio
+FROM cases
+UNION ALL
+SELECT 0, 1, min(r + g) - 1, CASE WHEN ?1 <> 'suite' THEN 'scenes of the scenario'
+       ELSE CASE part WHEN 1 THEN 'masses' WHEN 2 THEN 'lengths' WHEN 3 THEN 'poses' WHEN 4 THEN 'sizes' WHEN 5 THEN 'rates'
+                      WHEN 6 THEN 'inertias' WHEN 7 THEN 'loads' WHEN 9 THEN 'loops' WHEN 10 THEN 'springs'
+                      ELSE 'base and branches' END END, NULL, NULL, NULL, ''
+FROM cases WHERE NOT motion GROUP BY part
+ORDER BY 1, 3;

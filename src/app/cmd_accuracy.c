@@ -6,14 +6,16 @@
 #include "app/flag.h"
 #include "app/levels.h"
 #include "app/verb.h"
+#include "base/text.h"
 #include "report/report.h"
 #include "run/accuracy.h"
 #include "store/store.h"
 
 static const char doc[] =
     "Measure how wrong each cheaper way is, at the largest points of SCENARIO that take seconds: network levels,\n"
-    "precisions and algorithms, steppers and step sizes. Rows go to table `ladder` of the database, a work-precision\n"
-    "diagram beside it; failed methods are listed. Ends with the cheapest rung of each ladder.\n\n"
+    "precisions and algorithms, steppers and step sizes. Rows go to table `ladder` of the database, work-precision\n"
+    "diagrams to accuracy-SCENARIO.png and .svg; failed methods are listed. Ends with the cheapest rung of each "
+    "ladder.\n\n"
     "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n\v"
     "--within X: the relative error that may be, 2% or 1e-6; without it 2% of simulated times, 1e-10 of accelerations "
     "and 1e-6 of states.";
@@ -46,8 +48,8 @@ static bool store_choice(struct store *s, const char *scenario, const struct acc
 static bool store_all(struct store *s, const struct accuracy_report *r, struct err *e)
 {
     if (!store_begin(s, e)) return false;
-    bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e);
-    ok = ok && ladder_store(s, r, e);
+    bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
+              store_delete(s, "ladder_choice", "scenario", store_text(r->scenario), e) && ladder_store(s, r, e);
     for (int i = 0; ok && i < r->nchoice; i++) ok = store_choice(s, r->scenario, &r->choice[i], e);
     if (ok) return store_commit(s, e);
     store_rollback(s);
@@ -58,8 +60,11 @@ static bool keep_and_draw(const struct common *c, const struct accuracy_report *
 {
     struct store *s = store_open(c->database, STORE_WRITE, e);
     if (!s) return false;
-    bool ok = store_all(s, r, e) &&
-              report_figure(s, plan_data_dir(), "accuracy", c->directory, e);
+    struct text figure = {0};
+    text_add(&figure, "accuracy-%s", r->scenario);
+    bool ok = store_all(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
+    if (ok && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    text_free(&figure);
     store_close(s);
     return ok;
 }

@@ -1,15 +1,18 @@
 /* cmd_stability.c - mimdsim stability: stiff and extreme scenes against every algorithm. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/verb.h"
+#include "base/text.h"
 #include "report/report.h"
 #include "run/stability.h"
 #include "store/store.h"
 
 static const char doc[] =
     "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, by every algorithm and stepper, and grade\n"
-    "each answer: ok, degraded or failed. Rows go to table `stability` of the database, a table of marks beside it.\n\n"
+    "each answer: ok, degraded or failed. Rows go to table `stability` of the database, a table of marks to\n"
+    "stability.png and .svg, that of a scenario to stability-SCENARIO.png and .svg.\n\n"
     "Example: mimdsim stability\n";
 
 static bool store_row(struct store *s, const struct stability_report *r, int i, struct err *e)
@@ -34,7 +37,11 @@ static bool keep_and_draw(const struct common *c, const struct stability_report 
     for (int i = 0; ok && i < r->nrow; i++) ok = store_row(s, r, i, e);
     if (ok) ok = store_commit(s, e);
     else store_rollback(s);
-    ok = ok && report_figure(s, plan_data_dir(), "stability", c->directory, e);
+    struct text figure = {0};
+    text_add(&figure, strcmp(r->suite, "suite") == 0 ? "stability" : "stability-%s", r->suite);
+    ok = ok && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
+    if (ok && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    text_free(&figure);
     store_close(s);
     return ok;
 }

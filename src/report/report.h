@@ -10,11 +10,26 @@
 #include "store/store.h"
 
 /* report_figure: draw figure `name` (plots/NAME.sql + plots/NAME.gp) from `s` into folder `dir` (made if missing):
- * NAME.csv, NAME.gp, NAME.png, NAME.svg. `data_dir` holds plots/.
+ * NAME.csv, NAME.gp, NAME.png, NAME.svg; all its drawings when it has several. `data_dir` holds plots/.
  *
  *   Returns false with ERR_NO_INPUT (no such figure: nearest name; no rows for it: what to run first), ERR_CREATE, or
  *   ERR_UNAVAILABLE (gnuplot missing; the CSV and the script are there all the same). */
 bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e);
+
+/* What a figure's name stands for: itself, or one drawing for each scenario of the database. */
+struct report_drawings {
+    char figure[64];   /* whose description draws them */
+    int n;
+    char **which, **as; /* (n) the row that is shown, "" for all; the name of the files. Owned */
+};
+
+/* report_drawings_find: the drawings of `name`, a figure ("accuracy": all of them) or a drawing of one
+ * ("accuracy-four-bar"). Returns false with ERR_NO_INPUT as report_figure does, then with nothing to free. */
+bool report_drawings_find(struct store *s, const char *data_dir, const char *name, struct report_drawings *d,
+                          struct err *e);
+
+/* report_drawings_free: what report_drawings_find allocated. */
+void report_drawings_free(struct report_drawings *d);
 
 /* report_figure_run: the same of the one run `run_id`: NAME.sql finds it bound to ?1; the files are called `as`. */
 bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,

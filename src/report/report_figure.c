@@ -1,9 +1,10 @@
 /* report_figure.c - a figure is two files in plots/: what to ask the database, and how gnuplot draws it.
  *
  * NAME.sql holds one statement, or several of which each after the first follows a line "-- table: x"; the first
- * gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command fills the database for it. The
- * script that is run is made of the figure's name and provenance, style.gp and NAME.gp, and stays beside the images:
- * gnuplot NAME.gp redraws them from the CSV without this program. */
+ * gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command fills the database for it, a line
+ * "-- each: QUERY" that there is a drawing for each row of QUERY: ?1 is its first column, the files are called after
+ * its second. The script that is run is made of the figure's name and provenance, style.gp and NAME.gp, and stays
+ * beside the images: gnuplot NAME.gp redraws them from the CSV without this program. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ struct figure {
     const char *plots; /* folder of the descriptions */
     const char *name;
     const char *as;      /* the results' name */
-    const char *run;     /* the run to show, NULL: the description chooses */
+    const char *run;     /* what ?1 is: the run or row to show; NULL: the description chooses */
     const char *dir;     /* folder of the results */
     struct text run_ids; /* JSON array of the runs shown, for its provenance */
     int64_t nrow;        /* of the first table */
@@ -281,18 +282,13 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     return ok;
 }
 
-static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run, const char *as,
-                        const char *dir, struct err *e)
+/* The text of figure `name`; false when there is no such figure. */
+static bool read_description(const char *data_dir, const char *name, struct text *sql, struct err *e)
 {
     char *plots = joined(data_dir, "/plots", ""), *file = joined(name, ".sql", "");
     char *stem = strchr(name, '/') == NULL ? figure_stem(plots, file) : NULL;
     char *path = joined(plots, "/", file);
-    struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
-    struct text sql = {0};
-    bool ok = stem != NULL || no_such_figure(data_dir, name, e);
-    ok = ok && text_read_file(&sql, path, e) && make_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
-    text_free(&f.run_ids);
-    text_free(&sql);
+    bool ok = stem != NULL && text_read_file(sql, path, e);
     free(stem);
     free(plots);
     free(file);
@@ -300,9 +296,111 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
     return ok;
 }
 
+static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run, const char *as,
+                        const char *dir, struct err *e)
+{
+    struct text sql = {0};
+    if (!read_description(data_dir, name, &sql, e)) return no_such_figure(data_dir, name, e);
+    char *plots = joined(data_dir, "/plots", "");
+    struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
+    bool ok = make_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
+    text_free(&f.run_ids);
+    text_free(&sql);
+    free(plots);
+    return ok;
+}
+
+/* --- figures with a drawing for each of several rows -------------------------------------------------------------- */
+
+static bool add_drawing(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct report_drawings *d = context;
+    (void)name;
+    CHECK(ncolumn == 2 && value[0] != NULL && value[1] != NULL);
+    d->which = realloc(d->which, ((size_t)d->n + 1) * sizeof *d->which);
+    d->as = realloc(d->as, ((size_t)d->n + 1) * sizeof *d->as);
+    CHECK(d->which != NULL && d->as != NULL);
+    d->which[d->n] = strdup(value[0]);
+    d->as[d->n++] = strdup(value[1]);
+    return true;
+}
+
+void report_drawings_free(struct report_drawings *d)
+{
+    for (int i = 0; i < d->n; i++) {
+        free(d->which[i]);
+        free(d->as[i]);
+    }
+    free(d->which);
+    free(d->as);
+    *d = (struct report_drawings){0};
+}
+
+/* Only the drawing called `as` stays. */
+static void keep_drawing(struct report_drawings *d, const char *as)
+{
+    int n = 0;
+    for (int i = 0; i < d->n; i++) {
+        char *which = d->which[i], *its_name = d->as[i];
+        if (strcmp(its_name, as) == 0 && n == 0) {
+            d->which[n] = which;
+            d->as[n++] = its_name;
+        } else {
+            free(which);
+            free(its_name);
+        }
+    }
+    d->n = n;
+}
+
+/* The figure that `name` is a drawing of: NAME itself, or what stands before one of its hyphens. */
+static bool find_description(const char *data_dir, const char *name, struct report_drawings *d, struct text *sql,
+                             struct err *e)
+{
+    char each[1000];
+    text_copy(d->figure, sizeof d->figure, name);
+    if (read_description(data_dir, name, sql, e)) return true;
+    for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
+        *hyphen = '\0';
+        if (read_description(data_dir, d->figure, sql, e) && marked_line(sql->s, "-- each: ", each, sizeof each))
+            return true;
+        text_free(sql);
+    }
+    return no_such_figure(data_dir, name, e);
+}
+
+bool report_drawings_find(struct store *s, const char *data_dir, const char *name, struct report_drawings *d,
+                          struct err *e)
+{
+    struct text sql = {0};
+    char each[1000], needs[200] = "";
+    *d = (struct report_drawings){0};
+    if (!find_description(data_dir, name, d, &sql, e)) return false;
+    bool ok = true;
+    if (marked_line(sql.s, "-- each: ", each, sizeof each)) {
+        ok = store_select(s, each, 0, NULL, add_drawing, d, e);
+        if (ok && strcmp(d->figure, name) != 0) keep_drawing(d, name);
+        marked_line(sql.s, "-- needs: ", needs, sizeof needs);
+        if (ok && d->n == 0)
+            ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s", store_path(s), name,
+                         *needs ? "; first: " : "", needs);
+    } else {
+        const char *const alone[] = {"", name};
+        add_drawing(d, 2, NULL, alone);
+    }
+    text_free(&sql);
+    if (!ok) report_drawings_free(d);
+    return ok;
+}
+
 bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
 {
-    return make_figure(s, data_dir, name, NULL, name, dir, e);
+    struct report_drawings d;
+    bool ok = report_drawings_find(s, data_dir, name, &d, e);
+    for (int i = 0; ok && i < d.n; i++)
+        ok = make_figure(s, data_dir, d.figure, *d.which[i] ? d.which[i] : NULL, d.as[i], dir, e);
+    report_drawings_free(&d);
+    return ok;
 }
 
 bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,

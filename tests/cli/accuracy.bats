@@ -17,8 +17,8 @@ scenario() {
     sql_is mimdsim.db "SELECT count(*) FROM ladder WHERE ladder = 'network' AND method = 'flit' AND relative_error <> 0" 0
     sql_is mimdsim.db "SELECT count(*) > 0 FROM ladder WHERE status = 'failed' AND text <> ''" 1
     sql_is mimdsim.db 'SELECT count(*) FROM ladder_choice WHERE relative_error <= tolerance AND cost_ratio > 0' 4
-    [ -s figures/accuracy.png ]
-    [ -s figures/accuracy.csv ]
+    [ -s figures/accuracy-small.png ]
+    [ -s figures/accuracy-small.csv ]
 }
 
 @test "accuracy answers in JSON and refuses what is no tolerance" {
@@ -37,7 +37,7 @@ scenario() {
     stdout_says ' ok, '
     sql_is mimdsim.db "SELECT status, relative_error < 1e-13 FROM stability WHERE algorithm = 'aba' AND precision = 'double'" 'ok|1'
     sql_is mimdsim.db "SELECT count(*) > 10, count(residual) > 10 FROM stability" '1|1'
-    [ -s figures/stability.png ]
+    [ -s figures/stability-small.png ]
     works mimdsim stability small.yaml --json
     json_is_valid
 }

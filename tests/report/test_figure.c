@@ -237,6 +237,33 @@ static void a_figure_without_rows_says_what_to_run(void **state)
     assert_non_null(strstr(f->e.text, "first: mimdsim run x.yaml"));
 }
 
+static void a_figure_of_several_rows_is_drawn_for_each_or_for_one(void **state)
+{
+    struct fixture *f = *state;
+    struct report_drawings d;
+    write_file(f, "plots/curve.sql",
+               "-- each: SELECT DISTINCT level, 'curve-' || level FROM run ORDER BY 1\n-- needs: mimdsim run x.yaml\n"
+               "SELECT run_id, P, speedup FROM v_speedup WHERE baseline_ordinal = 0 AND level = ?1 ORDER BY P;\n");
+    draw(f, f->folder, "curve-loggp");
+    assert_true(exists(f, "curve-loggp.svg"));
+    assert_false(exists(f, "curve-link.csv"));
+    draw(f, f->folder, "curve");
+    assert_true(exists(f, "curve-link.svg"));
+    assert_false(exists(f, "curve.csv"));
+    struct text csv = read_out(f, "curve-link.csv");
+    int lines = 0;
+    for (const char *c = csv.s; *c; c++) lines += *c == '\n';
+    assert_int_equal(lines, 1 + 7);
+    text_free(&csv);
+    assert_true(report_drawings_find(f->s, f->folder, "curve", &d, &f->e));
+    assert_int_equal(d.n, 2);
+    assert_string_equal(d.as[0], "curve-link");
+    report_drawings_free(&d);
+    assert_false(report_figure(f->s, f->folder, "curve-flit", f->out, &f->e));
+    assert_int_equal(f->e.kind, ERR_NO_INPUT);
+    assert_non_null(strstr(f->e.text, "first: mimdsim run x.yaml"));
+}
+
 static void wrong_sql_names_the_figure(void **state)
 {
     struct fixture *f = *state;
@@ -338,11 +365,15 @@ static void every_shipped_figure_can_be_drawn(void **state)
     int n = report_figures(MIMDSIM_SRCDIR, &name);
     assert_true(n >= 9);
     for (int i = 0; i < n; i++) {
+        struct report_drawings drawings;
         char svg[80];
-        snprintf(svg, sizeof svg, "%s.svg", name[i]);
         /* made runs have no loads of links and measured nothing */
         if (strncmp(name[i], "link", 4) != 0 && strcmp(name[i], "pingpong") != 0) {
             draw(f, MIMDSIM_SRCDIR, name[i]);
+            assert_true(report_drawings_find(f->s, MIMDSIM_SRCDIR, name[i], &drawings, &f->e));
+            assert_int_equal(drawings.n, 1);
+            snprintf(svg, sizeof svg, "%s.svg", drawings.as[0]);
+            report_drawings_free(&drawings);
             struct text drawn = read_out(f, svg);
             assert_non_null(strstr(drawn.s, "</svg>"));
             text_free(&drawn);
@@ -386,6 +417,7 @@ int main(void)
         TEST(cells_are_quoted_where_rfc_4180_says_so),
         TEST(an_unknown_figure_names_the_nearest),
         TEST(a_figure_without_rows_says_what_to_run),
+        TEST(a_figure_of_several_rows_is_drawn_for_each_or_for_one),
         TEST(wrong_sql_names_the_figure),
         TEST(a_folder_that_cannot_be_made_is_said),
         TEST(figures_are_listed_in_order),
