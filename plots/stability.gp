@@ -32,7 +32,7 @@ lower = upper_end + 112
 lower_end = lower + stiff_high*motions
 total = (motions > 0 ? lower_end : upper_end) + 30
 at_x(px) = px/wide; at_y(px) = 1.0 - px/total
-info = 3.0                                # columns of numbers beside the accelerations
+info = 4.0                                # columns of numbers beside the accelerations
 place(x) = x > explicit ? x + 0.25 : x    # explicit and implicit steppers stand apart
 
 do for [format in formats] {
@@ -40,8 +40,8 @@ do for [format in formats] {
     set multiplot
     unset grid; unset border; unset tics
     eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey; eval foot(format)
-    set label 1 "Accelerations" at screen at_x(14),at_y(72) left font strong
-    set label 2 "number in a cell: power of ten of the relative error against quad precision;  =0: no error at all;  ×: no answer;  –: not known;  blank: does not apply" \
+    set label 1 "Accelerations and short motions" at screen at_x(14),at_y(72) left font strong
+    set label 2 "number in a cell: power of ten of the relative error, against quad precision, of a short motion against a tight one;  =0: no error at all;  ×: no answer;  –: not known;  blank: does not apply" \
         at screen at_x(14),at_y(92) left noenhanced font tiny textcolor rgb "#505050"
     set lmargin at screen at_x(14); set rmargin at screen at_x(wide - right_edge)
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper_end)
@@ -50,8 +50,8 @@ do for [format in formats] {
     set xrange [0.5 - (left_edge - 14)/unit:across + 0.5]; set yrange [high_rows + 0.9:0.4]
     set key at screen at_x(wide - 20),at_y(64) right top horizontal maxrows 1 samplen 1.2 width 1
     do for [i=1:columns] { set label 10+i algorithm[i] at first i,graph 1.0 left rotate by 50 noenhanced font tiny offset 0,0.4 }
-    array info_name[3] = ["condition of the scene", "growth of the reduction", "worst residual (double)"]
-    do for [i=1:3] { set label 50+i info_name[i] at first (columns + 0.2 + 1.35*i),graph 1.0 left rotate by 50 noenhanced font tiny offset 0,0.4 textcolor rgb "#505050" }
+    array info_name[4] = ["condition of the scene", "growth of the reduction", "worst residual (double)", "energy drift, motions"]
+    do for [i=1:4] { set label 50+i info_name[i] at first (columns + 0.2 + 1.35*i),graph 1.0 left rotate by 50 noenhanced font tiny offset 0,0.4 textcolor rgb "#505050" }
     power(x) = x > 0 ? sprintf("%.0e", x) : x == 0 ? "=0" : ""
     plot for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(0.48):(0.47) with boxxyerror linewidth 0.3 \
             fillcolor rgb grade_colour[j+1] title grade_name[j+1], \
@@ -61,9 +61,10 @@ do for [format in formats] {
             font tiny textcolor rgb "#0072b2", \
          cases using (column("motion") == 0 && column("heading") == 0 ? columns + 1.55 : NaN):"y":(power(column("condition"))) with labels font tiny textcolor rgb "#505050", \
          cases using (column("motion") == 0 && column("heading") == 0 ? columns + 2.9 : NaN):"y":(power(column("growth"))) with labels font tiny textcolor rgb "#505050", \
-         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 4.25 : NaN):"y":(power(column("residual"))) with labels font tiny textcolor rgb "#505050"
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 4.25 : NaN):"y":(power(column("residual"))) with labels font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 5.6 : NaN):"y":(power(column("energy"))) with labels font tiny textcolor rgb "#505050"
     do for [i=1:columns] { unset label 10+i }
-    do for [i=1:3] { unset label 50+i }
+    do for [i=1:4] { unset label 50+i }
     unset label 97; unset label 98; unset label 99
     if (motions > 0) {
         set label 1 "Motions of stiff cases" at screen at_x(14),at_y(lower - 82) left font strong

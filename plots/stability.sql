@@ -20,7 +20,7 @@ cases AS (
     FROM mine GROUP BY motion, subject),
 algorithms AS (
     SELECT motion, algorithm, precision, row_number() OVER (PARTITION BY motion
-           ORDER BY precision <> 'double', implicit, algorithm LIKE '%contraction', min(ordinal)) AS x
+           ORDER BY algorithm LIKE 'motion %', precision <> 'double', implicit, algorithm LIKE '%contraction', min(ordinal)) AS x
     FROM mine GROUP BY motion, algorithm, precision)
 SELECT m.motion, m.implicit, a.x, iif(m.motion, c.r, c.r + c.g) AS y, m.subject,
        m.algorithm || iif(m.precision = 'double', '', ' (' || m.precision || ')') AS algorithm, m.status, m.relative_error,
@@ -54,11 +54,11 @@ WITH mine AS (
 cases AS (
     SELECT motion, subject, part, row_number() OVER (PARTITION BY motion ORDER BY part, min(ordinal)) AS r,
            dense_rank() OVER (PARTITION BY motion ORDER BY part) AS g, max(condition) AS condition, max(growth) AS growth,
-           max(iif(precision = 'double', residual, NULL)) AS residual,
+           max(iif(precision = 'double', residual, NULL)) AS residual, max(iif(algorithm LIKE 'motion %', energy_drift, NULL)) AS energy,
            min(iif(implicit, NULL, evaluations)) AS explicit_evaluations,
            min(iif(implicit, evaluations, NULL)) AS implicit_evaluations
     FROM mine GROUP BY motion, subject)
-SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, subject AS name, condition, growth, residual,
+SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, subject AS name, condition, growth, residual, energy,
        CASE WHEN NOT motion THEN '' WHEN implicit_evaluations IS NULL AND explicit_evaluations IS NULL THEN 'neither is ok'
             WHEN implicit_evaluations IS NULL THEN 'no implicit is ok' WHEN explicit_evaluations IS NULL THEN 'no explicit is ok'
             ELSE format('%.3g', explicit_evaluations / implicit_evaluations) END AS ratio
@@ -67,6 +67,6 @@ UNION ALL
 SELECT 0, 1, min(r + g) - 1, CASE WHEN ?1 <> 'suite' THEN 'scenes of the scenario'
        ELSE CASE part WHEN 1 THEN 'masses' WHEN 2 THEN 'lengths' WHEN 3 THEN 'poses' WHEN 4 THEN 'sizes' WHEN 5 THEN 'rates'
                       WHEN 6 THEN 'inertias' WHEN 7 THEN 'loads' WHEN 9 THEN 'loops' WHEN 10 THEN 'springs'
-                      ELSE 'base and branches' END END, NULL, NULL, NULL, ''
+                      ELSE 'base and branches' END END, NULL, NULL, NULL, NULL, ''
 FROM cases WHERE NOT motion GROUP BY part
 ORDER BY 1, 3;

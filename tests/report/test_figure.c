@@ -325,7 +325,8 @@ static void put_tables(struct fixture *f)
 {
     static const char *const ladder[] = {"scenario",       "ladder",  "at",         "method",
                                          "rung",           "ordinal", "quantity",   "reference",
-                                         "relative_error", "host_s",  "machine_ps", "status"};
+                                         "relative_error", "host_s",  "machine_ps", "status",
+                                         "family"};
     static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
                                         "ordinal", "status",  "relative_error", "reason"};
     static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
@@ -341,7 +342,8 @@ static void put_tables(struct fixture *f)
                                            i ? store_real(0.01) : store_null(),
                                            store_real(0.1 + i),
                                            store_int(1000),
-                                           store_text(i ? "ok" : "failed")};
+                                           store_text(i ? "ok" : "failed"),
+                                           store_text("made")};
         const struct store_value row[] = {
             store_text("made"), store_text("heavy tip"),         store_text(i ? "aba" : "cfa"),    store_text("double"),
             store_int(i),       store_text(i ? "ok" : "failed"), i ? store_real(0) : store_null(), store_text("")};
@@ -349,7 +351,7 @@ static void put_tables(struct fixture *f)
             store_text(i ? "C1" : "C10"),   store_text(""), store_text("it rises, sharply"),
             store_text("S(24) > S(16)"),    store_text(""), i ? store_real(0.5) : store_null(),
             store_text(i ? "pass" : "fail")};
-        assert_true(store_insert(f->s, "ladder", 12, ladder, rung, &f->e));
+        assert_true(store_insert(f->s, "ladder", 13, ladder, rung, &f->e));
         assert_true(store_insert(f->s, "stability", 8, case_, row, &f->e));
         assert_true(store_insert(f->s, "claim", 7, claim, held, &f->e));
     }
