@@ -1,4 +1,4 @@
-/* stability_motion.c - steppers on stiff scenes: largest stable step and cost of each; energy kept by all other scenes. */
+/* stability_motion.c - steppers: largest stable step and cost of each on stiff scenes; energy kept by all others. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
