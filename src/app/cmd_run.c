@@ -22,7 +22,7 @@ static const char doc[] =
 struct keep {
     struct store *store;
     struct err *error;
-    int invalid, deadlock, redundant;
+    int invalid, deadlock, redundant, refined;
     bool quiet;
 };
 
@@ -37,6 +37,11 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
+    if (r->inner_added > 0 && k->refined++ == 0 && !k->quiet)
+        fprintf(stderr,
+                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer), the residual was %.2g\n",
+                spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
+                r->residual_before);
     return store_put(k->store, spec, r, k->error);
 }
 

@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/progress.h"
 #include "run/run.h"
+#include "run/scene.h"
 
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
@@ -105,10 +106,11 @@ struct campaign {
 static _Noreturn void worker_main(const struct run_spec *spec, int orders, int answers)
 {
     int index;
+    struct scene_shelf *shelf = scene_shelf_create();
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
-        a.ok = run_one(&spec[index], arena, &a.result, &a.error);
+        a.ok = run_sharing(&spec[index], shelf, arena, &a.result, &a.error);
         if (!send_answer(answers, &a)) break;
         arena_destroy(arena);
     }
@@ -216,16 +218,18 @@ static void stop_workers(struct campaign *c, bool at_once)
 
 static bool run_here(struct campaign *c, struct err *e)
 {
-    for (int i = 0; i < c->nspec; i++) {
+    struct scene_shelf *shelf = scene_shelf_create();
+    bool ok = true;
+    for (int i = 0; ok && i < c->nspec; i++) {
         if (c->skip && c->skip[i]) continue;
         struct arena *arena = arena_create();
         struct run_result result;
-        bool ok = run_one(&c->spec[i], arena, &result, e) && c->done(c->context, &c->spec[i], &result);
+        ok = run_sharing(&c->spec[i], shelf, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
         arena_destroy(arena);
         progress_show(&c->progress, ++c->ndone);
-        if (!ok) return false;
     }
-    return true;
+    scene_shelf_destroy(shelf);
+    return ok;
 }
 
 static bool run_workers(struct campaign *c, int workers, struct err *e)

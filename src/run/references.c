@@ -48,11 +48,9 @@ double references_tolerance(const struct kernel_spec *k, int n)
     return fmin(base * size * size * precision_scale(k->precision), 1e-2);
 }
 
-static void check_inverse(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+static void check_inverse(const struct kernel_job *job, struct scene *scene, struct run_result *out)
 {
-    double *tau = TAKE(scratch, job->model->nu, double);
-    struct work w = {0};
-    dynamics_type_of(PRECISION_DOUBLE)->inverse(job->model, job->state, scratch, tau, &w);
+    const double *tau = scene_inverse(scene)->x;
     double tolerance =
         fmin(1e-11 * fmax(1, job->model->nbody / 100.0) * precision_scale(job->spec->kernel.precision), 1e-2);
     record(out, "tau", "rnea", relative_error(job->tau, tau, job->model->nu), tolerance);
@@ -72,15 +70,13 @@ static double rounding_of(const struct kernel_job *job, const double *reference,
     return isfinite(error) ? fmin(error, 1e-2) : 0;
 }
 
-static void check_forward(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+static void check_forward(const struct kernel_job *job, struct scene *scene, struct arena *scratch,
+                          struct run_result *out)
 {
-    double *qdd = TAKE(scratch, job->model->nu, double);
-    struct work w = {0};
-    bool found =
-        dynamics_type_of(PRECISION_DOUBLE)->forward(job->model, job->state, FORWARD_ABA, scratch, qdd, NULL, NULL, &w);
-    const double error = found ? relative_error(job->qdd, qdd, job->model->nu) : NAN;
+    const struct serial_answer *aba = scene_forward(scene, FORWARD_ABA);
+    const double error = aba->found ? relative_error(job->qdd, aba->x, job->model->nu) : NAN;
     double tolerance = references_tolerance(&job->spec->kernel, job->model->nbody);
-    if (error > tolerance) tolerance = fmax(tolerance, rounding_of(job, qdd, scratch));
+    if (error > tolerance) tolerance = fmax(tolerance, rounding_of(job, aba->x, scratch));
     record(out, "qdd", "aba", error, tolerance);
 }
 
@@ -126,12 +122,13 @@ void references_loops(const struct kernel_job *job, struct arena *scratch, struc
     arena_release(scratch, mark);
 }
 
-void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+void references_check(const struct kernel_job *job, struct scene *scene, struct arena *scratch,
+                      struct run_result *out)
 {
     if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
-    if (job->tau) check_inverse(job, scratch, out);
-    if (job->qdd && job->spec->kernel.steps == 0) check_forward(job, scratch, out);
+    if (job->tau) check_inverse(job, scene, out);
+    if (job->qdd && job->spec->kernel.steps == 0) check_forward(job, scene, scratch, out);
     if (job->qdd && job->q_end) check_steps(job, scratch, out);
     arena_release(scratch, mark);
 }
@@ -171,15 +168,13 @@ static void repeat(struct work *w, uint64_t times)
 
 /* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
 static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
-                       struct arena *scratch, struct run_result *out)
+                       struct scene *scene, struct run_result *out)
 {
     static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT};
-    const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
-    double *answer = TAKE(scratch, job->model->nu, double);
     const bool dense = job->spec->kernel.operators == OPERATORS_DENSE;
     struct work inverse = {0};
     if (kernel->does_inverse) {
-        t->inverse(job->model, job->state, scratch, answer, &inverse);
+        inverse = scene_inverse(scene)->work;
         if (dense) dense_tally_inverse(job->model, &inverse);
         add_baseline(out, cost, "rnea", &inverse);
     }
@@ -187,8 +182,9 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     for (int i = 0; kernel->does_forward && i < 4; i++) {
         if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !(job->spec->keep & KEEP_BASELINE))
             continue;
-        struct work w = {0};
-        if (!t->forward(job->model, job->state, methods[i], scratch, answer, NULL, NULL, &w)) continue;
+        const struct serial_answer *serial = scene_forward(scene, methods[i]);
+        struct work w = serial->work;
+        if (!serial->found) continue;
         if (dense) dense_tally_forward(job->model, methods[i], &w);
         repeat(&w, evaluations(&job->spec->kernel));
         work_add(&w, &inverse);
@@ -206,13 +202,13 @@ static void add_parallel_work(const struct node_cost *cost, struct run_result *o
     add_baseline(out, cost, "parallel code on one processor", &all);
 }
 
-void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
-                          struct run_result *out)
+void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,
+                          struct arena *scratch, struct run_result *out)
 {
     if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
     struct node_cost cost = node_cost_make(&job->spec->machine.node);
     add_parallel_work(&cost, out);
-    add_serial(job, kernel, &cost, scratch, out);
+    add_serial(job, kernel, &cost, scene, out);
     arena_release(scratch, mark);
 }

@@ -5,6 +5,7 @@
 #include "kernel/kernel.h"
 #include "measure/run_result.h"
 #include "mech/model.h"
+#include "run/scene.h"
 #include "spec/run_spec.h"
 
 /* references_check: compare the job's answers with the serial ones: tau with RNEA, qdd with ABA (closed chains: with
@@ -12,7 +13,8 @@
  * that is no number, makes the run RUN_INVALID with its text. Jobs that step in time compare
  * the state at the end with the serial integrator's, of the same rule and step; what may differ is what the forward
  * dynamics may, grown as a small change of the first state grows on the way. */
-void references_check(const struct kernel_job *job, struct arena *scratch, struct run_result *out);
+void references_check(const struct kernel_job *job, struct scene *scene, struct arena *scratch,
+                      struct run_result *out);
 
 /* references_loops: how many loop constraints there are, how many are independent, and how far the state at the end of
  * the run violates them. Without loops: nothing. */
@@ -25,7 +27,7 @@ double references_tolerance(const struct kernel_spec *k, int n);
 
 /* references_baselines: predicted times of the serial codes on one node, and of the whole parallel work on one
  * processor (out->stage must be filled). CRBA's O(n^3) factorisation is left out above 512 degrees of freedom. */
-void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
-                          struct run_result *out);
+void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,
+                          struct arena *scratch, struct run_result *out);
 
 #endif

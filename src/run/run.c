@@ -12,6 +12,7 @@
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/references.h"
+#include "run/scene.h"
 #include "run/trust.h"
 
 static const struct kernel_type *find_kernel(const struct run_spec *spec, struct err *e)
@@ -21,17 +22,14 @@ static const struct kernel_type *find_kernel(const struct run_spec *spec, struct
     return k;
 }
 
-/* The scene and the arrays for its answers. */
+/* The arrays for the answers. */
 static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
-                     struct arena *a, struct err *e)
+                     struct scene *scene, struct arena *a, struct err *e)
 {
     *job = (struct kernel_job){.spec = spec, .nrank = spec->nrank};
-    if (kernel->needs_model) {
-        struct model *m = model_build(&spec->model, a, e);
-        if (!m) return false;
-        job->model = m;
-        struct state *state = state_make(m, &spec->model, a);
-        omission_prepare(job, state, a);
+    if (scene) {
+        const struct model *m = job->model = scene->model;
+        omission_prepare(job, scene->state, scene->arena);
         if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
         if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
         if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
@@ -57,43 +55,91 @@ static double largest_measured(const struct kernel_job *job)
     return largest;
 }
 
-static void verify(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *scratch,
-                   struct run_result *out)
+static void verify(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,
+                   struct arena *scratch, struct run_result *out)
 {
     out->measured_s = largest_measured(job);
-    if (out->status != RUN_OK) return;
-    trust_check(job, out);
+    if (out->status != RUN_OK && out->status != RUN_INVALID) return;
     references_loops(job, scratch, out);
-    references_check(job, scratch, out);
-    references_baselines(job, kernel, scratch, out);
+    references_check(job, scene, scratch, out);
+    references_baselines(job, kernel, scene, scratch, out);
 }
 
-bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e)
+/* The program once, with the settings that it has now. */
+static bool attempt(const struct run_spec *spec, const struct kernel_type *kernel, struct kernel_job *job,
+                    struct scene *scene, struct arena *scratch, struct arena *a, struct run_result *out, struct err *e)
+{
+    struct machine_spec machine = omission_machine(spec);
+    struct record_spec record = omission_record(spec);
+    memset(out, 0, sizeof *out);
+    if (!make_job(job, kernel, spec, scene, scratch, e)) return false;
+    if (!launch_job(kernel, job, &machine, &record, spec->seed + (uint64_t)spec->rep,
+                    omission_largest_message(spec, kernel, job), scratch, a, out, e))
+        return false;
+    out->residual = NAN;
+    if (out->status == RUN_OK) trust_check(job, out);
+    return true;
+}
+
+/* Attempts until the answer needs no further refinement; `spec` ends with the refinements of the last. When the last is
+ * no better than the first, the first is what holds. */
+static bool refine(struct run_spec *spec, const struct kernel_type *kernel, struct kernel_job *job,
+                   struct scene *scene, struct arena *scratch, struct arena *a, struct run_result *out, struct err *e)
+{
+    const struct kernel_spec given = spec->kernel;
+    struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
+    if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
+    const double before = out->residual;
+    while (job->qdd && out->status != RUN_DEADLOCK && trust_refine(&spec->kernel, job->model->nbody, out)) {
+        arena_release(scratch, work);
+        arena_release(a, results);
+        if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
+    }
+    if (out->residual >= before && spec->kernel.inner_refinements > given.inner_refinements) {
+        spec->kernel = given;
+        arena_release(scratch, work);
+        arena_release(a, results);
+        if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
+    }
+    out->inner_added = spec->kernel.inner_refinements - given.inner_refinements;
+    out->outer_added = spec->kernel.outer_refinements - given.outer_refinements;
+    out->residual_before = before;
+    return true;
+}
+
+bool run_sharing(const struct run_spec *spec, struct scene_shelf *shelf, struct arena *a, struct run_result *out,
+                 struct err *e)
 {
     memset(out, 0, sizeof *out);
     double begin = host_seconds();
     const struct kernel_type *kernel = find_kernel(spec, e);
     if (!kernel) return false;
+    if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
+        return err_set(e, ERR_CONFIG,
+                       "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
+    struct scene *scene = kernel->needs_model ? scene_take(shelf, spec, e) : NULL;
+    if (kernel->needs_model && !scene) return false;
     struct arena *scratch = arena_create();
     struct kernel_job job;
-    bool ok = spec->machine.network.level != LEVEL_AUTO_TOLERANCE ||
-              err_set(e, ERR_CONFIG, "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
-    ok = ok && make_job(&job, kernel, spec, scratch, e);
-    if (ok) {
-        struct machine_spec machine = omission_machine(spec);
-        struct record_spec record = omission_record(spec);
-        ok = launch_job(kernel, &job, &machine, &record, spec->seed + (uint64_t)spec->rep,
-                        omission_largest_message(spec, kernel, &job), scratch, a, out, e);
-    }
+    struct run_spec own = *spec;
+    bool ok = refine(&own, kernel, &job, scene, scratch, a, out, e);
     if (ok) omission_note(spec, kernel, &job, out);
     if (ok && job.model) {
         out->nbody = job.model->nbody;
         out->nu = job.model->nu;
     }
-    if (ok) verify(&job, kernel, scratch, out);
+    if (ok) verify(&job, kernel, scene, scratch, out);
     arena_destroy(scratch);
     out->host_total_s = host_seconds() - begin;
     out->host_peak_bytes = host_peak_bytes();
+    return ok;
+}
+
+bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e)
+{
+    struct scene_shelf *shelf = scene_shelf_create();
+    bool ok = run_sharing(spec, shelf, a, out, e);
+    scene_shelf_destroy(shelf);
     return ok;
 }
 

@@ -18,6 +18,12 @@
  *   Returns false with ERR_CONFIG, ERR_DATA, ERR_NO_INPUT or ERR_INTERNAL when the run cannot be made. */
 bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e);
 
+struct scene_shelf; /* scene.h */
+
+/* run_sharing: run_one with the scenes on `shelf`, so that runs of one scene build it and its references once. */
+bool run_sharing(const struct run_spec *spec, struct scene_shelf *shelf, struct arena *a, struct run_result *out,
+                 struct err *e);
+
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
     int64_t nbody, nu; /* bodies, degrees of freedom */

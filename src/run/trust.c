@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "run/references.h"
 
 static double worst(const double *x, int n)
 {
@@ -33,7 +34,31 @@ static const char *remedy(const struct kernel_spec *k)
 {
     if (k->formulation == FORMULATION_PAPER) return "kernel.formulation: direct";
     if (k->inner_refinements == 0) return "kernel.inner_refinements: 1";
-    return k->outer_refinements == 0 ? "kernel.outer_refinements: 1" : "a higher kernel.precision";
+    if (k->outer_refinements == 0) return "kernel.outer_refinements: 1";
+    const bool unstable = k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
+    return unstable ? "kernel.solver: cr" : "a higher kernel.precision";
+}
+
+/* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints take
+ * up again. */
+static double overstated(const struct kernel_spec *k) { return k->formulation == FORMULATION_PAPER ? 30 : 1; }
+
+double trust_needs(const struct kernel_spec *k, int n)
+{
+    return fmin(overstated(k) * references_tolerance(k, n), 1e-3);
+}
+
+bool trust_refine(struct kernel_spec *k, int n, const struct run_result *out)
+{
+    enum { MOST_OUTER = 4 };
+    const bool enough = out->residual <= trust_needs(k, n); /* false for what is no number */
+    const bool keeps_factors = k->solver != SOLVER_PCR;
+    if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
+    if (k->inner_refinements == 0) k->inner_refinements = 1;
+    else if (k->outer_refinements == 0) k->outer_refinements = 1;
+    else if (k->outer_refinements < MOST_OUTER) k->outer_refinements = MOST_OUTER;
+    else return false;
+    return true;
 }
 
 void trust_check(const struct kernel_job *job, struct run_result *out)
@@ -42,7 +67,7 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     if (!job->qdd || !job->residual) return;
     const struct kernel_spec *k = &job->spec->kernel;
     bool single = k->precision == PRECISION_FLOAT;
-    double poor = single ? 0.1 : 1e-4, epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
+    double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
     out->residual = worst_residual(job);
     out->condition = worst(job->condition, job->nrank);

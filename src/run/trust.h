@@ -6,8 +6,17 @@
 #include "measure/run_result.h"
 
 /* trust_check: out->residual and condition = the worst over the ranks. A residual that is no number or leaves fewer
- * than about four digits (one in single precision), or a condition that reaches what the precision resolves, makes
+ * than about four digits (one in single precision; both less one and a half in the paper's formulation), or a condition that reaches what the precision resolves, makes
  * the run RUN_INVALID; its text says which setting would mend it. Kernels without forward dynamics: NaN, no verdict. */
 void trust_check(const struct kernel_job *job, struct run_result *out);
+
+/* trust_needs: the largest residual that an answer of `n` bodies may have without refinement: what a correct program
+ * may be wrong by (references_tolerance); the paper's formulation 30 times that, for its residual overstates its error.
+ */
+double trust_needs(const struct kernel_spec *k, int n);
+
+/* trust_refine: more refinements for *k, which gave out->residual on `n` bodies, when that is too much: one inner, then
+ * one outer, then up to four. False: none is needed, none is left, or the settings forbid it; *k is then unchanged. */
+bool trust_refine(struct kernel_spec *k, int n, const struct run_result *out);
 
 #endif

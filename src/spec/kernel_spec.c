@@ -13,6 +13,7 @@ static const char *const part_solvers[] = {"pcr", "cr", NULL};
 static const char *const operators[] = {"structured", "dense", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
+static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
 static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", NULL};
 static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier", "hot-spot", "shift"};
 
@@ -127,6 +128,9 @@ static const struct field fields[] = {
      .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
     {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
      .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},
+    {.key = "refinement", .kind = FIELD_CHOICE, AT(refinement), .choice = refinement_rules, .fallback = "as-needed",
+     .idle = idle_without_forward,
+     .doc = "whether more refinements than the given ones are switched on where the residual asks for them"},
     {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100, .fallback = "0",
      .idle = idle_without_forward, .doc = "corrections of the solution by its residual"},
     {.key = "outer_refinements", .kind = FIELD_INT, AT(outer_refinements), .min = 0, .max = 100, .fallback = "0",

@@ -11,6 +11,7 @@ enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
 enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
 enum part_solver { PART_PCR, PART_CR };
 enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
+enum refinement_rule { REFINEMENT_AS_NEEDED, REFINEMENT_AS_GIVEN };
 enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4 };
 
 struct kernel_spec {
@@ -24,6 +25,7 @@ struct kernel_spec {
     bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2; trees
                                     and closed chains always take incoming ones */
     int hybrid_levels;           /* cr-pcr: levels of CR before PCR */
+    enum refinement_rule refinement; /* as needed: more than the numbers below where the residual asks for it */
     int inner_refinements;       /* residual corrections with stored factors */
     int outer_refinements;       /* corrections through inverse dynamics */
     int steps;                   /* time steps; 0: one evaluation */

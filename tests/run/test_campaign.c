@@ -169,6 +169,45 @@ static void a_worker_that_dies_is_told(void **unused)
     plan_free(&p);
 }
 
+/* What is the same in a run whether its scene was shared or made for it alone. */
+struct shared {
+    int n;
+    struct run_result row[MOST_RUNS];
+};
+
+static bool keep_whole(void *context, const struct run_spec *spec, const struct run_result *r)
+{
+    struct shared *s = context;
+    (void)spec;
+    assert_true(s->n < MOST_RUNS);
+    s->row[s->n++] = *r;
+    return true;
+}
+
+static void sharing_scenes_changes_no_number(void **unused)
+{
+    (void)unused;
+    static const char *const set[] = {"n=24"};
+    struct plan p;
+    struct err e;
+    err_clear(&e);
+    struct plan_options o = {.nset = 1, .set = set};
+    if (!plan_read(&p, MIMDSIM_SRCDIR "/scenarios/fig7.yaml", &o, &e)) fail_msg("%s", e.text);
+    int n = p.nrun < MOST_RUNS ? p.nrun : MOST_RUNS;
+    struct shared with = {0}, without = {0};
+    assert_true(n > 4 && run_campaign(p.run, n, NULL, 1, true, keep_whole, &with, &e));
+    for (int i = 0; i < n; i++) p.run[i].keep = KEEP_SCENES;
+    assert_true(run_campaign(p.run, n, NULL, 1, true, keep_whole, &without, &e));
+    for (int i = 0; i < n; i++) {
+        const struct run_result *x = &with.row[i], *y = &without.row[i];
+        assert_true(x->status == y->status && x->digest == y->digest && x->makespan_ps == y->makespan_ps);
+        assert_true(x->nerror == y->nerror && x->nbaseline == y->nbaseline && x->nerror > 0 && x->nbaseline > 3);
+        for (int k = 0; k < x->nerror; k++) assert_true(x->error[k].relative == y->error[k].relative);
+        for (int k = 0; k < x->nbaseline; k++) assert_true(x->baseline[k].time_ps == y->baseline[k].time_ps);
+    }
+    plan_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -177,6 +216,7 @@ int main(void)
         cmocka_unit_test(who_takes_the_rows_may_stop),
         cmocka_unit_test(a_run_that_cannot_be_made_is_told_after_those_before_it),
         cmocka_unit_test(a_worker_that_dies_is_told),
+        cmocka_unit_test(sharing_scenes_changes_no_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

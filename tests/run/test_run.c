@@ -115,7 +115,13 @@ static struct kernel_job serial_job(const struct run_spec *spec, struct arena *a
 static struct run_result checked(const struct kernel_job *job, struct arena *a)
 {
     struct run_result r = {.status = RUN_OK};
-    references_check(job, a, &r);
+    struct err e;
+    err_clear(&e);
+    struct scene_shelf *shelf = scene_shelf_create();
+    struct scene *scene = scene_take(shelf, job->spec, &e);
+    assert_non_null(scene);
+    references_check(job, scene, a, &r);
+    scene_shelf_destroy(shelf);
     return r;
 }
 
@@ -155,7 +161,8 @@ static void rounding_beyond_the_tolerance_makes_a_real_run_invalid(void **unused
 {
     (void)unused;
     struct plan p;
-    struct run_spec spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=float", "kernel.formulation=paper");
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=128", "kernel.precision=float", "kernel.formulation=paper",
+                                "kernel.refinement=as-given");
     struct arena *a = arena_create();
     struct run_result r = run(&spec, a);
     assert_int_equal(r.status, RUN_INVALID);
@@ -168,6 +175,77 @@ static void rounding_beyond_the_tolerance_makes_a_real_run_invalid(void **unused
     assert_true(r.error[1].relative < 1e-11);
     arena_destroy(a);
     plan_free(&p);
+}
+
+/* Masses of a wide range spoil parallel cyclic reduction; the residual tells it, and one refinement repairs it. */
+static void refinement_is_switched_on_where_the_residual_asks_for_it(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.formulation=direct",
+                                "model.inertia=random", "model.mass_ratio=1e6", "kernel.refinement=as-given");
+    struct arena *a = arena_create();
+    const struct run_result plain = run(&spec, a);
+    spec.kernel.refinement = REFINEMENT_AS_NEEDED;
+    const struct run_result mended = run(&spec, a);
+    spec.kernel.refinement = REFINEMENT_AS_GIVEN;
+    spec.kernel.inner_refinements = 1;
+    const struct run_result asked = run(&spec, a);
+    assert_int_equal(plain.status, RUN_INVALID);
+    assert_true(plain.inner_added == 0 && plain.residual > 1e-9);
+    assert_int_equal(mended.status, RUN_OK);
+    assert_true(mended.inner_added == 1 && mended.outer_added == 0);
+    assert_true(mended.residual_before == plain.residual && mended.residual < 1e-10);
+    assert_true(mended.error[0].relative < 1e-3 * plain.error[0].relative);
+    /* the machine pays for it, exactly as if it had been asked for */
+    assert_true(mended.makespan_ps > plain.makespan_ps && mended.makespan_ps == asked.makespan_ps);
+    assert_true(mended.digest == asked.digest);
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+static void nothing_is_refined_that_is_good_enough_or_keeps_no_factors(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct arena *a = arena_create();
+    struct run_spec spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward");
+    struct run_result r = run(&spec, a);
+    assert_true(r.status == RUN_OK && r.inner_added + r.outer_added == 0);
+    plan_free(&p);
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "kernel.solver=pcr", "model.inertia=random",
+                "model.mass_ratio=1e8");
+    r = run(&spec, a);
+    assert_true(r.status == RUN_INVALID && r.inner_added + r.outer_added == 0);
+    plan_free(&p);
+    /* where refining does not help, the answer as given is what is told, and that it is none */
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random", "model.mass_ratio=1e12");
+    r = run(&spec, a);
+    assert_true(r.status == RUN_INVALID && r.residual > 1e-3);
+    assert_non_null(strstr(r.text, "not to be trusted"));
+    plan_free(&p);
+    arena_destroy(a);
+}
+
+/* The residual of either formulation tells the error of its answer to within two decades and never hides it. */
+static void the_residual_tells_the_error(void **unused)
+{
+    (void)unused;
+    static const char *const formulation[] = {"kernel.formulation=paper", "kernel.formulation=direct"};
+    static const char *const ratio[] = {"model.mass_ratio=1", "model.mass_ratio=1e4", "model.mass_ratio=1e6",
+                                        "model.mass_ratio=1e8"};
+    struct arena *a = arena_create();
+    for (int f = 0; f < 2; f++)
+        for (int k = 0; k < 4; k++) {
+            struct plan p;
+            struct run_spec spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", formulation[f],
+                                        "model.inertia=random", ratio[k], "kernel.refinement=as-given");
+            const struct run_result r = run(&spec, a);
+            const double error = r.error[0].relative;
+            assert_true(r.residual > 0.1 * error && r.residual < 100 * error + 1e-12);
+            plan_free(&p);
+        }
+    arena_destroy(a);
 }
 
 static const struct baseline *baseline_of(const struct run_result *r, const char *name)
@@ -267,6 +345,9 @@ int main(void)
         cmocka_unit_test(contention_is_never_charged_without_links),
         cmocka_unit_test(a_wrong_number_makes_the_run_invalid),
         cmocka_unit_test(rounding_beyond_the_tolerance_makes_a_real_run_invalid),
+        cmocka_unit_test(refinement_is_switched_on_where_the_residual_asks_for_it),
+        cmocka_unit_test(nothing_is_refined_that_is_good_enough_or_keeps_no_factors),
+        cmocka_unit_test(the_residual_tells_the_error),
         cmocka_unit_test(baselines_are_all_the_work_and_the_fastest_of_the_serial_codes),
         cmocka_unit_test(estimates_are_within_a_fifth_of_what_is_counted),
         cmocka_unit_test(what_cannot_run_is_refused),

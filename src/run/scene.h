@@ -1,0 +1,48 @@
+/* scene.h - a model in its state with its serial answers, made once for all runs of a campaign that need it.
+ *
+ * Runs that differ in machine, network, processors or solver have the same scene: its model, the answers that theirs
+ * are held against and the work of the serial codes. Sharing them changes no result. */
+#ifndef RUN_SCENE_H
+#define RUN_SCENE_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "mech/dynamics_table.h"
+#include "mech/model.h"
+#include "spec/run_spec.h"
+
+struct serial_answer {
+    bool asked, found;       /* found: false when the method broke down */
+    double *x;               /* (nu) */
+    struct work work;
+};
+
+struct scene {
+    struct model *model;
+    struct state *state;
+    struct arena *arena;     /* owned */
+    struct model_spec spec;  /* what it was made from */
+    unsigned keep;
+    long used;               /* when it was last asked for */
+    struct serial_answer inverse, forward[FORWARD_METHODS]; /* in double precision */
+};
+
+/* A few scenes, the least recently used making room for new ones. */
+struct scene_shelf;
+
+/* scene_shelf_create, scene_shelf_destroy: the caller owns it; destroy accepts NULL. */
+struct scene_shelf *scene_shelf_create(void);
+void scene_shelf_destroy(struct scene_shelf *shelf);
+
+/* scene_take: the scene that `spec` asks for, from the shelf or made now; borrowed until the next call. NULL with *e
+ * set when it cannot be built. */
+struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec, struct err *e);
+
+/* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler. scene_forward: accelerations by
+ * `method`. Computed at the first call. */
+const struct serial_answer *scene_inverse(struct scene *s);
+const struct serial_answer *scene_forward(struct scene *s, enum forward_method method);
+
+#endif
