@@ -229,7 +229,8 @@ static void operator_form(struct forward *f, bool terms)
     for (int i = lo; i < hi; i++) {
         real *z = chain_at(ch, f->z, i), reaction[SPACE];
         const struct subspace *s = subspace_of(f, i);
-        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL, y);
+        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL,
+                          y);
         screw_copy(z, y);
         scale = largest_size(scale, SPACE, y);
         if (i > 0 || base) {
@@ -287,8 +288,8 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
     }
 }
 
-/* paper_residual: largest |W^T D F|, an acceleration that a joint forbids, over the largest acceleration of a body; it is
- * a monitor, so it costs the machine nothing. */
+/* paper_residual: largest |W^T D F|, an acceleration that a joint forbids, over the largest acceleration of a body; it
+ * is a monitor, so it costs the machine nothing. */
 static void paper_residual(struct forward *f)
 {
     struct chain *ch = &f->chain;

@@ -39,8 +39,8 @@ static const char *remedy(const struct kernel_spec *k)
     return unstable ? "kernel.solver: cr" : "a higher kernel.precision";
 }
 
-/* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints take
- * up again. */
+/* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints
+ * take up again. */
 static double overstated(const struct kernel_spec *k) { return k->formulation == FORMULATION_PAPER ? 30 : 1; }
 
 double trust_needs(const struct kernel_spec *k, int n)

@@ -252,7 +252,7 @@ refused() {
 
 @test "a wrong number ends with status 1, is told, and its row says invalid" {
     scenario
-    fails_with 1 mimdsim run small.yaml --quiet --set n=128 --set kernel.precision=float
+    fails_with 1 mimdsim run small.yaml --quiet --set n=128 --set kernel.precision=float --set kernel.refinement=as-given
     stderr_says "differs from"
     sql_is mimdsim.db 'SELECT status, text LIKE "%differs from%" FROM run' 'invalid|1'
     sql_is mimdsim.db 'SELECT min(passed) FROM error_check' 0
