@@ -82,9 +82,9 @@ int cmd_accuracy(int argc, char **argv)
     struct arena *a = arena_create();
     struct accuracy_report r;
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
-    if (ok && c.json) accuracy_print_json(stdout, &r);
-    else if (ok) accuracy_print(stdout, &r);
+    if (ok && !c.json) accuracy_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);
+    if (ok && c.json) accuracy_print_json(stdout, &r);
     arena_destroy(a);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

@@ -4,17 +4,22 @@
 #include <string.h>
 
 #include "app/flag.h"
+#include "app/savings.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
+#include "base/text.h"
 #include "base/units.h"
+#include "report/report.h"
 #include "run/run.h"
+#include "store/store.h"
 
 static const char doc[] =
     "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
     "memory they will take on this computer.\n\n"
     "Example: mimdsim explain scenarios/speedup-t3e.yaml\n\v"
-    "--measure: run the largest point with each of the omissions put back, and tell what it saves.";
+    "--measure: run a large point with each of the omissions put back, and tell what it saves: rows of table\n"
+    "`omission` of the database, bars in omissions-SCENARIO.png and .svg.";
 
 enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS };
 
@@ -115,7 +120,8 @@ static void json_kinds(struct json *j, const struct plan *p, const struct run_es
     free(k);
 }
 
-static void print_json(const struct plan *p, const struct run_estimate *r)
+/* `measured` NULL: without --measure. */
+static void print_json(const struct plan *p, const struct run_estimate *r, const struct savings *measured)
 {
     struct json j = json_make(stdout);
     json_object(&j);
@@ -138,6 +144,7 @@ static void print_json(const struct plan *p, const struct run_estimate *r)
         json_end(&j);
     }
     json_end(&j);
+    if (measured) savings_json(&j, measured);
     json_key(&j, "unused");
     json_array(&j);
     for (int i = 0; i < p->nunused; i++) json_text(&j, p->unused[i]);
@@ -146,54 +153,18 @@ static void print_json(const struct plan *p, const struct run_estimate *r)
     json_finish(&j);
 }
 
-/* The point with the most messages: where leaving out saves most. */
-static int largest_point(const struct plan *p, const struct run_estimate *r)
+/* The rows and the picture of what was measured. */
+static bool keep_and_draw(const struct common *c, const struct savings *all, struct err *e)
 {
-    int best = 0;
-    for (int i = 1; i < p->nrun; i++)
-        if (r[i].messages > r[best].messages) best = i;
-    return best;
-}
-
-/* The shortest host time of a few runs, whole runs with their references, and what they predict. */
-static bool time_run(const struct run_spec *spec, double *host_s, int64_t *machine_ps, struct err *e)
-{
-    *host_s = INFINITY;
-    for (int i = 0; i < 3; i++) {
-        struct arena *a = arena_create();
-        struct run_result result;
-        bool ok = run_one(spec, a, &result, e);
-        if (ok && result.host_total_s < *host_s) *host_s = result.host_total_s;
-        if (ok) *machine_ps = result.makespan_ps;
-        arena_destroy(a);
-        if (!ok) return false;
-    }
-    return true;
-}
-
-/* What each omission saves: the same run with it put back, less the run without. */
-static bool print_savings(const struct plan *p, const struct run_estimate *r, struct err *e)
-{
-    int at = p->nrun > 0 ? largest_point(p, r) : 0;
-    struct run_spec spec = p->nrun > 0 ? p->run[at] : (struct run_spec){0};
-    double host_s, with_s;
-    int64_t machine_ps, with_ps;
-    if (p->nrun == 0) return true;
-    if (!time_run(&spec, &host_s, &machine_ps, e)) return false;
-    printf("\nmeasured with P = %d: %.3f ms of this computer, %.3f us of the machine\n", spec.nrank, host_s * 1e3,
-           (double)machine_ps * 1e-6);
-    for (int k = 0; k < r[at].nomission; k++) {
-        const struct omission *o = &r[at].omission[k];
-        spec.keep = o->keep;
-        if (o->keep == 0) {
-            printf("  %-40s cannot be put back\n", o->what);
-            continue;
-        }
-        if (!time_run(&spec, &with_s, &with_ps, e)) return false;
-        printf("  %-40s saves %+.3f ms and %+.3f us\n", o->what, (with_s - host_s) * 1e3,
-               (double)(with_ps - machine_ps) * 1e-6);
-    }
-    return true;
+    struct text figure = {0};
+    struct store *s = store_open(c->database, STORE_WRITE, e);
+    text_add(&figure, "omissions-%s", all->scenario);
+    bool ok = s && savings_store(s, all, e);
+    ok = ok && (all->n == 0 || report_figure(s, plan_data_dir(), figure.s, c->directory, e));
+    if (ok && all->n > 0 && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    text_free(&figure);
+    store_close(s);
+    return ok;
 }
 
 static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
@@ -207,7 +178,7 @@ int cmd_explain(int argc, char **argv)
 {
     struct common c;
     bool measure = take_flag(&argc, argv, "--measure");
-    common_parse(&c, argc, argv, TAKES_PLAN, "SCENARIO", doc, 1, 1);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR, "SCENARIO", doc, 1, 1);
     struct err e;
     err_clear(&e);
     struct plan p = {0};
@@ -215,9 +186,14 @@ int cmd_explain(int argc, char **argv)
     bool ok = plan_read(&p, c.arg[0], &o, &e);
     struct run_estimate *r = calloc(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
     ok = ok && r && estimate_all(&p, r, &e);
-    if (ok && c.json) print_json(&p, r);
-    else if (ok) print_text(&p, r);
-    if (ok && measure && !c.json) ok = print_savings(&p, r, &e);
+    struct savings *all = calloc(1, sizeof *all);
+    CHECK(all);
+    if (ok && !c.json) print_text(&p, r);
+    ok = ok && (!measure || savings_measure(&p, r, all, &e));
+    if (ok && measure && !c.json) savings_print(stdout, all);
+    ok = ok && (!measure || keep_and_draw(&c, all, &e));
+    if (ok && c.json) print_json(&p, r, measure ? all : NULL);
+    free(all);
     free(r);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

@@ -58,9 +58,9 @@ int cmd_stability(int argc, char **argv)
     struct stability_report r;
     bool ok = c.narg == 0 || plan_read(&p, c.arg[0], &o, &e);
     ok = ok && stability_measure(p.run, p.nrun, 0, c.quiet, a, &r, &e);
-    if (ok && c.json) stability_print_json(stdout, &r);
-    else if (ok) stability_print(stdout, &r);
+    if (ok && !c.json) stability_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);
+    if (ok && c.json) stability_print_json(stdout, &r);
     arena_destroy(a);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

@@ -315,10 +315,15 @@ CREATE TABLE run_omission (
 CREATE TABLE omission (
     scenario         TEXT NOT NULL,
     what             TEXT NOT NULL,
+    ordinal          INTEGER NOT NULL,
     why              TEXT NOT NULL,
     class            TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),
     bound            REAL,             -- relative, of bounded ones
+    at               TEXT NOT NULL,    -- point of the scenario that was measured: "n=P=128"
+    host_s           REAL,             -- of the run without it; NULL here and below: nothing brings it back
     host_saved_s     REAL,
+    host_noise_s     REAL,             -- savings below it cannot be told from nothing
+    machine_ps       INTEGER,
     machine_saved_ps INTEGER,
     PRIMARY KEY (scenario, what)
 ) STRICT, WITHOUT ROWID;

@@ -52,12 +52,21 @@ scenario() {
     [ "$(sql mimdsim.db 'SELECT status, residual, condition FROM run')" = "$before" ]
 }
 
-@test "explain measures what leaving out saves" {
+@test "explain measures what leaving out saves, stores and draws it" {
     scenario
     works mimdsim explain small.yaml --measure
     stdout_says 'left out (exact): external forces'
     stdout_says 'events that start messages'
-    stdout_says 'saves'
+    stdout_says 'cannot be put back'
+    # what a put-back costs the machine is what the database says, and what a run that keeps it takes
+    sql_is mimdsim.db "SELECT machine_saved_ps > 0, host_noise_s > 0, at FROM omission WHERE what = 'external forces'" '1|1|n=P=4'
+    sql_is mimdsim.db "SELECT machine_saved_ps, class FROM omission WHERE what = 'timeline'" '0|exact'
+    sql_is mimdsim.db "SELECT host_saved_s IS NULL FROM omission WHERE what = 'branch and loop phases'" 1
+    [ -s figures/omissions-small.png ]
+    grep -q 'external forces' figures/omissions-small.csv
+    works mimdsim explain small.yaml --measure --json
+    json_is_valid
+    json_is '$.savings[0].what' 'external forces'
 }
 
 @test "level auto-tolerance takes the cheapest level that its ladder allows, and says how wrong it is" {

@@ -329,6 +329,8 @@ static void put_tables(struct fixture *f)
                                          "family"};
     static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
                                         "ordinal", "status",  "relative_error", "reason"};
+    static const char *const left_out[] = {"scenario", "what", "ordinal", "why", "class", "at", "host_s", "host_saved_s",
+                                           "host_noise_s", "machine_ps", "machine_saved_ps"};
     static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
     for (int i = 0; i < 2; i++) {
         const struct store_value rung[] = {store_text("made"),
@@ -353,6 +355,12 @@ static void put_tables(struct fixture *f)
             store_text(i ? "pass" : "fail")};
         assert_true(store_insert(f->s, "ladder", 13, ladder, rung, &f->e));
         assert_true(store_insert(f->s, "stability", 8, case_, row, &f->e));
+        const struct store_value out[] = {
+            store_text("made"), store_text(i ? "timeline" : "branches"), store_int(i), store_text("nobody asks, ever"),
+            store_text("exact"), store_text("P=4"), i ? store_real(0.1) : store_null(),
+            i ? store_real(0.02) : store_null(), i ? store_real(0.01) : store_null(), i ? store_int(7) : store_null(),
+            i ? store_int(0) : store_null()};
+        assert_true(store_insert(f->s, "omission", 11, left_out, out, &f->e));
         assert_true(store_insert(f->s, "claim", 7, claim, held, &f->e));
     }
 }
