@@ -3,7 +3,8 @@
  *   bench_overhead [P...]      default 16 128 1024 4096
  *
  * The main scenario with n = P, inverse and forward dynamics: host seconds of the simulated run over those of the same
- * kernels on the same number of ranks without any simulator (fibers, plain memory copies for messages, no clocks). */
+ * kernels on the same number of ranks without any simulator (fibers, plain memory copies for messages, no clocks). And
+ * what watching the answer costs: the kernels with residual and condition over those without. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +39,7 @@ static int rounds_for(int nrank)
 }
 
 /* bare_seconds: the best of some rounds without a simulator; everything is set up before. */
-static double bare_seconds(const struct run_spec *spec, struct err *e)
+static double bare_seconds(const struct run_spec *spec, bool watch, struct err *e)
 {
     struct arena *a = arena_create();
     struct bare b = {.kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision)};
@@ -48,6 +49,11 @@ static double bare_seconds(const struct run_spec *spec, struct err *e)
         (struct kernel_job){.spec = spec, .model = m, .state = state_make(m, &spec->model, a), .nrank = spec->nrank};
     b.job.tau = TAKE(a, m->nu, double);
     b.job.qdd = TAKE(a, m->nu, double);
+    if (watch) {
+        b.job.residual = TAKE(a, spec->nrank, double);
+        b.job.residual_scale = TAKE(a, spec->nrank, double);
+        b.job.condition = TAKE(a, spec->nrank, double);
+    }
     if (!b.kernel->accepts(spec, m, e) || !b.kernel->prepare(&b.job, a, e)) return 0;
     b.workspace = TAKE(a, spec->nrank, char *);
     for (int k = 0; k < spec->nrank; k++) b.workspace[k] = arena_take(a, b.kernel->workspace_bytes(&b.job, k));
@@ -61,6 +67,15 @@ static double bare_seconds(const struct run_spec *spec, struct err *e)
     }
     arena_destroy(a);
     return best;
+}
+
+/* watching_direct: what watching costs in the direct formulation, as a ratio. */
+static double watching_direct(const struct run_spec *spec, struct err *e)
+{
+    struct run_spec direct = *spec;
+    direct.kernel.formulation = FORMULATION_DIRECT;
+    const double bare = bare_seconds(&direct, false, e);
+    return bare_seconds(&direct, true, e) / bare;
 }
 
 /* simulated_seconds: the best of some rounds of the simulation proper. */
@@ -83,19 +98,21 @@ static bool measure(int nrank)
     static const char *const levels[] = {"loggp", "link"};
     struct err e;
     err_clear(&e);
-    double bare = 0, simulated[2];
+    double bare = 0, watched = 0, direct = 0, simulated[2];
     for (int k = 0; k < 2; k++) {
         struct plan p = {0};
         if (!torus_plan_read(&p, nrank, levels[k], &e)) break;
-        if (k == 0) bare = bare_seconds(&p.run[0], &e);
+        if (k == 0) bare = bare_seconds(&p.run[0], false, &e);
+        if (k == 0) watched = bare_seconds(&p.run[0], true, &e);
+        if (k == 0) direct = watching_direct(&p.run[0], &e);
         simulated[k] = simulated_seconds(&p.run[0], &e);
     }
     if (e.kind != ERR_NONE) {
         err_print(&e);
         return false;
     }
-    printf("%8d %12.3f %12.3f %12.3f %12.2f %12.2f\n", nrank, 1e3 * bare, 1e3 * simulated[0], 1e3 * simulated[1],
-           simulated[0] / bare, simulated[1] / bare);
+    printf("%8d %12.3f %12.3f %12.3f %12.2f %12.2f %12.2f %12.2f\n", nrank, 1e3 * bare, 1e3 * simulated[0],
+           1e3 * simulated[1], watched / bare, direct, simulated[0] / watched, simulated[1] / watched);
     fflush(stdout);
     return true;
 }
@@ -105,7 +122,8 @@ int main(int argc, char **argv)
     static const int standard[] = {16, 128, 1024, 4096};
     const int n = argc > 1 ? argc - 1 : 4;
     bool good = true;
-    printf("%8s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms", "loggp/bare", "link/bare");
+    printf("%8s %12s %12s %12s %12s %12s %12s %12s\n", "P", "bare ms", "loggp ms", "link ms", "watched/bare",
+           "same, direct", "loggp/watched", "link/watched");
     for (int i = 0; i < n; i++) good = measure(argc > 1 ? atoi(argv[i + 1]) : standard[i]) && good;
     return !good;
 }

@@ -15,6 +15,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     struct chain *ch = &f->chain;
     const bool refine = spec->outer_refinements > 0;
     f->direct = spec->formulation == FORMULATION_DIRECT;
+    f->watch = job->residual || refine;
     chain_carve(ch, c, job, rank, true, refine || !f->direct);
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
     f->tau = CARVE(c, nu, real);
@@ -223,6 +224,7 @@ static void operator_form(struct forward *f, bool terms)
     const int lo = ch->lo, hi = ch->hi;
     real before[SPACE], y[SPACE], moved[SPACE], residual = 0, scale = 0;
     const struct job_omit *omit = &ch->job->omit;
+    const bool watch = f->watch;
     const bool gain = terms && !omit->load, bias = terms && !omit->velocity, base = terms && !omit->base;
     if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, gain ? f->gain_left : NULL, before);
     else screw_copy(before, ch->shared->base);
@@ -232,21 +234,22 @@ static void operator_form(struct forward *f, bool terms)
         body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL,
                           y);
         screw_copy(z, y);
-        scale = largest_size(scale, SPACE, y);
+        if (watch) scale = largest_size(scale, SPACE, y);
         if (i > 0 || base) {
             transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
             screw_sub(z, moved);
             ch->work.flop += SCREW_ADD_FLOP;
-            scale = largest_size(scale, SPACE, moved);
+            if (watch) scale = largest_size(scale, SPACE, moved);
         }
         if (bias) {
             screw_sub(z, chain_at(ch, ch->b, i));
             ch->work.flop += SCREW_ADD_FLOP;
-            scale = largest_size(scale, SPACE, chain_at(ch, ch->b, i));
+            if (watch) scale = largest_size(scale, SPACE, chain_at(ch, ch->b, i));
         }
+        screw_copy(before, y);
+        if (!watch) continue;
         subspace_w_transposed(s, z, reaction);
         residual = largest_size(residual, s->c, reaction);
-        screw_copy(before, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
     f->residual_scale = scale;
@@ -388,7 +391,7 @@ static void paper_solution(struct forward *f, const real *active)
         memcpy(f->ud + chain_u_at(ch, i), y, (size_t)subspace_of(f, i)->d * sizeof(real));
     }
     chain_report(ch);
-    paper_residual(f);
+    if (f->watch) paper_residual(f);
 }
 
 /* evaluate_paper: bias forces by inverse dynamics with u' = 0, then (4.3), (4.4). */

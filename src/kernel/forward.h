@@ -17,6 +17,7 @@ struct forward {
     struct blocks blocks;
     struct subspace *left; /* of joint lo-1 */
     bool direct;
+    bool watch; /* somebody wants the residual */
     real *tau;                      /* own joints: given forces and springs */
     real *ud;                       /* own joints: the answer */
     real *force;                    /* own bodies (SPACE): F in the body's frame */

@@ -84,6 +84,7 @@ static void list_terms(const struct run_spec *spec, const struct kernel_type *ke
 
 static void list_model(const struct kernel_type *kernel, const struct model *m, struct list *l)
 {
+    add(l, KEEP_SCENES, "scene and serial answers of other runs", "runs of one scene share them");
     bool revolute = true;
     for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
     if (m->is_chain && m->nloop == 0) add(l, 0, "branch and loop phases", "an open chain has neither");
