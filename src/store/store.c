@@ -148,7 +148,7 @@ static bool prepare_writer(struct store *s, struct err *e)
 static bool prepare_reader(struct store *s, struct err *e)
 {
     bool empty = false;
-    if (!check_owner(s, &empty, e)) return false;
+    if (!check_owner(s, &empty, e) || !store_exec(s, "PRAGMA query_only = ON", e)) return false;
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
@@ -259,9 +259,12 @@ static bool log_exists(const char *path)
     return there;
 }
 
+/* Where the file may be written, it is opened so, although query_only forbids every change: SQLite removes the log of
+ * a WAL database only when its last connection could write. Where not, its log would stay behind: none is made. */
 static bool open_reader(struct store *s, struct err *e)
 {
-    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
+    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
+    if (sqlite3_db_readonly(s->db, "main") == 1 && !log_exists(s->path)) reopen_immutable(s);
     int64_t ignored;
     struct err first = {0};
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -44,15 +45,35 @@ static struct store_value column_value(sqlite3_stmt *q, int column)
     }
 }
 
+/* Whether `sql` is more than blanks and comments. */
+static bool has_statement(struct store *s, const char *sql)
+{
+    sqlite3_stmt *q = NULL;
+    bool more = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK || q != NULL;
+    sqlite3_finalize(q);
+    return more;
+}
+
 static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param, struct err *e)
 {
     sqlite3_stmt *q = NULL;
-    if (sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK) {
+    const char *rest = "";
+    if (sqlite3_prepare_v2(s->db, sql, -1, &q, &rest) != SQLITE_OK) {
         store_failed(s, e);
+        return NULL;
+    }
+    if (has_statement(s, rest)) {
+        err_set(e, ERR_DATA, "more than one statement: '%.60s' would not be run", rest + strspn(rest, " \t\r\n"));
+        sqlite3_finalize(q);
         return NULL;
     }
     if (q == NULL) {
         err_set(e, ERR_DATA, "empty query");
+        return NULL;
+    }
+    if (!s->writable && !sqlite3_stmt_readonly(q)) {
+        err_set(e, ERR_IO, "database %s is only read here: a statement that changes it is not run", s->path);
+        sqlite3_finalize(q);
         return NULL;
     }
     if (sqlite3_bind_parameter_count(q) != nparam) {
