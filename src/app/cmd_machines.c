@@ -82,6 +82,29 @@ static void show_one(const struct common *c, const struct shown *m)
     json_finish(&j);
 }
 
+/* A key with its two values, keys of the object sorted; a machine compared with one of its own name is "NAME (2)". */
+static void difference_json(struct json *j, const char *key, const struct shown *x, const char *xvalue,
+                            const struct shown *y, const char *yvalue)
+{
+    char second[sizeof y->spec.name + 8];
+    bool alike = strcmp(x->spec.name, y->spec.name) == 0;
+    snprintf(second, sizeof second, "%s%s", y->spec.name, alike ? " (2)" : "");
+    const char *name[] = {"key", x->spec.name, second}, *value[] = {key, xvalue, yvalue};
+    bool swap = strcmp(name[1], name[2]) > 0;
+    int order[] = {0, swap ? 2 : 1, swap ? 1 : 2};
+    for (int i = 0; i < 2 && strcmp(name[order[i]], name[order[i + 1]]) > 0; i++) {
+        int first = order[i];
+        order[i] = order[i + 1];
+        order[i + 1] = first;
+    }
+    json_object(j);
+    for (int i = 0; i < 3; i++) {
+        json_key(j, name[order[i]]);
+        json_text(j, value[order[i]]);
+    }
+    json_end(j);
+}
+
 /* Both machines print the same keys in the same order. */
 static void compare(const struct common *c, const struct shown *x, const struct shown *y)
 {
@@ -95,14 +118,7 @@ static void compare(const struct common *c, const struct shown *x, const struct 
             printf("%-36s %-26s %s\n", a->key, a->value, b->value);
             continue;
         }
-        json_object(&j);
-        json_key(&j, "key");
-        json_text(&j, a->key);
-        json_key(&j, x->spec.name);
-        json_text(&j, a->value);
-        json_key(&j, y->spec.name);
-        json_text(&j, b->value);
-        json_end(&j);
+        difference_json(&j, a->key, x, a->value, y, b->value);
     }
     if (c->json) {
         json_end(&j);

@@ -96,23 +96,23 @@ static void json_word(struct json *j, const char *key, const char *value)
 static void json_row(struct json *j, const struct published *p, const struct outcome *o)
 {
     json_object(j);
-    json_word(j, "id", p->id);
-    json_word(j, "machine", p->machine);
-    json_word(j, "quantity", probe_name(p->quantity));
     json_word(j, "at", p->at_text);
-    json_word(j, "unit", p->unit);
-    json_pair(j, "published", p->value / p->scale);
-    json_pair(j, "low", p->low / p->scale);
-    json_pair(j, "high", p->high / p->scale);
-    json_pair(j, "simulated", o->value / p->scale);
-    json_pair(j, "relative_error", o->measured ? o->error : NAN);
-    json_pair(j, "tolerance", o->tolerance);
-    json_word(j, "class", p->evidence);
     json_key(j, "calibrated");
     json_bool(j, p->calibrated);
+    json_word(j, "class", p->evidence);
+    json_pair(j, "high", p->high / p->scale);
+    json_word(j, "id", p->id);
+    json_pair(j, "low", p->low / p->scale);
+    json_word(j, "machine", p->machine);
+    json_pair(j, "published", p->value / p->scale);
+    json_word(j, "quantity", probe_name(p->quantity));
+    json_pair(j, "relative_error", o->measured ? o->error : NAN);
+    json_pair(j, "simulated", o->value / p->scale);
+    json_word(j, "source", p->source);
+    json_pair(j, "tolerance", o->tolerance);
+    json_word(j, "unit", p->unit);
     json_word(j, "verdict", o->verdict);
     json_word(j, "why", o->why);
-    json_word(j, "source", p->source);
     json_end(j);
 }
 

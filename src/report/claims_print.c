@@ -15,6 +15,7 @@ static const char table_sql[] =
 struct listing {
     struct json j;
     bool open;
+    char verdict[16]; /* of the claim that is open: its key comes after the variants, as keys are sorted */
 };
 
 static void member(struct json *j, const char *key, const struct store_value *v)
@@ -26,30 +27,37 @@ static void member(struct json *j, const char *key, const struct store_value *v)
     else json_null(j);
 }
 
-static void members(struct json *j, int first, int last, const char *const *name, const struct store_value *value)
-{
-    for (int i = first; i < last; i++) member(j, name[i], &value[i]);
-}
-
 static void close_claim(struct listing *l)
 {
     if (!l->open) return;
     json_end(&l->j);
+    json_key(&l->j, "verdict");
+    json_text(&l->j, l->verdict);
     json_end(&l->j);
     l->open = false;
 }
 
+/* Columns of json_sql; a variant does not repeat what all variants of a claim share. */
+enum column { COLUMN_ID = 0, COLUMN_STATEMENT = 4, COLUMN_TEST = 5, COLUMN_UNIT = 7, COLUMN_VARIANT = 11,
+              COLUMN_VERDICT = 12 };
+static const char json_sql[] = "SELECT id, note, samples, share, statement, test, threshold, unit, value, value_high,"
+                               " value_low, variant, verdict FROM claim";
+
 static bool json_claim(void *context, int ncolumn, const char *const *name, const struct store_value *value)
 {
     struct listing *l = context;
-    bool own = *value[0].text == '\0';
+    bool own = *value[COLUMN_VARIANT].text == '\0';
     if (own) close_claim(l);
     json_object(&l->j);
-    members(&l->j, own ? 1 : 0, own ? ncolumn : ncolumn - 4, name, value);
+    for (int i = 0; i < ncolumn; i++) {
+        bool shared = i == COLUMN_ID || i == COLUMN_STATEMENT || i == COLUMN_TEST || i == COLUMN_UNIT;
+        if (own ? i < COLUMN_VARIANT : !shared) member(&l->j, name[i], &value[i]);
+    }
     if (own) {
         json_key(&l->j, "variants");
         json_array(&l->j);
         l->open = true;
+        text_copy(l->verdict, sizeof l->verdict, value[COLUMN_VERDICT].text);
     } else json_end(&l->j);
     return true;
 }
@@ -59,10 +67,7 @@ bool claims_print(struct store *s, bool json, FILE *out, struct err *e)
     if (!json) return report_query(s, table_sql, 0, NULL, false, out, e);
     struct listing l = {.j = json_make(out)};
     char sql[512];
-    snprintf(sql, sizeof sql,
-             "SELECT variant, verdict, value, threshold, value_low, value_high, samples, share, note,"
-             " id, statement, test, unit FROM claim%s",
-             order);
+    snprintf(sql, sizeof sql, "%s%s", json_sql, order);
     json_array(&l.j);
     bool ok = store_query(s, sql, 0, NULL, NULL, json_claim, &l, e);
     close_claim(&l);

@@ -100,26 +100,64 @@ static void grid_print(const struct grid *g, FILE *out)
         }
 }
 
+/* A document on its way: as everywhere, the keys of an object are sorted. */
+struct document_rows {
+    struct json j;
+    struct arena *a;
+    int ncolumn;
+    struct column {
+        char *name;
+        int at;
+    } * column; /* (ncolumn) by name */
+};
+
+static int compare_columns(const void *a, const void *b)
+{
+    const struct column *x = a, *y = b;
+    int order = strcmp(x->name, y->name);
+    return order ? order : x->at - y->at;
+}
+
+/* Columns of one name, which a join may give, would be one key: the second becomes "name:1", as SQLite calls it. */
+static void name_apart(struct document_rows *d)
+{
+    for (int i = 0, first = 0; i < d->ncolumn; i++) {
+        struct text t = {0};
+        if (strcmp(d->column[first].name, d->column[i].name) != 0) first = i;
+        if (first == i) continue;
+        text_add(&t, "%s:%d", d->column[first].name, i - first);
+        d->column[i].name = arena_text(d->a, t.s);
+        text_free(&t);
+    }
+}
+
 static bool json_header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
 {
-    (void)ncolumn;
-    (void)name;
+    struct document_rows *d = context;
     (void)value;
-    json_array(context);
+    d->ncolumn = ncolumn;
+    d->column = TAKE(d->a, ncolumn, struct column);
+    for (int i = 0; i < ncolumn; i++) d->column[i] = (struct column){arena_text(d->a, name[i]), i};
+    qsort(d->column, (size_t)ncolumn, sizeof *d->column, compare_columns);
+    name_apart(d);
+    json_array(&d->j);
     return true;
 }
 
 static bool json_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
 {
-    struct json *j = context;
+    struct document_rows *d = context;
+    struct json *j = &d->j;
+    (void)name;
     json_object(j);
     for (int i = 0; i < ncolumn; i++) {
-        json_key(j, name[i]);
-        switch (value[i].kind) {
+        const struct store_value *v = &value[d->column[i].at];
+        json_key(j, d->column[i].name);
+        switch (v->kind) {
         case STORE_NULL: json_null(j); break;
-        case STORE_INT: json_int(j, value[i].integer); break;
-        case STORE_REAL: json_real(j, value[i].real); break;
-        case STORE_TEXT: json_text(j, value[i].text); break;
+        case STORE_INT: json_int(j, v->integer); break;
+        case STORE_REAL: json_real(j, v->real); break;
+        case STORE_TEXT: json_text(j, v->text); break;
         }
     }
     json_end(j);
@@ -129,10 +167,11 @@ static bool json_row(void *context, int ncolumn, const char *const *name, const 
 static bool query_json(struct store *s, const char *sql, int nparam, const char *const *param, FILE *out,
                        struct err *e)
 {
-    struct json j = json_make(out);
-    bool ok = store_query(s, sql, nparam, param, json_header, json_row, &j, e);
-    if (j.depth > 0) json_end(&j);
-    if (ok) json_finish(&j);
+    struct document_rows d = {.j = json_make(out), .a = arena_create()};
+    bool ok = store_query(s, sql, nparam, param, json_header, json_row, &d, e);
+    if (d.j.depth > 0) json_end(&d.j);
+    if (ok) json_finish(&d.j);
+    arena_destroy(d.a);
     return ok;
 }
 

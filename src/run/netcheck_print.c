@@ -106,27 +106,33 @@ void netcheck_print(const struct netcheck *n, bool brief, FILE *out)
     print_total(n, NULL, out);
 }
 
+/* Keys are sorted, in every object. */
 static void json_answer(struct json *j, const struct netcheck_row *row, const struct netcheck_answer *a)
 {
+    bool compared = a->ran && row->compared && !a->deadlock;
     json_object(j);
-    json_key(j, "ran");
-    json_bool(j, a->ran);
     if (a->ran) {
-        json_key(j, "found");
-        json_real(j, a->found);
-        json_key(j, "error");
-        json_real(j, a->error);
         json_key(j, "deadlock");
         json_bool(j, a->deadlock);
+    }
+    if (compared) {
+        json_key(j, "differing_messages");
+        json_int(j, a->differing);
+    }
+    if (a->ran) {
+        json_key(j, "error");
+        json_real(j, a->error);
         json_key(j, "events");
         json_int(j, a->events);
-        if (row->compared && !a->deadlock) {
-            json_key(j, "differing_messages");
-            json_int(j, a->differing);
-            json_key(j, "mean_message_error");
-            json_real(j, a->message_error);
-        }
+        json_key(j, "found");
+        json_real(j, a->found);
     }
+    if (compared) {
+        json_key(j, "mean_message_error");
+        json_real(j, a->message_error);
+    }
+    json_key(j, "ran");
+    json_bool(j, a->ran);
     if (a->why[0]) {
         json_key(j, "why");
         json_text(j, a->why);
@@ -136,33 +142,46 @@ static void json_answer(struct json *j, const struct netcheck_row *row, const st
 
 static void json_rows(const struct netcheck *n, struct json *j)
 {
+    static const enum network_level by_name[] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
     json_array(j);
     for (int i = 0; i < n->nrow; i++) {
         const struct netcheck_row *row = &n->row[i];
         json_object(j);
         json_key(j, "case");
         json_text(j, row->name);
-        json_key(j, "group");
-        json_text(j, row->group);
-        json_key(j, "messages");
-        json_int(j, row->nmessage);
         json_key(j, "counted");
         json_bool(j, row->counted);
-        json_key(j, "reference_low");
-        json_real(j, row->low);
-        json_key(j, "reference_high");
-        json_real(j, row->high);
+        json_key(j, "group");
+        json_text(j, row->group);
         json_key(j, "levels");
         json_object(j);
         for (int l = 0; l < NETCHECK_LEVELS; l++) {
-            if (!n->level[l]) continue;
-            json_key(j, level_names[l]);
-            json_answer(j, row, &row->answer[l]);
+            if (!n->level[by_name[l]]) continue;
+            json_key(j, level_names[by_name[l]]);
+            json_answer(j, row, &row->answer[by_name[l]]);
         }
         json_end(j);
+        json_key(j, "messages");
+        json_int(j, row->nmessage);
+        json_key(j, "reference_high");
+        json_real(j, row->high);
+        json_key(j, "reference_low");
+        json_real(j, row->low);
         json_end(j);
     }
     json_end(j);
+}
+
+static void key_int(struct json *j, const char *key, int64_t value)
+{
+    json_key(j, key);
+    json_int(j, value);
+}
+
+static void key_real(struct json *j, const char *key, double value)
+{
+    json_key(j, key);
+    json_real(j, value);
 }
 
 static void json_total(const struct netcheck *n, const char *group, struct json *j)
@@ -170,29 +189,19 @@ static void json_total(const struct netcheck *n, const char *group, struct json 
     for (int l = 0; l < NETCHECK_LEVELS; l++) {
         struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
         if (!n->level[l]) continue;
-        const struct {
-            const char *key;
-            int64_t value;
-        } counts[] = {{"cases", t.cases},
-                      {"skipped", t.skipped},
-                      {"exact_cases", t.exact_cases},
-                      {"messages", t.messages},
-                      {"exact_messages", t.exact}};
         json_object(j);
+        key_int(j, "cases", t.cases);
+        key_int(j, "exact_cases", t.exact_cases);
+        key_int(j, "exact_messages", t.exact);
         json_key(j, "group");
         json_text(j, group ? group : "all");
         json_key(j, "level");
         json_text(j, level_names[l]);
-        for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-            json_key(j, counts[i].key);
-            json_int(j, counts[i].value);
-        }
-        json_key(j, "mean_error");
-        json_real(j, t.mean);
-        json_key(j, "worst_error");
-        json_real(j, t.worst);
-        json_key(j, "mean_message_error");
-        json_real(j, t.message_error);
+        key_real(j, "mean_error", t.mean);
+        key_real(j, "mean_message_error", t.message_error);
+        key_int(j, "messages", t.messages);
+        key_int(j, "skipped", t.skipped);
+        key_real(j, "worst_error", t.worst);
         json_end(j);
     }
 }
@@ -200,6 +209,8 @@ static void json_total(const struct netcheck *n, const char *group, struct json 
 void netcheck_json_object(const struct netcheck *n, struct json *j)
 {
     json_object(j);
+    json_key(j, "cases");
+    json_rows(n, j);
     json_key(j, "file");
     json_text(j, n->path);
     json_key(j, "totals");
@@ -208,8 +219,6 @@ void netcheck_json_object(const struct netcheck *n, struct json *j)
         if (opens_group(n, i)) json_total(n, n->row[i].group, j);
     json_total(n, NULL, j);
     json_end(j);
-    json_key(j, "cases");
-    json_rows(n, j);
     json_end(j);
 }
 
