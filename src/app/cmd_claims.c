@@ -1,7 +1,7 @@
 /* cmd_claims.c - mimdsim claims: the claims of the paper, judged by what a database holds. */
+#include "app/arguments.h"
 #include "app/verb.h"
 #include "report/claims.h"
-#include "store/store.h"
 
 static const char doc[] =
     "Judge the claims of the paper by the runs in DB (default paper.db) and print the table.\n\n"
@@ -16,7 +16,8 @@ int cmd_claims(int argc, char **argv)
     struct err e;
     err_clear(&e);
     struct claim_rules rules = {0};
-    struct store *s = store_open(path, STORE_READ, &e); /* a database that is not there is not made */
+    /* a database that is not there is not made */
+    struct store *s = c.narg ? arguments_database(&c, &e) : store_open(path, STORE_READ, &e);
     bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
     store_close(s);
     s = ok ? store_open(path, STORE_WRITE, &e) : NULL;

@@ -1,40 +1,59 @@
-/* cmd_links.c - mimdsim links: the ten most loaded links of a run. */
+/* cmd_links.c - mimdsim links: the most loaded links of a run, and the ports that feed them. */
+#include "app/arguments.h"
 #include "app/verb.h"
 #include "report/report.h"
 #include "store/store.h"
 
 static const char doc[] =
-    "Print the ten most loaded links of run RUN (a row of table run) in the database DB: messages, bytes, "
-    "how long each was busy and how long messages waited for it.\n\n"
+    "Print the most loaded links of run RUN (a number of column id of table run) in the database DB: messages, bytes, "
+    "how long each was busy and how long messages waited for it. First the ten links of the network for which "
+    "messages waited longest, then the ten ports of nodes.\n\n"
     "Example: mimdsim links mimdsim.db\n\v"
     "Without RUN: the stored run in which messages waited longest. Loads are there for scenarios with "
-    "`record: {links: true}`. A port of a node has no router at one end.";
+    "`record: {links: true}`. A port of a node has no router at one end: an injection port leads into the network, an "
+    "ejection port out of it.";
 
-static const char sql[] =
-    "SELECT run_id, machine, topology, level, kernel, P, place, link, from_router, to_router, node, messages, "
-    "sent_bytes,"
-    " busy_ps / 1e6 AS busy_us, round(100 * busy_share, 1) AS busy_percent, queue_ps / 1e6 AS queue_us"
-    " FROM v_link_top WHERE run_id = CASE WHEN ?1 = '' THEN"
-    " (SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, run_id LIMIT 1)"
-    " ELSE CAST(?1 AS INTEGER) END ORDER BY place";
+static const char choose_sql[] =
+    "SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, run_id LIMIT 1";
 
-static bool count_row(void *context, int ncolumn, const char *const *name, const char *const *value)
+static const char any_sql[] = "SELECT 1 FROM link_load WHERE run_id = CAST(?1 AS INTEGER) LIMIT 1";
+
+/* LIMIT in each half, so that SQLite keeps ten rows while it reads, and sorts no table. */
+static const char links_sql[] =
+    "WITH top AS (SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)"
+    "  AND from_router IS NOT NULL AND to_router IS NOT NULL"
+    "  ORDER BY queue_ps DESC, busy_ps DESC, link LIMIT 10)"
+    " UNION ALL SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)"
+    "  AND (from_router IS NULL OR to_router IS NULL)"
+    "  ORDER BY queue_ps DESC, busy_ps DESC, link LIMIT 10)),"
+    " named AS (SELECT *, CASE WHEN from_router IS NULL THEN 'injection' WHEN to_router IS NULL THEN 'ejection'"
+    "  ELSE 'network' END AS kind, from_router IS NULL OR to_router IS NULL AS port FROM top)"
+    " SELECT l.run_id, r.machine, r.topology, r.level, r.kernel, r.P, l.kind,"
+    " row_number() OVER (PARTITION BY l.port ORDER BY l.queue_ps DESC, l.busy_ps DESC, l.link) AS place,"
+    " l.link, l.from_router, l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps / 1e6 AS busy_us,"
+    " round(100.0 * l.busy_ps / nullif(r.makespan_ps, 0), 1) AS busy_percent, l.queue_ps / 1e6 AS queue_us"
+    " FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, place";
+
+static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
-    (void)ncolumn, (void)name, (void)value;
-    ++*(int *)context;
-    return true;
+    (void)ncolumn, (void)name;
+    text_add(context, "%s", value[0]);
+    return false;
 }
 
 /* Nothing recorded is the user's mistake, not an empty table. */
 static bool print_links(const struct common *c, struct store *s, struct err *e)
 {
-    const char *run = c->narg > 1 ? c->arg[1] : "";
-    int rows = 0;
-    if (!store_select(s, sql, 1, &run, count_row, &rows, e)) return false;
-    if (rows == 0)
-        return err_set(e, ERR_NO_INPUT, "%s has no link loads%s%s; run a scenario with `record: {links: true}`",
-                       c->arg[0], *run ? " of run " : "", run);
-    return report_query(s, sql, 1, &run, c->json, stdout, e);
+    const char *wanted = c->narg > 1 ? c->arg[1] : NULL;
+    struct text found = {0};
+    bool ok = store_select(s, wanted ? any_sql : choose_sql, wanted != NULL, &wanted, take_text, &found, e);
+    if (ok && found.length == 0)
+        ok = err_set(e, ERR_NO_INPUT, "%s has no link loads%s%s; run a scenario with `record: {links: true}`",
+                     c->arg[0], wanted ? " of run " : "", wanted ? wanted : "");
+    const char *run = wanted ? wanted : found.s;
+    ok = ok && report_query(s, links_sql, 1, &run, c->json, stdout, e);
+    text_free(&found);
+    return ok;
 }
 
 int cmd_links(int argc, char **argv)
@@ -43,8 +62,8 @@ int cmd_links(int argc, char **argv)
     common_parse(&c, argc, argv, 0, "DB [RUN]", doc, 1, 2);
     struct err e;
     err_clear(&e);
-    struct store *s = store_open(c.arg[0], STORE_READ, &e);
-    bool ok = s && print_links(&c, s, &e);
+    struct store *s = arguments_database(&c, &e);
+    bool ok = s && (c.narg < 2 || arguments_run_number(c.arg[1], &e)) && print_links(&c, s, &e);
     store_close(s);
     return ok ? 0 : common_fail(&c, &e);
 }

@@ -1,21 +1,17 @@
 /* cmd_plot.c - mimdsim plot: draw a figure from a database alone. */
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
+#include "app/arguments.h"
 #include "app/verb.h"
 #include "base/json.h"
 #include "report/report.h"
-#include "store/store.h"
 
 static const char doc[] =
     "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv and the script .gp.\n\n"
     "Example: mimdsim plot mimdsim.db fig6 --dir figures\n\v"
-    "Without FIGURE: list the figures there are.";
-
-static void print_name(const struct common *c, struct json *j, const char *name)
-{
-    if (c->json) json_text(j, name);
-    else puts(name);
-}
+    "Without FIGURE: list the figures there are, what each shows, and the command that makes the rows it needs.";
 
 /* The pictures that figure `name` stands for. */
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j, struct err *e)
@@ -25,48 +21,98 @@ static bool list_pictures(const struct common *c, struct store *s, const char *n
     for (int i = 0; i < d.n; i++) {
         struct text t = {0};
         text_add(&t, "%s/%s.png", c->directory, d.as[i]);
-        print_name(c, j, t.s);
+        if (c->json) json_text(j, t.s);
+        else puts(t.s);
         text_free(&t);
     }
     report_drawings_free(&d);
     return true;
 }
 
-static int list_figures(const struct common *c)
+/* The pictures that were made: a line each, or one document. */
+static bool print_pictures(const struct common *c, struct store *s, struct err *e)
+{
+    struct json j = json_make(stdout);
+    bool ok = true;
+    if (c->json) json_array(&j);
+    for (int i = 1; ok && i < c->narg; i++) ok = list_pictures(c, s, c->arg[i], &j, e);
+    if (c->json) {
+        json_end(&j);
+        json_finish(&j);
+    }
+    return ok;
+}
+
+static void print_figure(const struct common *c, struct json *j, const char *name)
+{
+    struct text title = {0}, needs = {0};
+    report_figure_about(plan_data_dir(), name, &title, &needs);
+    if (c->json) {
+        json_object(j);
+        json_key(j, "name");
+        json_text(j, name);
+        json_key(j, "needs");
+        json_text(j, needs.s);
+        json_key(j, "title");
+        json_text(j, title.s);
+        json_end(j);
+    } else {
+        printf("%-14s %s\n", name, title.s);
+        if (needs.length > 0) printf("%-14s   needs: %s\n", "", needs.s);
+    }
+    text_free(&title);
+    text_free(&needs);
+}
+
+static void list_figures(const struct common *c)
 {
     char **name;
-    int n = report_figures(plan_data_dir(), &name);
     struct json j = json_make(stdout);
+    int n = report_figures(plan_data_dir(), &name);
     if (c->json) json_array(&j);
     for (int i = 0; i < n; i++) {
-        print_name(c, &j, name[i]);
+        print_figure(c, &j, name[i]);
         free(name[i]);
     }
     free(name);
-    if (!c->json) return 0;
+    if (!c->json) return;
     json_end(&j);
     json_finish(&j);
-    return 0;
+}
+
+static bool is_figure(const char *word)
+{
+    char **name;
+    bool found = false;
+    int n = report_figures(plan_data_dir(), &name);
+    for (int i = 0; i < n; i++) {
+        found = found || strcmp(name[i], word) == 0;
+        free(name[i]);
+    }
+    free(name);
+    return found;
+}
+
+/* A figure alone lacks its database; the rest is as everywhere. */
+static struct store *open_database(const struct common *c, struct err *e)
+{
+    if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0) return arguments_database(c, e);
+    err_set(e, ERR_USAGE, "'%s' is a figure; the database comes first: `mimdsim plot mimdsim.db %s`", c->arg[0],
+            c->arg[0]);
+    return NULL;
 }
 
 int cmd_plot(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_DIR, "DB FIGURE...", doc, 0, 64);
-    if (c.narg < 2) return list_figures(&c);
+    common_parse(&c, argc, argv, TAKES_DIR, "[DB [FIGURE...]]", doc, 0, 64);
     struct err e;
     err_clear(&e);
-    struct store *s = store_open(c.arg[0], STORE_READ, &e);
-    bool ok = s != NULL;
+    struct store *s = c.narg > 0 ? open_database(&c, &e) : NULL;
+    bool ok = s != NULL || c.narg == 0;
     for (int i = 1; ok && i < c.narg; i++) ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);
-    struct json j = json_make(stdout);
-    bool list = ok && (c.json || !c.quiet);
-    if (list && c.json) json_array(&j);
-    for (int i = 1; list && i < c.narg; i++) list = list_pictures(&c, s, c.arg[i], &j, &e);
-    if (ok && c.json) {
-        json_end(&j);
-        json_finish(&j);
-    }
+    if (ok && c.narg < 2) list_figures(&c);
+    else if (ok && (c.json || !c.quiet)) ok = print_pictures(&c, s, &e);
     store_close(s);
     return ok ? 0 : common_fail(&c, &e);
 }

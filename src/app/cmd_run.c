@@ -4,9 +4,9 @@
 
 #include "app/flag.h"
 #include "app/levels.h"
+#include "app/run_table.h"
 #include "app/verb.h"
 #include "base/check.h"
-#include "report/report.h"
 #include "run/model_file.h"
 #include "run/run.h"
 #include "store/store.h"
@@ -53,49 +53,23 @@ static bool *stored_already(struct store *s, const struct plan *p, bool force)
     return skip;
 }
 
-static const char table_sql[] =
-    "SELECT r.machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation, iif(r.nu > 0, r.solver, NULL) AS"
-    " solver, iif(r.measured_s IS NULL, NULL, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND"
-    " v.key = 'kernel.message')) AS message, r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P, r.makespan_ps / 1e6 AS "
-    "makespan_us,"
-    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
-    "   AS speedup_vs_fastest_serial,"
-    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'parallel code on one processor')"
-    "   AS speedup_vs_itself,"
-    " (SELECT max(e.relative_error) FROM error_check e WHERE e.run_id = r.id) AS relative_error,"
-    " r.measured_s * 1e6 AS measured_us, r.digest, r.status"
-    " FROM run r JOIN json_each(?1) k ON r.config_hash = k.value ->> 0 AND r.seed = k.value ->> 1"
-    " AND r.rep = k.value ->> 2 ORDER BY k.key";
-
-static bool print_table(struct store *s, const struct plan *p, bool json, struct err *e)
-{
-    struct text keys = {0};
-    for (int i = 0; i < p->nrun; i++)
-        text_add(&keys, "%s[\"%s\",%lld,%d]", i ? "," : "[", p->run[i].config_hash, (long long)p->run[i].seed,
-                 p->run[i].rep);
-    text_add(&keys, "]");
-    const char *param = keys.s;
-    bool ok = report_query(s, table_sql, 1, &param, json, stdout, e);
-    text_free(&keys);
-    return ok;
-}
-
 static void say_unused(const struct plan *p)
 {
     for (int i = 0; i < p->nunused; i++) fprintf(stderr, "mimdsim: unused: %s\n", p->unused[i]);
-    model_file_warn(p->run, p->nrun, stderr);
 }
 
 static bool answer(const struct common *c, const struct plan *p, struct keep *k, struct err *e)
 {
     if (!c->quiet) say_unused(p);
+    /* A robot that cannot be read is told before a database is made. */
+    if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
     k->store = store_open(c->database, STORE_WRITE, e);
     if (!k->store) return false;
     bool *skip = stored_already(k->store, p, c->force);
     bool ok = levels_settle(k->store, p->run, p->nrun, skip, c->quiet, e) &&
               run_campaign(p->run, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
-    return ok && print_table(k->store, p, c->json, e);
+    return ok && run_table_print(k->store, p, c->json, stdout, e);
 }
 
 int cmd_run(int argc, char **argv)

@@ -2,10 +2,11 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "app/arguments.h"
 #include "app/verb.h"
 #include "base/check.h"
+#include "plan/file_kind.h"
 #include "report/report.h"
 #include "report/trace.h"
 #include "run/run.h"
@@ -31,15 +32,15 @@ struct shown {
     struct store *store; /* where the picture finds the run */
     int64_t run_id;
     struct run_result result;
+    enum run_status status; /* of the run shown */
     char title[160];
 };
 
 static bool is_database(const char *path)
 {
-    char head[16] = "";
-    FILE *f = fopen(path, "rb");
-    bool yes = f && fread(head, 1, sizeof head, f) == sizeof head && memcmp(head, "SQLite format 3", 16) == 0;
-    if (f) fclose(f);
+    struct arena *a = arena_create();
+    bool yes = file_kind_of(path, a) == FILE_DATABASE;
+    arena_destroy(a);
     return yes;
 }
 
@@ -50,6 +51,10 @@ static bool take_first(void *context, int ncolumn, const char *const *name, cons
     (void)name;
     t->run_id = value[0].integer;
     snprintf(t->title, sizeof t->title, "%s", value[1].text ? value[1].text : "");
+    t->status = strcmp(value[2].text, "ok") == 0         ? RUN_OK
+                : strcmp(value[2].text, "deadlock") == 0 ? RUN_DEADLOCK
+                                                         : RUN_INVALID;
+    if (t->status != RUN_OK) fprintf(stderr, "mimdsim: %s: %s\n", t->title, value[3].text);
     return false;
 }
 
@@ -57,9 +62,10 @@ static bool from_database(struct shown *t)
 {
     const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
     const char *const param[] = {wanted};
-    t->store = store_open(t->common->arg[0], STORE_READ, t->e);
-    if (!t->store || !store_query(t->store,
-                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P) FROM run"
+    t->store = arguments_database(t->common, t->e);
+    if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) || !store_query(t->store,
+                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P), status,"
+                                  " text FROM run"
                                   " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))",
                                   1, param, NULL, take_first, t, t->e))
         return false;
@@ -85,17 +91,13 @@ static bool from_scenario(struct shown *t)
     if (plan.nrun > 1 && !t->common->quiet)
         fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
     bool ok = run_one(&spec, t->arena, &t->result, t->e);
+    t->status = t->result.status;
+    if (ok && t->status != RUN_OK) fprintf(stderr, "mimdsim: %s: %s\n", t->title, t->result.text);
     t->store = ok ? store_open("timeline", STORE_MEMORY, t->e) : NULL;
     ok = ok && t->store && store_put(t->store, &spec, &t->result, t->e);
     if (ok) t->run_id = store_run_id(t->store, &spec);
     plan_free(&plan);
     return ok;
-}
-
-static bool make_folder(const char *dir, struct err *e)
-{
-    return mkdir(dir, 0777) == 0 || errno == EEXIST ||
-           err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
 }
 
 static bool write_trace(struct shown *t, enum trace_format format, const char *ending)
@@ -105,7 +107,7 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     struct trace_options o = {.title = t->title};
     FILE *out = stdout;
     if (ending) {
-        if (!make_folder(t->common->directory, t->e)) return false;
+        if (!report_folder(t->common->directory, t->e)) return false;
         snprintf(path, sizeof path, "%s/timeline.%s", t->common->directory, ending);
         out = fopen(path, "w");
         if (!out) return err_set(t->e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
@@ -121,6 +123,10 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
 
 static bool draw_picture(struct shown *t)
 {
+    if (t->status == RUN_DEADLOCK) {
+        fprintf(stderr, "mimdsim: no picture: a run that never ends has no time axis\n");
+        return true;
+    }
     if (t->result.nspan > PICTURE_SPANS) {
         fprintf(stderr, "mimdsim: no picture: %lld spans are more than the %d that can be told apart in one\n",
                 (long long)t->result.nspan, PICTURE_SPANS);
@@ -153,8 +159,10 @@ int cmd_timeline(int argc, char **argv)
     struct err e;
     err_clear(&e);
     struct shown t = {.common = &c, .e = &e, .arena = arena_create()};
-    bool ok = (is_database(c.arg[0]) ? from_database(&t) : from_scenario(&t)) && show(&t);
+    bool ok = (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) && show(&t);
     store_close(t.store);
     arena_destroy(t.arena);
-    return ok ? 0 : common_fail(&c, &e);
+    if (!ok) return common_fail(&c, &e);
+    if (t.status == RUN_DEADLOCK) return err_exit_status(ERR_DEADLOCK);
+    return t.status == RUN_OK ? 0 : err_exit_status(ERR_CHECK);
 }

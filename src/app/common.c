@@ -12,7 +12,8 @@ enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, 
 static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
     {"set", 's', "KEY=VALUE", 0,
-     "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; may be repeated", 1},
+     "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; "
+     "several values, as in n=16,32, are swept; may be repeated", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db; of paper: paper.db)", 2},
     {"force", KEY_FORCE, NULL, 0, "run again what is already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
@@ -141,6 +142,39 @@ static void print_error(const struct err *e)
     json_finish(&j);
 }
 
+/* The first word of the command line that looks like a long option and is none, NULL: all are. A value is skipped. */
+static const char *unknown_option(int argc, char **argv, const struct argp_option *option)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strncmp(argv[i], "--", 2) != 0) continue;
+        size_t length = strcspn(argv[i] + 2, "=");
+        const struct argp_option *o = option;
+        while (o->name && strncmp(o->name, argv[i] + 2, length) != 0) o++; /* the beginning of a name will do */
+        bool ours = o->name || strncmp("help", argv[i] + 2, length) == 0 || strncmp("usage", argv[i] + 2, length) == 0;
+        if (!ours) return argv[i];
+        if (o->name && o->arg && argv[i][2 + length] == '\0') i++;
+    }
+    return NULL;
+}
+
+/* argp would name the option, but not the one that may have been meant. */
+static void refuse_option(const char *verb, const char *word, const struct argp_option *option, bool document)
+{
+    const char *name[sizeof option_table / sizeof *option_table], *given;
+    int n = 0;
+    char text[128];
+    for (const struct argp_option *o = option; o->name; o++) name[n++] = o->name;
+    snprintf(text, sizeof text, "%.*s", (int)strcspn(word, "="), word);
+    given = text_nearest(text + 2, name, n);
+    struct err e;
+    err_clear(&e);
+    err_set(&e, ERR_USAGE, "unknown option '%s'%s%s%s; `%s --help` lists them", text, given ? "; did you mean '--" : "",
+            given ? given : "", given ? "'?" : "", verb);
+    if (document) print_error(&e);
+    err_print(&e);
+    exit(err_exit_status(ERR_USAGE));
+}
+
 bool common_wants_json(int argc, char **argv)
 {
     bool wants = false;
@@ -156,6 +190,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
                   int most)
 {
     memset(c, 0, sizeof *c);
+    c->verb = argv[0];
     c->database = "mimdsim.db";
     c->directory = "figures";
     c->kernel = catalogue_of_kernels();
@@ -166,6 +201,8 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     struct parse p = {c, least, most, {0}};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
     bool document = common_wants_json(argc, argv);
+    const char *unknown = unknown_option(argc, argv, option);
+    if (unknown) refuse_option(argv[0], unknown, option, document);
     if (argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p) == 0) return;
     err_set(&p.error, ERR_USAGE, "unknown option, or one without its value; `%s --help` lists them", argv[0]);
     print_error(&p.error);

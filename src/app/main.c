@@ -41,13 +41,24 @@ static int unknown_verb(int argc, char **argv)
     return common_fail(&c, &e);
 }
 
+/* An answer that could not be written is none, whatever the verb found. */
+static int finish(int status)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return status;
+    struct err e;
+    err_clear(&e);
+    err_set(&e, ERR_IO, "the output cannot be written");
+    if (status == 0) err_print(&e);
+    return status ? status : err_exit_status(ERR_IO);
+}
+
 static int run_verb(const struct verb *v, int argc, char **argv)
 {
     static const char prefix[] = "mimdsim ";
     char name[sizeof prefix + 32];
     snprintf(name, sizeof name, "%s%s", prefix, v->name);
     argv[0] = name;
-    return v->run(argc, argv);
+    return finish(v->run(argc, argv));
 }
 
 int main(int argc, char **argv)
@@ -59,11 +70,11 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
         print_help(stdout);
-        return 0;
+        return finish(0);
     }
     if (strcmp(argv[1], "--version") == 0) {
         print_version();
-        return 0;
+        return finish(0);
     }
     for (const struct verb *v = verb_list; v->name; v++)
         if (strcmp(argv[1], v->name) == 0) return run_verb(v, argc - 1, argv + 1);

@@ -42,6 +42,7 @@ enum { COMMON_MOST_SETS = 256 };
 
 /* What most verbs take: --machine, --set, --json, --quiet, -o, --force, --jobs. */
 struct common {
+    const char *verb; /* "mimdsim VERB" */
     const char *machine;
     const char *set[COMMON_MOST_SETS]; /* (nset) */
     int nset;

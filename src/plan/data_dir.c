@@ -96,21 +96,35 @@ static const char *probe(const char *dir, const char *what, const char *name, co
     return arena_text(a, path);
 }
 
-static const char *find_path(const char *name, const char *near, struct arena *a, struct err *e)
+/* The name of a file in WHAT/ that `name` may have meant, NULL when none is near; `name` itself when there is one. */
+static const char *nearest_name(const char *what, const char *name, struct arena *a)
+{
+    int n;
+    const char **names = data_dir_names(what, a, &n);
+    return text_nearest(name, names, n);
+}
+
+static const char *find_path(const char *what, const char *name, const char *near, struct arena *a, struct err *e)
 {
     const char *path = name[0] == '/' || near == NULL ? NULL : probe(near, "", name, "", a);
     if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0')) path = probe("", "", name, "", a);
-    if (path == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);
-    return path;
+    if (path != NULL) return path;
+    const char *meant = nearest_name(what, data_dir_stem(name, a), a);
+    if (meant == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);
+    else
+        err_set(e, ERR_NO_INPUT, "no file '%s'; did you mean '%s', the %.*s of that name?", name, meant,
+                (int)strlen(what) - 1, what);
+    return NULL;
 }
 
 static void not_found(const char *what, const char *name, struct arena *a, struct err *e)
 {
-    int n;
-    const char **names = data_dir_names(what, a, &n);
-    const char *near = text_nearest(name, names, n);
+    const char *near = nearest_name(what, name, a);
     int singular = (int)strlen(what) - 1;
-    if (near != NULL) err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
+    if (name[0] != '\0' && access(name, F_OK) == 0)
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; to mean the file or folder here write './%s', and a %.*s ends in .yaml",
+                singular, what, name, name, singular, what);
+    else if (near != NULL) err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
     else
         err_set(e, ERR_NO_INPUT, "no %.*s '%s' in %s/%s; `mimdsim %s` lists them", singular, what, name,
                 plan_data_dir(), what, what);
@@ -119,7 +133,7 @@ static void not_found(const char *what, const char *name, struct arena *a, struc
 const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a, struct err *e)
 {
     char user[PATH_LENGTH];
-    if (is_path(name)) return find_path(name, near, a, e);
+    if (is_path(name)) return find_path(what, name, near, a, e);
     const char *path = near != NULL && name[0] != '\0' ? probe(near, "", name, ".yaml", a) : NULL;
     if (path == NULL && name[0] != '\0') path = probe(plan_data_dir(), what, name, ".yaml", a);
     user_dir(user, sizeof user);

@@ -9,6 +9,7 @@
 #include "base/digest.h"
 #include "base/text.h"
 #include "plan/data_dir.h"
+#include "plan/file_kind.h"
 #include "plan/machine_file.h"
 
 enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
@@ -72,7 +73,9 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     bool in_file = machine->line > 0;
     err_clear(&why);
     if (!machine_file_read(&m, machine->text, in_file ? x->scenario->dir : NULL, a, &why)) {
-        if (why.file[0] == '\0') /* not found: say where it was asked for */
+        if (machine->line == 0 && file_kind_refuse(machine->text, FILE_MACHINE, &why))
+            err_set(x->err, why.kind, "%s: %s", machine->file, why.text);
+        else if (why.file[0] == '\0') /* not found: say where it was asked for */
             err_set_at(x->err, why.kind, machine->file, machine->line, "%s", why.text);
         else err_set_at(x->err, why.kind, why.file, why.line, "%s", why.text);
         return NULL;

@@ -5,6 +5,7 @@
 
 #include "plan/data_dir.h"
 #include "plan/expand.h"
+#include "plan/file_kind.h"
 #include "plan/machine_file.h"
 #include "plan/scenario_file.h"
 #include "spec/spec_fields.h"
@@ -35,6 +36,33 @@ static bool all_kernels_exist(const struct scenario *s, const struct plan_option
     return kernels_exist(&s->set, o, e);
 }
 
+static bool is_number(const struct setting *s)
+{
+    if (s->kind != SETTING_FIELD) return s->kind == SETTING_N_OVER_P;
+    enum field_kind kind = s->field->kind;
+    bool plain = kind == FIELD_REAL || kind == FIELD_INT || kind == FIELD_INT64 || kind == FIELD_SEED;
+    return plain && s->field->unit == UNIT_NONE;
+}
+
+static void add_swept(struct plan *p, const struct setting_list *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        int k = 0;
+        while (k < p->nswept && strcmp(p->swept[k].key, list->at[i].key) != 0) k++;
+        if (k == p->nswept) p->swept[p->nswept++] = (struct plan_swept){list->at[i].key, is_number(&list->at[i])};
+    }
+}
+
+static void list_swept(struct plan *p, const struct scenario *s)
+{
+    int n = 0;
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->axis[i].npoint; j++) n += s->axis[i].point[j].n;
+    p->swept = TAKE(p->arena, n + 1, struct plan_swept);
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->axis[i].npoint; j++) add_swept(p, &s->axis[i].point[j]);
+}
+
 static bool fill(struct plan *p, const struct scenario *s, const struct plan_options *o, struct err *e)
 {
     if (!all_kernels_exist(s, o, e)) return false;
@@ -44,6 +72,7 @@ static bool fill(struct plan *p, const struct scenario *s, const struct plan_opt
     p->nfigure = s->nfigure;
     if (!expand_runs(p, s, e)) return false;
     expand_unused(p, s);
+    list_swept(p, s);
     return true;
 }
 
@@ -53,6 +82,7 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
     *p = (struct plan){.arena = arena_create()};
     if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
     plan_free(p);
+    file_kind_refuse(name, FILE_SCENARIO, e);
     return false;
 }
 
@@ -62,18 +92,6 @@ void plan_free(struct plan *p)
     *p = (struct plan){0};
 }
 
-/* A machine file describes a machine and asks no question. */
-static bool is_machine_tree(const struct yaml_node *root)
-{
-    static const char *const scenario_keys[] = {"question", "machine", "kernel", "ranks", "sweep", "model"};
-    static const char *const machine_keys[] = {"topology", "network", "node", "software", "base", "title"};
-    for (int i = 0; i < 6; i++)
-        if (yaml_node_child(root, scenario_keys[i]) != NULL) return false;
-    for (int i = 0; i < 6; i++)
-        if (yaml_node_child(root, machine_keys[i]) != NULL) return true;
-    return false;
-}
-
 bool plan_check_file(const char *path, const struct plan_options *o, struct err *e)
 {
     struct plan p = {.arena = arena_create()};
@@ -81,7 +99,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
     struct machine_file m;
     struct yaml_node *root = yaml_tree_read(path, p.arena, e);
     bool fine = root != NULL;
-    if (fine && is_machine_tree(root)) {
+    if (fine && file_kind_of_tree(root) == FILE_MACHINE) {
         struct text as_path = {0};
         text_add(&as_path, "%s%s", strchr(path, '/') == NULL ? "./" : "", path);
         fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
@@ -150,7 +168,10 @@ bool plan_machine(struct machine_spec *m, const char *name, const struct plan_op
                   struct origin **origin, int *norigin, struct err *e)
 {
     struct machine_file file;
-    if (!machine_file_read(&file, name, NULL, a, e)) return false;
+    if (!machine_file_read(&file, name, NULL, a, e)) {
+        file_kind_refuse(name, FILE_MACHINE, e);
+        return false;
+    }
     for (int i = 0; o != NULL && i < o->nset; i++)
         if (!set_machine(&file, o->set[i], a, e)) return false;
     *m = file.spec;

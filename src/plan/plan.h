@@ -23,6 +23,11 @@ struct plan {
     const char *question; /* the file's question, one line */
     int nrun;
     struct run_spec *run; /* (nrun) in plan order */
+    int nswept;
+    struct plan_swept {
+        const char *key; /* in full: machine.network.link.bandwidth */
+        bool number;     /* its values are numbers without a unit */
+    } * swept;           /* (nswept) keys that points of the sweep set, in the order of the axes, each once */
     int nfigure;
     const char **figure; /* (nfigure) figures that the scenario asks for */
     int nunused;
@@ -30,7 +35,8 @@ struct plan {
 };
 
 /* plan_read: read scenario `name` (a path, or the stem of a file in scenarios/). Returns false with ERR_NO_INPUT,
- * ERR_DATA (file and line) or ERR_CONFIG; *p is then empty. */
+ * ERR_DATA (file and line), ERR_CONFIG or ERR_USAGE (`name` is a machine, a database: see file_kind.h); *p is then
+ * empty. */
 bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e);
 
 /* plan_free: give everything back; accepts an empty plan. */

@@ -17,6 +17,13 @@ static bool is_list_field(const char *key)
     return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST || f->kind == FIELD_PAIR_LIST;
 }
 
+static bool is_pair_list(const char *key)
+{
+    const struct field_table *t;
+    const struct field *f = field_find_full(key, &t);
+    return f != NULL && f->kind == FIELD_PAIR_LIST;
+}
+
 /* Add a setting; a key may be given only once in a list. */
 static bool add_setting(struct setting_list *list, const char *key, const char *text, const char *file, int line,
                         struct arena *a, struct err *e)
@@ -216,32 +223,53 @@ static bool check_axes(const struct scenario *s, struct err *e)
 
 /* ---- the command line */
 
-/* "[a, b]" of a single-valued key becomes an axis in the place of the file's. */
-static bool set_axis(struct scenario *s, const char *key, const char *list, struct arena *a, struct err *e)
+/* Whether `text` gives a single-valued key several values, "[a, b]" or "a,b", or one of lists several lists. A path
+ * may hold commas of its own. */
+static bool is_sweep(const char *full, const char *text)
+{
+    if (is_list_field(full)) return text[0] == '[' && text[1] == '[' && !is_pair_list(full);
+    return text[0] == '[' || (strchr(text, ',') != NULL && strcmp(full, "model.path") != 0);
+}
+
+/* The last axis goes to place `at`. */
+static void move_axis(struct scenario *s, int at)
+{
+    struct axis last = s->axis[s->naxis - 1];
+    memmove(&s->axis[at + 1], &s->axis[at], (size_t)(s->naxis - 1 - at) * sizeof *s->axis);
+    s->axis[at] = last;
+}
+
+/* Several values of a single-valued key become an axis in place `at`. */
+static bool set_axis(struct scenario *s, const char *key, const char *list, int at, struct arena *a, struct err *e)
 {
     struct err why;
     err_clear(&why);
-    char *line = TAKE(a, strlen(list) + 4, char);
-    sprintf(line, "v: %s", list);
+    char *line = TAKE(a, strlen(list) + 6, char);
+    sprintf(line, list[0] == '[' ? "v: %s" : "v: [%s]", list);
     struct yaml_node *root = yaml_tree_parse(line, strlen(line), "--set", a, &why);
     const char *path = s->path;
     if (root == NULL || root->child->kind != YAML_SEQUENCE)
-        return err_set_at(e, ERR_DATA, "--set", 0, "%s: '%.80s' is not a list", key, list);
+        return err_set_at(e, ERR_DATA, "--set", 0,
+                          "%s: '%.80s' is not a list; several values are swept as %s=2,4,8", key, list,
+                          key);
     for (struct yaml_node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
     root->child->line = 0;
     s->path = "--set";
     bool fine = add_axis(s, key, root->child, a, e);
+    if (fine) move_axis(s, at);
     s->path = path;
     return fine;
 }
 
-static void remove_axis(struct scenario *s, const char *full)
+/* Returns the place where the axis was; the end when there was none. */
+static int remove_axis(struct scenario *s, const char *full)
 {
     for (int i = 0; i < s->naxis; i++) {
         if (strcmp(s->axis[i].key, full) != 0) continue;
         memmove(&s->axis[i], &s->axis[i + 1], (size_t)(--s->naxis - i) * sizeof *s->axis);
-        return;
+        return i;
     }
+    return s->naxis;
 }
 
 static void remove_setting(struct setting_list *list, const char *full)
@@ -271,10 +299,10 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
         return fine;
     }
     if (!setting_is_key(full)) return setting_unknown("", name, "--set", 0, e);
-    remove_axis(s, full);
+    int at = remove_axis(s, full);
     remove_setting(&s->set, full);
     remove_setting(&s->base, full);
-    if (equals[1] == '[' && !is_list_field(full)) return set_axis(s, name, arena_text(a, equals + 1), a, e);
+    if (is_sweep(full, equals + 1)) return set_axis(s, name, arena_text(a, equals + 1), at, a, e);
     return add_setting(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
 }
 

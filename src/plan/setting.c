@@ -128,6 +128,8 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     char in[KEY_LENGTH + 8] = "";
     int n = candidates(group, name, list);
     const char *near = text_nearest(key, list, n);
+    if (near != NULL && strcmp(near, key) == 0)
+        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s' here: it cannot be set", key);
     if (group[0] != '\0') snprintf(in, sizeof in, " in '%.240s'", group);
     if (near != NULL)
         return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?", key, in, near);

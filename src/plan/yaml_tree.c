@@ -183,7 +183,12 @@ struct yaml_node *yaml_tree_read(const char *path, struct arena *a, struct err *
     struct text file = {0};
     struct yaml_node *root = NULL;
     struct stat st;
-    if (stat(path, &st) == 0 && (S_ISCHR(st.st_mode) || S_ISDIR(st.st_mode) || st.st_size > YAML_MAX_BYTES)) {
+    bool there = stat(path, &st) == 0;
+    if (there && S_ISDIR(st.st_mode)) {
+        err_set_at(e, ERR_DATA, path, 0, "a folder, not a file");
+        return NULL;
+    }
+    if (there && (S_ISCHR(st.st_mode) || st.st_size > YAML_MAX_BYTES)) {
         err_set_at(e, ERR_DATA, path, 0, "not a text file of at most %d MiB", YAML_MAX_BYTES >> 20);
         return NULL;
     }

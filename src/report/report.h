@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "base/err.h"
+#include "base/text.h"
 #include "store/store.h"
 
 /* report_figure: draw figure `name` (plots/NAME.sql + plots/NAME.gp) from `s` into folder `dir` (made if missing):
@@ -35,11 +36,19 @@ void report_drawings_free(struct report_drawings *d);
 bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,
                        const char *dir, struct err *e);
 
+/* report_folder: make folder `dir` and those above it, where they are missing. Returns false with ERR_CREATE. */
+bool report_folder(const char *dir, struct err *e);
+
 /* report_figures: the names of all figures in data_dir/plots, sorted; returns how many; names owned by the caller
  * (free each and the array). */
 int report_figures(const char *data_dir, char ***name);
 
-/* report_query: print the rows of `sql` as an aligned table (or as JSON, one document) on `out`. */
+/* report_figure_about: what figure `name` shows, the first sentence of its description (*title), and the command that
+ * fills a database for it (*needs); "" when it does not say. The caller frees both texts. */
+void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs);
+
+/* report_query: print the rows of `sql` as an aligned table (or as JSON, one document with
+ * sorted keys) on `out`. */
 bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json, FILE *out,
                   struct err *e);
 

@@ -30,6 +30,7 @@ struct figure {
     const char *dir;     /* folder of the results */
     struct text run_ids; /* JSON array of the runs shown, for its provenance */
     int64_t nrow;        /* of the first table */
+    bool folder_made;    /* `dir` was not there */
 };
 
 static char *joined(const char *a, const char *b, const char *c)
@@ -101,6 +102,36 @@ static const char *marked_line(const char *sql, const char *mark, char *word, si
     return NULL;
 }
 
+/* The comment that `sql` begins with, up to the end of its first sentence or the line of what it needs. */
+static void first_sentence(const char *sql, struct text *out)
+{
+    for (const char *line = sql; strncmp(line, "-- ", 3) == 0 && strncmp(line, "-- needs: ", 10) != 0 &&
+                             strncmp(line, "-- each: ", 9) != 0;) {
+        const char *end = strchrnul(line, '\n'), *stop = strstr(line, ". ");
+        if (stop == NULL || stop > end) stop = end[-1] == '.' ? end - 1 : NULL;
+        text_add(out, "%s%.*s", out->length > 0 ? " " : "", (int)((stop ? stop : end) - line - 3), line + 3);
+        if (stop || !*end) return;
+        line = end + 1;
+    }
+}
+
+void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs)
+{
+    struct text path = {0}, sql = {0};
+    char line[200] = "";
+    struct err ignored;
+    err_clear(&ignored);
+    text_add(&path, "%s/plots/%s.sql", data_dir, name);
+    if (text_read_file(&sql, path.s, &ignored) && sql.s != NULL) {
+        first_sentence(sql.s, title);
+        marked_line(sql.s, "-- needs: ", line, sizeof line);
+    }
+    text_add(title, "%s", "");
+    text_add(needs, "%s", line);
+    text_free(&path);
+    text_free(&sql);
+}
+
 static void remember_run(void *context, int64_t id)
 {
     struct text *ids = context;
@@ -141,6 +172,7 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
         text_free(&statement);
         if (!ok) return false;
         if (*table == '\0') f->nrow = nrow;
+        if (f->nrow == 0) return true;
         text_copy(table, sizeof table, next);
         from = after;
     }
@@ -243,8 +275,7 @@ static void remove_images(const struct figure *f)
     }
 }
 
-/* Make `dir` and the folders above it. */
-static bool make_folder(const char *dir, struct err *e)
+bool report_folder(const char *dir, struct err *e)
 {
     char *path = strdup(dir);
     CHECK(path != NULL);
@@ -261,9 +292,15 @@ static bool make_folder(const char *dir, struct err *e)
     return ok;
 }
 
+/* Nothing to draw: the table without rows goes, and the folder when it is empty again. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
+    struct text path = {0};
+    text_add(&path, "%s/%s.csv", f->dir, f->as);
+    unlink(path.s);
+    if (f->folder_made) rmdir(f->dir);
+    text_free(&path);
     marked_line(sql, "-- needs: ", needs, sizeof needs);
     return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s), f->name,
                    *needs ? "; first: " : "", needs);
@@ -303,7 +340,8 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
     if (!read_description(data_dir, name, &sql, e)) return no_such_figure(data_dir, name, e);
     char *plots = joined(data_dir, "/plots", "");
     struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
-    bool ok = make_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
+    f.folder_made = access(dir, F_OK) != 0;
+    bool ok = report_folder(dir, e) && draw(&f, sql.s ? sql.s : "", e);
     text_free(&f.run_ids);
     text_free(&sql);
     free(plots);

@@ -66,15 +66,16 @@ static bool seen(const struct run_spec *run, int i)
     return false;
 }
 
-void model_file_warn(const struct run_spec *run, int n, FILE *warnings)
+bool model_file_look(const struct run_spec *run, int n, FILE *warnings, struct err *e)
 {
-    for (int i = 0; i < n; i++) {
+    bool fine = true;
+    for (int i = 0; i < n && fine; i++) {
         if (run[i].model.generator != MODEL_URDF || (i > 0 && seen(run, i))) continue;
         struct arena *a = arena_create();
         struct urdf_robot robot;
-        struct err e;
-        err_clear(&e);
-        if (urdf_read(run[i].model.path, &robot, a, &e)) print_warnings(&robot, warnings);
+        fine = urdf_read(run[i].model.path, &robot, a, e);
+        if (fine) print_warnings(&robot, warnings);
         arena_destroy(a);
     }
+    return fine;
 }

@@ -18,8 +18,8 @@ bool model_file_is(const char *path);
  *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA, file and line. */
 bool model_file_check(const char *path, FILE *warnings, struct err *e);
 
-/* model_file_warn: the same warnings for every robot file among n runs, each file once; files that cannot be read are
- * left to the runs. */
-void model_file_warn(const struct run_spec *run, int n, FILE *warnings);
+/* model_file_look: every robot file among n runs, each once, before anything runs, with warnings as of
+ * model_file_check. Returns false for the first that cannot be read, as model_file_check. */
+bool model_file_look(const struct run_spec *run, int n, FILE *warnings, struct err *e);
 
 #endif

@@ -137,7 +137,7 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
 @test "the most loaded links of a run, and their picture" {
     works mimdsim run bisection --quiet --machine paragon --set ranks=256
     works mimdsim links mimdsim.db
-    [ "${#lines[@]}" -eq 11 ]
+    [ "${#lines[@]}" -eq 21 ] # ten links, ten ports
     # the middle of the mesh is crossed by 8 messages a column and direction
     sql_is mimdsim.db "SELECT count(*), max(messages) FROM v_link_top WHERE level = 'link'" '10|8'
     works mimdsim links mimdsim.db --json

@@ -1,0 +1,50 @@
+/* arguments.c - see arguments.h. */
+#include "app/arguments.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "plan/file_kind.h"
+
+/* Another argument than the first that is a database, 0: none is. */
+static int database_behind(const struct common *c)
+{
+    struct arena *a = arena_create();
+    int at = 0;
+    for (int i = 1; i < c->narg && at == 0; i++)
+        if (file_kind_of(c->arg[i], a) == FILE_DATABASE) at = i;
+    arena_destroy(a);
+    return at;
+}
+
+static void say_order(const struct common *c, int at, struct err *e)
+{
+    struct text t = {0};
+    text_add(&t, "%s %s", c->verb, c->arg[at]);
+    for (int i = 0; i < c->narg; i++)
+        if (i != at) text_add(&t, strpbrk(c->arg[i], " *'") ? " \"%s\"" : " %s", c->arg[i]);
+    err_clear(e);
+    err_set(e, ERR_USAGE, "'%s' is not a database; the database comes first: `%s`", c->arg[0], t.s);
+    text_free(&t);
+}
+
+struct store *arguments_database(const struct common *c, struct err *e)
+{
+    struct store *s = store_open(c->arg[0], STORE_READ, e);
+    if (s != NULL) return s;
+    int at = e->kind == ERR_NO_INPUT || e->kind == ERR_DATA ? database_behind(c) : 0;
+    if (at > 0) say_order(c, at, e);
+    else file_kind_refuse(c->arg[0], FILE_DATABASE, e);
+    return NULL;
+}
+
+bool arguments_run_number(const char *text, struct err *e)
+{
+    char *end;
+    long long n = strtoll(text, &end, 10);
+    if (end != text && *end == '\0' && n >= 0) return true;
+    return err_set(e, ERR_USAGE,
+                   "'%s' is not the number of a run; "
+                   "`mimdsim query DB 'SELECT id, scenario, n, P FROM run'` lists them",
+                   text);
+}
