@@ -100,6 +100,19 @@ static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
     return status == GSL_SUCCESS ? (long)driver->e->count : -1;
 }
 
+/* The same in `steps` equal steps, past the driver's control of the error; it still says how well implicit equations are
+ * to be solved. */
+static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, double *y, double *error)
+{
+    const double h = duration / (double)steps;
+    int status = GSL_SUCCESS;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    for (long k = 0; k < steps && status == GSL_SUCCESS; k++)
+        status = gsl_odeiv2_step_apply(driver->s, (double)k * h, h, y, error, NULL, NULL, driver->sys);
+    gsl_set_error_handler(handler);
+    return status == GSL_SUCCESS ? steps : -1;
+}
+
 bool trajectory_advance(const struct model *m, struct state *s, double duration,
                         const struct trajectory_options *options, struct arena *scratch,
                         struct trajectory_report *report, struct err *e)
@@ -119,7 +132,9 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     gsl_odeiv2_system system = {derivative, jacobian, n, &f};
     gsl_odeiv2_driver *driver =
         gsl_odeiv2_driver_alloc_y_new(&system, stepper_of(which), first, options->tolerance, options->tolerance);
-    long steps = drive(driver, duration, y);
+    long steps = options->fixed_steps > 0
+                     ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
+                     : drive(driver, duration, y);
     gsl_odeiv2_driver_free(driver);
     if (steps >= 0) state_from(f.d, y, s);
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};

@@ -11,7 +11,8 @@
 
 struct trajectory_options {
     const char *stepper;     /* one of trajectory_steppers */
-    double tolerance;        /* absolute and relative, per step */
+    double tolerance;        /* absolute and relative, per step; with fixed steps: of the implicit equations */
+    long fixed_steps;        /* so many equal steps, whatever their error; 0: as many as the tolerance asks for */
     double first_step;       /* [model's time]; 0: a thousandth of the duration */
     long most_evaluations;   /* 0: ten million */
 };
@@ -23,7 +24,7 @@ struct trajectory_report {
 /* trajectory_advance: move s (q, qd) by `duration` under s->tau, springs, gravity and s->fext; loops included.
  *
  *   Returns false with ERR_USAGE for an unknown stepper (the nearest name is told), ERR_CHECK when the step size
- *   vanishes, evaluations run out or the dynamics break down. */
+ *   vanishes, evaluations run out, the dynamics break down or a fixed step fails. */
 bool trajectory_advance(const struct model *m, struct state *s, double duration,
                         const struct trajectory_options *options, struct arena *scratch,
                         struct trajectory_report *report, struct err *e);

@@ -145,21 +145,24 @@ static void add_rows(struct climb *c, const char *method, const char *rung, stru
     }
 }
 
-static void library_rung(struct climb *c, const char *stepper, double tolerance)
+/* One library stepper: adaptive to `tolerance`, or (fixed > 0) in so many equal steps. */
+static void library_rung(struct climb *c, const char *stepper, double tolerance, long fixed)
 {
     struct ladder *l = c->l;
     struct arena_mark mark = arena_mark(l->arena);
     struct ending x = {.s = copy_of(l->model, l->state, l->arena)};
-    const struct trajectory_options o = {.stepper = stepper, .tolerance = tolerance,
+    const struct trajectory_options o = {.stepper = stepper, .tolerance = tolerance, .fixed_steps = fixed,
                                          .most_evaluations = MOST_EVALUATIONS};
     struct trajectory_report report = {0};
     struct err e;
     err_clear(&e);
-    char rung[32];
-    snprintf(rung, sizeof rung, "tolerance %.0e", tolerance);
+    char method[32], rung[32];
+    snprintf(method, sizeof method, "%s%s", stepper, fixed > 0 ? " fixed" : "");
+    if (fixed > 0) snprintf(rung, sizeof rung, "%ld steps", fixed);
+    else snprintf(rung, sizeof rung, "tolerance %.0e", tolerance);
     double begin = host_seconds();
     bool good = trajectory_advance(l->model, x.s, c->duration, &o, l->arena, &report, &e);
-    add_rows(c, stepper, rung, good ? &x : NULL, report.evaluations, host_seconds() - begin, e.text);
+    add_rows(c, method, rung, good ? &x : NULL, report.evaluations, host_seconds() - begin, e.text);
     arena_release(l->arena, mark);
 }
 
@@ -205,14 +208,25 @@ static bool reference_find(struct climb *c)
     return false;
 }
 
-void ladder_integration(struct ladder *l)
+/* Fixed steps of implicit methods are few: each takes a Jacobian of 2 (n_q + n_u) evaluations. Multistep methods choose
+ * step and order together: they have no fixed steps. */
+static void library_rungs(struct climb *c, const char *stepper)
 {
     static const double tolerance[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11};
+    const bool implicit = strstr(stepper, "imp") || strcmp(stepper, "msbdf") == 0;
+    for (int k = 0; k < 5; k++) library_rung(c, stepper, tolerance[k], 0);
+    if (strncmp(stepper, "ms", 2) == 0) return;
+    for (long steps = implicit ? 8 : 16; steps <= (implicit ? 128 : 1024); steps *= implicit ? 4 : 8)
+        library_rung(c, stepper, 1e-12, steps);
+}
+
+void ladder_integration(struct ladder *l)
+{
     struct climb c = {.l = l, .duration = duration_of(l)};
     if (!reference_find(&c)) return;
     fastest_evaluation(&c);
     for (const char *const *s = trajectory_steppers(); *s; s++)
-        for (int k = 0; k < 5; k++) library_rung(&c, *s, tolerance[k]);
+        library_rungs(&c, *s);
     for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++)
         for (int steps = LEAST_FIXED_STEPS; steps <= MOST_FIXED_STEPS / (rule == STEP_RK4 ? 4 : 1); steps *= 4)
             own_rung(&c, (enum step_rule)rule, steps);

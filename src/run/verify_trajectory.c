@@ -67,7 +67,8 @@ static bool stepper_rows(struct verify_case *v, int k)
 {
     const struct vector_case *c = v->vector;
     const double hopeless = 0.1; /* a tolerance that says nothing */
-    struct trajectory_options o = {stepper_table[k].name, stepper_table[k].local, 0, evaluations_allowed(c)};
+    struct trajectory_options o = {.stepper = stepper_table[k].name, .tolerance = stepper_table[k].local,
+                                   .most_evaluations = evaluations_allowed(c)};
     struct state *s = state_take(v->model, v->arena);
     struct worst state = {0, 0}, energy = {0, 0};
     struct err e;

@@ -107,6 +107,43 @@ static void gsl_steppers_follow_reference_trajectories(void **state)
     steppers_reach_the_reference(DATA("traj_stiff_light_n03.json"), "bsimp", 1e-9, 1e-7);
 }
 
+/* Twice as many equal steps divide the error by 2^order or more, explicit or implicit. */
+static void fixed_steps_of_the_library_have_their_orders(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double order;
+        int coarse;
+    } stepper[] = {{"rk2", 2, 40},    {"rk4", 4, 20},    {"rkf45", 4, 20}, {"rkck", 5, 10},  {"rk8pd", 8, 4},
+                   {"rk1imp", 1, 40}, {"rk2imp", 2, 40}, {"rk4imp", 4, 10}, {"bsimp", 6, 4}};
+    struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 3, JOINT_REVOLUTE, 5);
+    spec.external_force = 0;
+    spec.base = BASE_FIXED;
+    struct scene s = scene_of(&spec);
+    struct err e;
+    err_clear(&e);
+    struct state *reference = copy_of(&s);
+    const struct trajectory_options tight = {.stepper = "rk8pd", .tolerance = 1e-14};
+    assert_true(trajectory_advance(s.model, reference, 0.2, &tight, s.a, NULL, &e));
+    for (size_t k = 0; k < sizeof stepper / sizeof *stepper; k++) {
+        double error[2];
+        for (int fine = 0; fine < 2; fine++) {
+            const struct trajectory_options o = {
+                .stepper = stepper[k].name, .tolerance = 1e-13, .fixed_steps = (fine + 1) * stepper[k].coarse};
+            struct trajectory_report report;
+            struct state *c = copy_of(&s);
+            assert_true(trajectory_advance(s.model, c, 0.2, &o, s.a, &report, &e));
+            assert_int_equal(report.steps, o.fixed_steps);
+            error[fine] = relative_error(s.model->nq, c->q, reference->q);
+        }
+        const double order = log2(error[0] / error[1]);
+        if (error[1] > 1e-13 && order < stepper[k].order - 0.4)
+            fail_msg("%s: order %g, errors %g and %g", stepper[k].name, order, error[0], error[1]);
+    }
+    scene_end(&s);
+}
+
 /* rk8pd at a tight tolerance, through all instants, within the reference's own sensitivity. */
 static void the_best_stepper_follows_all_instants(void **state)
 {
@@ -159,6 +196,7 @@ int main(void)
         cmocka_unit_test(steps_have_their_orders),
         cmocka_unit_test(free_motion_conserves),
         cmocka_unit_test(gsl_steppers_follow_reference_trajectories),
+        cmocka_unit_test(fixed_steps_of_the_library_have_their_orders),
         cmocka_unit_test(the_best_stepper_follows_all_instants),
         cmocka_unit_test(an_unknown_stepper_is_refused_with_the_nearest_name),
     };
