@@ -288,6 +288,15 @@ void chain_gyro(struct chain *ch, int i, real *f)
     ch->work.flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
 }
 
+void chain_gain(struct chain *ch, real *gain)
+{
+    for (int i = ch->lo; i < ch->hi; i++) {
+        real *f = chain_at(ch, gain, i);
+        chain_gyro(ch, i, f);
+        for (int k = 0; k < SPACE; k++) f[k] = -f[k];
+    }
+}
+
 void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
 {
     real shift[SQUARE] = {0}, about[SQUARE] = {0}, product[SQUARE];

@@ -84,6 +84,10 @@ void chain_bias_force(struct chain *ch, real *tau);
 #define chain_gyro REAL_NAME(chain_gyro)
 void chain_gyro(struct chain *ch, int i, real *f);
 
+/* chain_gain: Fext - P of own bodies into gain (SPACE each). */
+#define chain_gain REAL_NAME(chain_gain)
+void chain_gain(struct chain *ch, real *gain);
+
 /* chain_pose: of own body i, or of body hi. */
 static inline struct body_pose *chain_pose(const struct chain *ch, int i)
 {

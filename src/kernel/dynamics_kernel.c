@@ -24,7 +24,7 @@ struct tree_inverse {
 static int64_t largest_message(const struct kernel_job *job)
 {
     bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
-    if (kernel_branches(job->model) || gathers || job->model->nbody != job->nrank) return -1;
+    if (kernel_branches(job->spec, job->model) || gathers || job->model->nbody != job->nrank) return -1;
     return (3 * SQUARE + SPACE) * (int64_t)sizeof(real);
 }
 
@@ -33,7 +33,7 @@ static bool accepts_inverse(const struct run_spec *spec, const struct model *mod
     if (spec->nrank > model->nbody)
         return err_set(e, ERR_CONFIG, "%d processors for %d bodies: each needs at least one", spec->nrank,
                        model->nbody);
-    if (kernel_branches(model) && spec->kernel.operators == OPERATORS_DENSE)
+    if (kernel_branches(spec, model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
     return true;
 }
@@ -44,7 +44,7 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
     if (!accepts_inverse(spec, model, e)) return false;
     if (!model->has_phi)
         return err_set(e, ERR_CONFIG, "a body has no invertible inertia: the constraint force algorithm needs one");
-    if (!kernel_branches(model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
+    if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
     return true;
 }
@@ -52,7 +52,8 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 {
     (void)e;
-    job->shared = kernel_branches(job->model) ? (const void *)tree_shared_make(job, a) : chain_shared_make(job, a);
+    const bool tree = kernel_branches(job->spec, job->model);
+    job->shared = tree ? (const void *)tree_shared_make(job, a) : chain_shared_make(job, a);
     return true;
 }
 
@@ -77,7 +78,7 @@ static size_t head(size_t size) { return (size + 15) & ~(size_t)15; }
 
 static size_t inverse_bytes(const struct kernel_job *job, int rank)
 {
-    if (kernel_branches(job->model)) {
+    if (kernel_branches(job->spec, job->model)) {
         struct tree_inverse measured;
         struct carve c = {.used = head(sizeof measured)};
         tree_inverse_carve(&measured, &c, job, rank);
@@ -91,7 +92,7 @@ static size_t inverse_bytes(const struct kernel_job *job, int rank)
 
 static size_t forward_bytes(const struct kernel_job *job, int rank)
 {
-    if (kernel_branches(job->model)) {
+    if (kernel_branches(job->spec, job->model)) {
         struct contraction measured;
         struct carve c = {.used = head(sizeof measured)};
         contraction_carve(&measured, &c, job, rank);
@@ -156,7 +157,7 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
 
 static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)
 {
-    if (kernel_branches(job->model)) tree_inverse_run(c, job, workspace);
+    if (kernel_branches(job->spec, job->model)) tree_inverse_run(c, job, workspace);
     else chain_inverse_run(c, job, workspace);
 }
 
@@ -178,7 +179,7 @@ static void tree_forward_run(struct comm *c, const struct kernel_job *job, struc
 
 static void either_forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
 {
-    if (kernel_branches(job->model)) tree_forward_run(c, job, workspace);
+    if (kernel_branches(job->spec, job->model)) tree_forward_run(c, job, workspace);
     else chain_forward_run(c, job, workspace);
 }
 

@@ -195,7 +195,7 @@ void estimate_inverse(const struct run_spec *spec, const struct model *model, co
 {
     const struct outline o = outline_of(spec, model);
     *out = (struct kernel_estimate){0};
-    if (kernel_branches(model)) {
+    if (kernel_branches(spec, model)) {
         estimate_tree(spec, model, omit, true, false, out);
         return;
     }
@@ -213,7 +213,7 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, co
     const struct outline o = outline_of(spec, model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     *out = (struct kernel_estimate){0};
-    if (kernel_branches(model)) {
+    if (kernel_branches(spec, model)) {
         estimate_tree(spec, model, omit, false, true, out);
         repeat(out, evaluations(&spec->kernel));
         return;

@@ -21,8 +21,13 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, co
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 
-/* kernel_branches: the model is not a plain open chain, so the programs for trees run it. */
-static inline bool kernel_branches(const struct model *m) { return !m->is_chain || m->nloop > 0; }
+/* kernel_branches: the programs for trees run it: the model is not a plain open chain, or the run keeps branch and loop
+ * phases all the same (dense operators have no such program). */
+static inline bool kernel_branches(const struct run_spec *spec, const struct model *m)
+{
+    const bool keep = (spec->keep & KEEP_BRANCHES) && spec->kernel.operators != OPERATORS_DENSE;
+    return !m->is_chain || m->nloop > 0 || keep;
+}
 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
  * exact but for loops and refinements, flops roughly. */

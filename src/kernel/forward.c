@@ -348,11 +348,7 @@ static void evaluate_direct(struct forward *f)
     chain_velocity(ch);
     comm_stage(ch->comm, STAGE_ASSEMBLY);
     chain_bias(ch);
-    for (int i = ch->lo; i < ch->hi && !ch->job->omit.load; i++) {
-        real *gain = chain_at(ch, f->gain, i);
-        chain_gyro(ch, i, gain);
-        for (int k = 0; k < SPACE; k++) gain[k] = -gain[k];
-    }
+    if (!ch->job->omit.load) chain_gain(ch, f->gain);
     assemble_direct(f);
     begin_forces(f, f->tau, !ch->job->omit.load);
     solve_operator_form(f, true, false);

@@ -25,6 +25,7 @@ struct job_omit {
     bool load;     /* nor are there external forces: bodies carry no loads of their own */
     bool base;     /* the base does not accelerate, and there is no gravity */
     bool bias;     /* all three: the joint forces that the paper's formulation subtracts are zero */
+    int fixed;     /* bodies on fixed joints that have become part of others in job->model */
 };
 
 struct kernel_job {

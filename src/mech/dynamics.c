@@ -3,9 +3,10 @@
 
 #include "mech/revolute.h"
 
-/* Whether every joint is revolute. */
+/* Whether every joint is revolute, and that may be used. */
 static bool all_revolute(const struct model *m)
 {
+    if (m->general_joints) return false;
     for (int i = 0; i < m->nbody; i++)
         if (m->body[i].joint != JOINT_REVOLUTE) return false;
     return true;

@@ -74,6 +74,7 @@ struct model {
     int *child_at, *child;   /* children of i: child[child_at[i]] .. child[child_at[i + 1] - 1], ascending */
     bool is_chain;           /* parent(i) = i - 1 for all i */
     bool has_phi;            /* every body has an invertible inertia: the constraint force algorithm applies */
+    bool general_joints;     /* serial codes are not to use that all joints are revolute */
     const void *constants;   /* (nbody) struct body in double (body.h), made by model_finish */
     double gravity[3];       /* in the base frame */
     double metre, kilogram, second; /* one model unit of each in SI */

@@ -3,7 +3,9 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "mech/lump.h"
 #include "run/launch.h"
+#include "run/references.h"
 
 enum { BASELINE_MOST = 512 }; /* degrees of freedom of the mass-matrix baseline, see references.h */
 
@@ -48,75 +50,97 @@ struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
     return o;
 }
 
-void omission_prepare(struct kernel_job *job, struct state *s, struct arena *a)
+int omission_movable(const struct model *m)
 {
-    if (s && (job->spec->keep & KEEP_EXTERNAL)) state_fext_need(s, job->model, a);
-    job->state = s;
-    job->omit = omission_job(job->spec, job->model, s);
+    int n = 0;
+    for (int i = 0; i < m->nbody; i++) n += m->body[i].joint != JOINT_FIXED;
+    return n;
+}
+
+int omission_mergeable(const struct run_spec *spec, int nbody, int movable)
+{
+    return movable > 0 && movable >= spec->nrank && !(spec->keep & KEEP_FIXED) ? nbody - movable : 0;
+}
+
+int omission_scene(const struct run_spec *spec, struct model **m, struct state **s, struct arena *a)
+{
+    struct lumped lumped;
+    struct err refused;
+    err_clear(&refused);
+    int fixed = omission_mergeable(spec, (*m)->nbody, omission_movable(*m));
+    if (fixed > 0 && lump_fixed(*m, true, a, &lumped, &refused)) {
+        *s = lump_state(&lumped, *m, *s, a);
+        *m = lumped.model;
+    } else {
+        fixed = 0;
+    }
+    if (spec->keep & KEEP_EXTERNAL) state_fext_need(*s, *m, a);
+    (*m)->general_joints = (spec->keep & KEEP_GENERAL) != 0;
+    return fixed;
 }
 
 struct list {
+    unsigned keep; /* of the run */
     struct omission *item;
     int n;
 };
 
-static void add(struct list *l, unsigned keep, const char *what, const char *why)
+static void add(struct list *l, unsigned keep, double bound, const char *what, const char *why)
 {
+    if (l->keep & keep) return;
     CHECK(l->n < RUN_MAX_OMISSIONS);
     struct omission *o = &l->item[l->n++];
-    *o = (struct omission){.keep = keep};
+    *o = (struct omission){.keep = keep, .bound = bound};
     text_copy(o->what, sizeof o->what, what);
     text_copy(o->why, sizeof o->why, why);
 }
 
-static void list_terms(const struct run_spec *spec, const struct kernel_type *kernel, const struct model *m,
-                       const struct state *s, struct list *l)
+/* terms: what the kernel's equations do without. */
+static void list_terms(const struct kernel_job *job, const struct kernel_type *kernel, struct list *l)
 {
-    struct run_spec all_out = *spec;
-    all_out.keep = 0;
-    const struct job_omit o = omission_job(&all_out, m, s);
-    if (!s->fext) add(l, KEEP_EXTERNAL, "external forces", "no body has any");
-    if (o.velocity) add(l, KEEP_VELOCITY, "velocity terms", "all joint rates are zero, and there are no time steps");
-    if (o.base) add(l, KEEP_BASE, "base and gravity terms", "the base does not accelerate, and there is no gravity");
-    if (o.bias && kernel->does_forward && spec->kernel.formulation == FORMULATION_PAPER)
-        add(l, KEEP_BIAS, "bias stage", "no velocities, no gravity, no external forces: there is no bias");
+    const struct job_omit *o = &job->omit;
+    const bool paper = kernel->does_forward && job->spec->kernel.formulation == FORMULATION_PAPER;
+    if (!job->state->fext) add(l, KEEP_EXTERNAL, 0, "external forces", "no body has any");
+    if (o->velocity) add(l, KEEP_VELOCITY, 0, "velocity terms", "all joint rates are zero, without time steps");
+    if (o->base) add(l, KEEP_BASE, 0, "base and gravity terms", "the base does not accelerate, without gravity");
+    if (o->bias && paper)
+        add(l, KEEP_BIAS, 0, "bias stage", "no velocities, no gravity, no external forces: there is no bias");
 }
 
-static void list_model(const struct kernel_type *kernel, const struct model *m, struct list *l)
+/* list_model: what another program or another model of the same system would do; the rounding differs. */
+static void list_model(const struct kernel_job *job, const struct kernel_type *kernel, struct list *l)
 {
-    add(l, KEEP_SCENES, "scene and serial answers of other runs", "runs of one scene share them");
+    const struct model *m = job->model;
+    const struct kernel_spec *k = &job->spec->kernel;
+    const double bound = 2 * (kernel->does_forward ? references_tolerance(k, m->nbody + job->omit.fixed)
+                                                   : references_tolerance_inverse(k, m->nbody + job->omit.fixed));
+    add(l, KEEP_SCENES, 0, "scene and serial answers of other runs", "runs of one scene share them");
     bool revolute = true;
     for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
-    if (m->is_chain && m->nloop == 0) add(l, 0, "branch and loop phases", "an open chain has neither");
-    if (revolute) add(l, 0, "general joints in the serial references", "all joints are revolute");
+    if (job->omit.fixed > 0)
+        add(l, KEEP_FIXED, bound, "fixed joints", "a body on a fixed joint is part of the one that carries it");
+    if (m->is_chain && m->nloop == 0)
+        add(l, k->operators == OPERATORS_DENSE ? 0 : KEEP_BRANCHES, bound, "branch and loop phases",
+            "an open chain has neither");
+    if (revolute) add(l, KEEP_GENERAL, 0, "general joints in the serial references", "all joints are revolute");
     if (kernel->does_forward && m->nu > BASELINE_MOST)
-        add(l, KEEP_BASELINE, "mass-matrix baseline", "more than 512 degrees of freedom: cubic cost, never fastest");
+        add(l, KEEP_BASELINE, 0, "mass-matrix baseline", "more than 512 degrees of freedom: cubic, never fastest");
 }
 
-int omission_list(const struct run_spec *spec, const struct kernel_type *kernel, const struct model *m,
-                  const struct state *s, struct omission *out)
+int omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct omission *out)
 {
+    const struct run_spec *spec = job->spec;
     const struct network_spec *n = &spec->machine.network;
-    struct list l = {out, 0};
-    if (m) {
-        list_terms(spec, kernel, m, s, &l);
-        list_model(kernel, m, &l);
+    struct list l = {spec->keep, out, 0};
+    if (job->model) {
+        list_terms(job, kernel, &l);
+        list_model(job, kernel, &l);
     }
     if (kernel->largest_message && (n->level == LEVEL_LINK || n->level == LEVEL_PACKET || n->level == LEVEL_AUTO))
-        add(&l, KEEP_START_EVENTS, "events that start messages", "eager sends are in order");
+        add(&l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
     if (n->level == LEVEL_AUTO)
-        add(&l, KEEP_CONTENTION, "contention where routes share no link", "level auto gives the packet level's times");
-    if (!spec->record.spans) add(&l, KEEP_SPANS, "timeline", "record.spans does not ask for it");
-    if (!spec->record.links) add(&l, KEEP_LINKS, "counters of single links", "record.links does not ask for them");
+        add(&l, KEEP_CONTENTION, 0, "contention where routes share no link", "level auto has the packet level's times");
+    if (!spec->record.spans) add(&l, KEEP_SPANS, 0, "timeline", "record.spans does not ask for it");
+    if (!spec->record.links) add(&l, KEEP_LINKS, 0, "counters of single links", "record.links does not ask for them");
     return l.n;
-}
-
-void omission_note(const struct run_spec *spec, const struct kernel_type *kernel, const struct kernel_job *job,
-                   struct run_result *out)
-{
-    struct omission all[RUN_MAX_OMISSIONS];
-    const int n = omission_list(spec, kernel, job->model, job->state, all);
-    out->nomission = 0;
-    for (int i = 0; i < n; i++)
-        if (!(spec->keep & all[i].keep)) out->omission[out->nomission++] = all[i];
 }

@@ -12,21 +12,22 @@
 #include "mech/model.h"
 #include "spec/run_spec.h"
 
-/* omission_prepare: the scene that a job's kernel gets, and what it leaves out there, spec->keep obeyed: job->omit,
- * and job->state with what is put back. Needs job->spec, model and state (NULL: kernels without a model). */
-void omission_prepare(struct kernel_job *job, struct state *s, struct arena *a);
+/* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on fixed joints become
+ * part of others where that leaves enough for all ranks; what is put back is added. Changes *m and *s, replacing them
+ * by new ones in `a` when bodies merge. Returns how many did. */
+int omission_scene(const struct run_spec *spec, struct model **m, struct state **s, struct arena *a);
 
-/* omission_job: job->omit alone. */
+/* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies omission_scene will merge of
+ * `nbody`, `movable` of which are on joints that move. */
+int omission_movable(const struct model *m);
+int omission_mergeable(const struct run_spec *spec, int nbody, int movable);
+
+/* omission_job: what a kernel leaves out in a scene, spec->keep obeyed. m, s NULL: kernels without a model. */
 struct job_omit omission_job(const struct run_spec *spec, const struct model *m, const struct state *s);
 
-/* omission_list: those that act in this run whatever spec->keep says, into out (RUN_MAX_OMISSIONS). m, s NULL: kernels
- * without a model. Returns how many. */
-int omission_list(const struct run_spec *spec, const struct kernel_type *kernel, const struct model *m,
-                  const struct state *s, struct omission *out);
-
-/* omission_note: those that spec->keep does not put back, into the result. */
-void omission_note(const struct run_spec *spec, const struct kernel_type *kernel, const struct kernel_job *job,
-                   struct run_result *out);
+/* omission_list: what a run leaves out by its job's spec, model, state and omit, into out (RUN_MAX_OMISSIONS). Returns
+ * how many. */
+int omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct omission *out);
 
 /* omission_largest_message, omission_machine, omission_record: what the world is told, with spec->keep obeyed. */
 int64_t omission_largest_message(const struct run_spec *spec, const struct kernel_type *kernel,

@@ -25,6 +25,9 @@ void references_loops(const struct kernel_job *job, struct arena *scratch, struc
  * of the serial code of the same formulation on the same system counts, with two decades too, up to 1e-2. */
 double references_tolerance(const struct kernel_spec *k, int n);
 
+/* references_tolerance_inverse: the same of the joint forces. */
+double references_tolerance_inverse(const struct kernel_spec *k, int n);
+
 /* references_baselines: predicted times of the serial codes on one node, and of the whole parallel work on one
  * processor (out->stage must be filled). CRBA's O(n^3) factorisation is left out above 512 degrees of freedom. */
 void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,

@@ -29,7 +29,9 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
     *job = (struct kernel_job){.spec = spec, .nrank = spec->nrank};
     if (scene) {
         const struct model *m = job->model = scene->model;
-        omission_prepare(job, scene->state, scene->arena);
+        job->state = scene->state;
+        job->omit = omission_job(spec, m, scene->state);
+        job->omit.fixed = scene->fixed;
         if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
         if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
         if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
@@ -123,9 +125,9 @@ bool run_sharing(const struct run_spec *spec, struct scene_shelf *shelf, struct 
     struct kernel_job job;
     struct run_spec own = *spec;
     bool ok = refine(&own, kernel, &job, scene, scratch, a, out, e);
-    if (ok) omission_note(spec, kernel, &job, out);
+    if (ok) out->nomission = omission_list(&job, kernel, out->omission);
     if (ok && job.model) {
-        out->nbody = job.model->nbody;
+        out->nbody = job.model->nbody + job.omit.fixed;
         out->nu = job.model->nu;
     }
     if (ok) verify(&job, kernel, scene, scratch, out);
@@ -151,21 +153,27 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     const struct kernel_type *kernel = find_kernel(spec, e);
     if (!kernel) return false;
     struct arena *scratch = arena_create();
+    struct kernel_job job = {.spec = spec, .nrank = spec->nrank};
     struct model *m = kernel->needs_model ? model_build(&spec->model, scratch, e) : NULL;
     bool ok = !kernel->needs_model || m;
-    if (ok) ok = kernel->accepts(spec, m, e);
+    if (ok && m) {
+        struct state *s = state_make(m, &spec->model, scratch);
+        const int fixed = omission_scene(spec, &m, &s, scratch);
+        job.model = m, job.state = s;
+        job.omit = omission_job(spec, m, s);
+        job.omit.fixed = fixed;
+    }
+    if (ok) ok = kernel->accepts(spec, job.model, e);
     if (ok) {
         struct kernel_estimate k = {0};
-        struct state *s = m ? state_make(m, &spec->model, scratch) : NULL;
-        const struct job_omit omit = omission_job(spec, m, s);
-        kernel->estimate(spec, m, &omit, &k);
+        kernel->estimate(spec, job.model, &job.omit, &k);
         out->nbody = m ? m->nbody : 0;
         out->nu = m ? m->nu : 0;
         if (m) out->metre = m->metre, out->kilogram = m->kilogram, out->second = m->second;
         out->messages = k.messages;
         out->bytes = k.bytes;
         out->flops = k.flops;
-        out->nomission = omission_list(spec, kernel, m, s, out->omission);
+        out->nomission = omission_list(&job, kernel, out->omission);
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
         double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;

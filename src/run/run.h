@@ -31,7 +31,7 @@ struct run_estimate {
     double messages, bytes, flops;
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
-    int nomission;     /* what the run leaves out, whatever spec->keep says */
+    int nomission;     /* what the run leaves out */
     struct omission omission[RUN_MAX_OMISSIONS];
 };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "run/omission.h"
 
 /* Bodies: what may stay in memory beside the scene in use. */
 enum { MOST_SCENES = 32, MOST_BODIES = 1 << 17 };
@@ -39,8 +40,12 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
     s->keep = spec->keep;
     s->model = model_build(&spec->model, a, e);
     if (s->model) s->state = state_make(s->model, &spec->model, a);
-    if (s->state && spec->keep & KEEP_EXTERNAL) state_fext_need(s->state, s->model, a);
-    if (s->state) return s;
+    if (s->state) {
+        s->nbody = s->model->nbody;
+        s->movable = omission_movable(s->model);
+        s->fixed = omission_scene(spec, &s->model, &s->state, a);
+        return s;
+    }
     if (s->model) err_set(e, ERR_NO_INPUT, "%s can no longer be read", spec->model.path);
     arena_destroy(a);
     return NULL;
@@ -67,6 +72,7 @@ struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec,
     shelf->clock++;
     for (int i = 0; i < shelf->nscene && !(spec->keep & KEEP_SCENES); i++) {
         struct scene *s = shelf->scene[i];
+        if (s->fixed != omission_mergeable(spec, s->nbody, s->movable)) continue;
         if (s->keep != spec->keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
         s->used = shelf->clock;
         return s;

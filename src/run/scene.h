@@ -20,11 +20,13 @@ struct serial_answer {
 };
 
 struct scene {
-    struct model *model;
+    struct model *model;     /* as run/omission.h leaves it */
     struct state *state;
     struct arena *arena;     /* owned */
     struct model_spec spec;  /* what it was made from */
     unsigned keep;
+    int nbody, movable;      /* bodies as described; those on joints that move */
+    int fixed;               /* the others, when they have become part of these; otherwise 0 */
     long used;               /* when it was last asked for */
     struct serial_answer inverse, forward[FORWARD_METHODS]; /* in double precision */
 };
