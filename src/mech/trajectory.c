@@ -139,6 +139,9 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     if (steps >= 0) state_from(f.d, y, s);
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
     arena_release(scratch, mark);
-    return steps >= 0 || err_set(e, ERR_CHECK, "stepper '%s' gave up after %ld evaluations", options->stepper,
-                                 f.evaluations);
+    if (steps >= 0) return true;
+    if (f.evaluations > f.most)
+        return err_set(e, ERR_CHECK, "stepper '%s' is not there after %ld evaluations", options->stepper, f.most);
+    return err_set(e, ERR_CHECK, "stepper '%s' %s", options->stepper,
+                   options->fixed_steps > 0 ? "broke down in a fixed step" : "gave up: its step size vanished");
 }
