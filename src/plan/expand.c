@@ -253,11 +253,12 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         int made = make_point(x, &p->run[p->nrun]);
         if (made < 0) return false;
         if (made == 0) continue;
-        for (int rep = 1; rep < x->scenario->repetitions; rep++) {
+        const int repetitions = run_spec_is_random(&p->run[p->nrun]) ? x->scenario->repetitions : 1;
+        for (int rep = 1; rep < repetitions; rep++) {
             p->run[p->nrun + rep] = p->run[p->nrun];
             p->run[p->nrun + rep].rep = rep;
         }
-        p->nrun += x->scenario->repetitions;
+        p->nrun += repetitions;
     } while (advance(x));
     if (p->nrun > 0) return true;
     return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "no run is left by 'only'");
@@ -321,5 +322,5 @@ void expand_unused(struct plan *p, const struct scenario *s)
         for (int j = 0; j < s->axis[i].npoint; j++) add_unused_of(p, &s->axis[i].point[j]);
     add_unused_of(p, &s->set);
     for (int i = 0; i < p->nrun && !random; i++) random = run_spec_is_random(&p->run[i]);
-    if (s->repetitions > 1 && !random) add_unused(p, "repetitions", "nothing is random in these runs");
+    if (s->repetitions > 1 && !random) add_unused(p, "repetitions", "nothing is random in these runs, so each is made once");
 }

@@ -5,7 +5,7 @@ load helper
 
 @test "every swept key is a column, by the shortest name that is its own" {
     printf '%s\n' 'schema_version: 1' 'question: q' 'machine: t3e-300' 'kernel: dynamics' 'ranks: n' 'level: loggp' \
-        'repetitions: 2' 'model: {joint: revolute}' 'sweep:' '  n: [4, 8]' '  model.seed: [1, 2]' '  seed: [7]' \
+        'repetitions: 2' 'machine.noise.compute: 1 %' 'model: {joint: revolute}' 'sweep:' '  n: [4, 8]' '  model.seed: [1, 2]' '  seed: [7]' \
         '  machine.network.link.bandwidth: [480 MB/s, 960 MB/s]' '  machine.network.injection.bandwidth: [1 GB/s]' \
         '  variant: [{kernel.operators: dense}, {kernel.operators: structured}]' >sweep.yaml
     works mimdsim run sweep.yaml --quiet

@@ -89,7 +89,7 @@ static void sweeps_are_cross_products_in_stated_order(void **state)
     const char *path = scratch_write(
         &scratch, "cross.yaml",
         "schema_version: 1\nmachine: t3e-300\nranks: [2, 4, 8]\nkernel: dynamics\nrepetitions: 2\n"
-        "sweep:\n  n_over_p: [1, 16]\n  variant:\n    - {kernel.solver: pcr, kernel.formulation: direct}\n"
+        "machine.noise.compute: 1 %\nsweep:\n  n_over_p: [1, 16]\n  variant:\n    - {kernel.solver: pcr, kernel.formulation: direct}\n"
         "    - {kernel: {solver: cr}}\n");
     struct plan p = scratch_plan(path, NULL, 0);
     static const int ranks[] = {2, 4, 8};
@@ -103,8 +103,24 @@ static void sweeps_are_cross_products_in_stated_order(void **state)
         assert_int_equal(r->model.nbody, r->nrank * (i / 4 % 2 ? 16 : 1));
     }
     assert_string_equal(p.run[0].config_hash, p.run[1].config_hash);
-    assert_int_equal(p.nunused, 1);
-    assert_non_null(strstr(p.unused[0], "repetitions: "));
+    assert_int_equal(p.nunused, 0);
+    plan_free(&p);
+}
+
+static void runs_without_chance_are_made_once(void **state)
+{
+    (void)state;
+    const char *path = scratch_write(&scratch, "once.yaml",
+                                     "schema_version: 1\nmachine: t3e-300\nranks: n\nkernel: dynamics\nrepetitions: 5\n"
+                                     "sweep: {n: [4, 8], machine.noise.compute: [0 %, 1 %]}\n");
+    struct plan p = scratch_plan(path, NULL, 0);
+    assert_int_equal(p.nrun, 2 * (1 + 5));
+    assert_int_equal(p.nunused, 0);
+    plan_free(&p);
+    static const char *const quiet[] = {"machine.noise.compute=0 %"};
+    p = scratch_plan(path, quiet, 1);
+    for (int i = 0; i < p.nrun; i++) assert_int_equal(p.run[i].rep, 0);
+    assert_non_null(strstr(p.unused[0], "repetitions: nothing is random in these runs, so each is made once"));
     plan_free(&p);
 }
 
@@ -129,9 +145,9 @@ static void the_command_line_is_applied_last(void **state)
                                "level=loggp",
                                "machine.network.link.bandwidth=960 MB/s",
                                "machine.topology.dims=[16,8,8]",
-                               "repetitions=3",
+                               "repetitions=3", "machine.noise.compute=1 %",
                                "kernel.operators=dense"};
-    struct plan p = scratch_plan("speedup-t3e", set, 6);
+    struct plan p = scratch_plan("speedup-t3e", set, 7);
     assert_int_equal(p.nrun, 6);
     assert_int_equal(p.run[5].nrank, 8);
     assert_int_equal(p.run[5].rep, 2);
@@ -382,6 +398,7 @@ int main(void)
         cmocka_unit_test(a_path_and_a_name_mean_the_same_runs),
         cmocka_unit_test(layout_does_not_change_the_identity),
         cmocka_unit_test(sweeps_are_cross_products_in_stated_order),
+        cmocka_unit_test(runs_without_chance_are_made_once),
         cmocka_unit_test(only_leaves_points_out),
         cmocka_unit_test(the_command_line_is_applied_last),
         cmocka_unit_test(wrong_options_are_refused),
