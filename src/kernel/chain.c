@@ -20,17 +20,11 @@ int chain_nq(const struct chain_shared *shared, int lo, int hi)
     return last->q_at + last->nq - shared->body[lo].q_at;
 }
 
-/* picks_columns: H and W of such a joint are unit vectors, so nothing is ever written to subspace.col. */
-static bool picks_columns(enum model_joint joint)
-{
-    return joint != JOINT_HELICAL && joint != JOINT_UNIVERSAL && joint != JOINT_SLOT && joint != JOINT_POINT_PLANE;
-}
-
 /* weight: of a body in a balanced partition: its share of the sweeps, of the assembly and of the elimination. */
 static int64_t weight(int c)
 {
-    return 900 + dense_factor_flops(c) + dense_triangular_flops(c, 2 * c + 1) + 2 * dense_symmetric_flops(c, c) +
-           dense_product_flops(c, c + 4, c);
+    return BODY_SHARE_FLOP + dense_factor_flops(c) + dense_triangular_flops(c, 2 * c + 1) +
+           2 * dense_symmetric_flops(c, c) + dense_product_flops(c, c + 4, c);
 }
 
 /* split: first body of every rank: equal numbers, larger blocks first, or nearly equal weights. */
@@ -62,7 +56,7 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     for (int i = 0; i < n; i++) {
         size[i] = (unsigned char)(SPACE - s->body[i].d);
         if (size[i] > s->layout.largest) s->layout.largest = size[i];
-        picked = picked && picks_columns(s->body[i].joint);
+        picked = picked && body_picks(&s->body[i]);
     }
     s->layout.first = split(size, n, nrank, job->spec->kernel.partition == PARTITION_BALANCED, a);
     for (int k = 0; k < nrank; k++) interface[k] = size[s->layout.first[k + 1] - 1];

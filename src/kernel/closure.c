@@ -16,9 +16,15 @@ struct closure_shared *closure_shared_make(const struct model *m, const struct b
     if (m->nloop == 0) return NULL;
     struct closure_shared *s = TAKE(a, 1, struct closure_shared);
     struct loop *loop = TAKE(a, m->nloop, struct loop);
-    for (int l = 0; l < m->nloop; l++) loop_make(m, l, &loop[l]);
-    *s = (struct closure_shared){
-        .nloop = m->nloop, .nrow = m->nrow, .loop = loop, .owner = owner, .body = body, .base = base};
+    int *place = TAKE(a, m->nrow, int);
+    loops_make(m, loop, place);
+    *s = (struct closure_shared){.nloop = m->nloop,
+                                 .nrow = loop_rows(m),
+                                 .loop = loop,
+                                 .place = place,
+                                 .owner = owner,
+                                 .body = body,
+                                 .base = base};
     return s;
 }
 
@@ -80,7 +86,7 @@ void closure_loads(struct closure *cl, int body, real *load, struct work *w)
     if (!s || !cl->takes_part) return;
     for (int side = 0; side < 2 * s->nloop; side++) {
         if (closure_body(s, side) != body) continue;
-        real column[SQUARE];
+        real column[6 * SPACE];
         const struct loop *l = &s->loop[side / 2];
         loop_column(&cl->pose[side / 2], side % 2, column);
         for (int k = 0; k < l->c; k++) screw_add(load + SPACE * (1 + l->row_at + k), column + SPACE * k);
@@ -98,7 +104,7 @@ static void contribute(struct closure *cl, int side, const real *acceleration, r
     const struct xform *here = side % 2 ? &p->tb : &p->ta, *there = side % 2 ? &p->ta : &p->tb;
     const real sign = side % 2 ? 1 : -1;
     const bool alone = s->owner[side ^ 1] < 0;
-    real column[SQUARE], moved[SPACE], accelerated[SPACE];
+    real column[6 * SPACE], moved[SPACE], accelerated[SPACE];
     for (int j = 0; j < m; j++) {
         xform_motion(moved, here, acceleration + SPACE * j);
         for (int k = 0; k < SPACE; k++) moved[k] *= sign;

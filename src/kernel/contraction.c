@@ -357,7 +357,8 @@ static void store(const struct contraction *k)
     if (job->residual_scale) job->residual_scale[rank] = (double)k->residual_scale;
     if (rank != 0) return;
     if (job->refined) *job->refined = k->refined;
-    for (int j = 0; j + 1 < k->room && job->lambda; j++) job->lambda[j] = (double)k->lambda[j];
+    for (int j = 0; j + 1 < k->room && job->lambda; j++)
+        job->lambda[k->closure.shared->place[j]] = (double)k->lambda[j];
     if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;
 }
 

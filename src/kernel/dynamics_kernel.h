@@ -3,14 +3,14 @@
 #define KERNEL_DYNAMICS_KERNEL_H
 
 #include "kernel/kernel.h"
-#include "linalg/real.h"
+#include "linalg/space.h"
 
 /* inverse: parallel Newton-Euler; forward: constraint force algorithm; dynamics: both, a barrier between them. */
-#define inverse_kernel REAL_NAME(inverse_kernel)
+#define inverse_kernel SPACE_NAME(inverse_kernel)
 extern const struct kernel_type inverse_kernel;
-#define forward_kernel REAL_NAME(forward_kernel)
+#define forward_kernel SPACE_NAME(forward_kernel)
 extern const struct kernel_type forward_kernel;
-#define dynamics_kernel REAL_NAME(dynamics_kernel)
+#define dynamics_kernel SPACE_NAME(dynamics_kernel)
 extern const struct kernel_type dynamics_kernel;
 
 #endif

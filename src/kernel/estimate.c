@@ -11,9 +11,10 @@ struct outline {
     double pairs;       /* sum over the steps of the ranks that have a partner: messages of one scan */
     double triples;     /* of the ranks with partners on both sides, the receiving one's sender having another */
     double c, d, nq;
-    double x, y, T;      /* flops of a transform and of a composition; numbers of a transform */
-    bool split;          /* more than one body on some rank */
-    double shifts, many; /* ranks with several bodies that have a left neighbour; ranks with several bodies */
+    double place, rate, bias; /* flops of that joint's own */
+    double x, y, T;           /* flops of a transform and of a composition; numbers of a transform */
+    bool split;               /* more than one body on some rank */
+    double shifts, many;      /* ranks with several bodies that have a left neighbour; ranks with several bodies */
 };
 
 static struct outline outline_of(const struct run_spec *spec, const struct model *model)
@@ -28,6 +29,10 @@ static struct outline outline_of(const struct run_spec *spec, const struct model
     o.d = model->u_at[last + 1] - model->u_at[last];
     o.nq = model->q_at[last + 1] - model->q_at[last];
     o.c = SPACE - o.d;
+    const struct joint_cost *cost = joint_cost_of(model->body[last].joint);
+    o.place = cost->place;
+    o.rate = cost->rate;
+    o.bias = cost->bias;
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
     o.x = dense ? SQUARE_VEC_FLOP : XFORM_FORCE_FLOP;
     o.y = dense ? SQUARE_MUL_FLOP : XFORM_COMPOSE_FLOP;
@@ -68,20 +73,23 @@ static void vector_scan(const struct outline *o, bool force, struct kernel_estim
     e->flops += o->pairs * (o->x + SPACE) + 2 * inside * (o->x + SPACE) + (force && o->split ? (o->P - 1) * o->x : 0);
 }
 
-/* bodies: local work of inverse dynamics. */
-static void local_inverse(const struct run_spec *spec, const struct outline *o, const struct job_omit *omit,
-                          struct kernel_estimate *e)
+/* local_work: of single bodies; `forces`: inertial forces are wanted, not only velocities. */
+static void local_work(const struct run_spec *spec, const struct outline *o, const struct job_omit *omit, bool forces,
+                       struct kernel_estimate *e)
 {
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
-    const double place = 58, bias = omit->velocity ? 0 : 45 + BODY_GYRO_FLOP, load = BODY_FORCE_FLOP;
-    e->flops += o->n * (place + bias + load + 3 * o->d) + (dense ? o->n * 3 * SQUARE_MUL_FLOP : 0);
+    const double place = o->place + (dense ? SQUARE_MUL_FLOP : 0);
+    const double bias = omit->velocity ? 0 : o->rate + o->bias + BODY_GYRO_FLOP;
+    const double force = !forces ? 0 : dense ? 2 * SQUARE_MUL_FLOP + SQUARE_VEC_FLOP + SPACE : BODY_FORCE_FLOP;
+    const double base = forces && !omit->base ? o->x + SPACE : 0;
+    e->flops += o->n * (place + bias + force + o->d) + base;
 }
 
 /* reduction of one interface row per rank: physics (5.2), 5.3. */
 static void interface(const struct run_spec *spec, const struct outline *o, double m, struct kernel_estimate *e)
 {
     const double c = o->c, packed = c * (c + 1) / 2;
-    const double factor = c * (c + 1) * (2 * c + 1) / SPACE, triangular = c * c, product = c * (2 * c - 1);
+    const double factor = c * (c + 1) * (2 * c + 1) / 6, triangular = c * c, product = c * (2 * c - 1);
     const double one = factor + m * triangular + c * triangular + packed * (2 * c - 1) + m * product;
     const double two = one + c * triangular + packed * (2 * c - 1) + m * product + c * product;
     const double update = packed + c * m;
@@ -159,7 +167,7 @@ static void solution(const struct run_spec *spec, const struct outline *o, struc
     add(e, o->P - 1, c * c); /* coupling to the left, with the Schur complement of several rows */
     e->bytes += o->shifts * (packed + c) * (double)sizeof(real);
     add(e, o->P - 1, c); /* interface solution to the right */
-    const double factor = c * (c + 1) * (2 * c + 1) / SPACE, product = c * (2 * c - 1);
+    const double factor = c * (c + 1) * (2 * c + 1) / 6, product = c * (2 * c - 1);
     const double first = o->P < o->n ? (double)(int)((o->n + o->P - 1) / o->P) - 1 : 0, others = o->n - o->P - first;
     const double side = c * c * c + packed * (2 * c - 1) + product + packed + c; /* towards one neighbour */
     e->flops += first * (factor + c * c + side + c * c + product + c);
@@ -202,7 +210,7 @@ void estimate_inverse(const struct run_spec *spec, const struct model *model, co
     first_scan(&o, spec->kernel.composites_incoming, out);
     if (!omit->velocity) vector_scan(&o, false, out);
     vector_scan(&o, true, out);
-    local_inverse(spec, &o, omit, out);
+    local_work(spec, &o, omit, true, out);
     out->rank_bytes =
         (o.n / o.P * (XFORM_NUMBERS + SQUARE + SQUARE) + o.T * (o.steps + 2)) * (double)sizeof(real) + 512;
 }
@@ -224,19 +232,19 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, co
         if (!omit->velocity) vector_scan(&o, false, out);
         vector_scan(&o, true, out);
     }
-    if (scans) local_inverse(spec, &o, omit, out);
-    else out->flops += o.n * (58 + (spec->kernel.operators == OPERATORS_DENSE ? SQUARE_MUL_FLOP : 0));
+    local_work(spec, &o, omit, !direct && scans, out);
     const double edges = o.P - 1;
     add(out, 2 * edges, o.nq);
     add(out, edges, o.d);
     add(out, edges, o.d + (direct && !omit->load ? SPACE : 0));
     solution(spec, &o, out);
     add(out, edges, o.c);
-    out->flops += (o.n - 1) * (2 * SPACE * XFORM_MOTION_FLOP + PACKED);
+    out->flops += (o.n - 1) * (2 * SPACE * XFORM_MOTION_FLOP + PACKED) + (o.n + 2 * edges) * SPACE + edges * o.place;
+    const double moved = o.x + SPACE, terms = (!omit->load + !omit->velocity) * SPACE, base = omit->base ? 0 : moved;
     if (direct)
-        out->flops += 2 * ((o.n - 1) * (2 * o.x + BODY_ACCELERATE_FLOP + 4 * SPACE) + BODY_ACCELERATE_FLOP + 4 * SPACE +
-                           edges * (BODY_ACCELERATE_FLOP + 2 * SPACE + o.x));
-    else out->flops += o.n * 60 + edges * 310;
+        out->flops += 2 * (o.n * (BODY_ACCELERATE_FLOP + terms) + 2 * (o.n - 1) * moved + base +
+                           edges * (BODY_ACCELERATE_FLOP + SPACE + moved));
+    else out->flops += o.n * (6 * o.d * (o.c + SPACE) - o.c) + edges * SPACE * XFORM_MOTION_FLOP;
     out->rank_bytes = rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
     repeat(out, evaluations(&spec->kernel));
 }

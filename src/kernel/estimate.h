@@ -3,21 +3,21 @@
 #define KERNEL_ESTIMATE_H
 
 #include "kernel/kernel.h"
-#include "linalg/real.h"
+#include "linalg/space.h"
 #include "mech/model.h"
 
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
  * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
  * tenth. */
-#define estimate_inverse REAL_NAME(estimate_inverse)
+#define estimate_inverse SPACE_NAME(estimate_inverse)
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 /* estimate_forward: see above. */
-#define estimate_forward REAL_NAME(estimate_forward)
+#define estimate_forward SPACE_NAME(estimate_forward)
 void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 /* estimate_dynamics: see above. */
-#define estimate_dynamics REAL_NAME(estimate_dynamics)
+#define estimate_dynamics SPACE_NAME(estimate_dynamics)
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 
@@ -31,7 +31,7 @@ static inline bool kernel_branches(const struct run_spec *spec, const struct mod
 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
  * exact but for loops and refinements, flops roughly. */
-#define estimate_tree REAL_NAME(estimate_tree)
+#define estimate_tree SPACE_NAME(estimate_tree)
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
                    bool forward, struct kernel_estimate *out);
 

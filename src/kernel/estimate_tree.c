@@ -1,11 +1,33 @@
 /* estimate_tree.c - costs of the programs for trees, from the plan that they follow (estimate.h). */
+#include "kernel/algebra.h"
 #include "kernel/compound.h"
 #include "kernel/estimate.h"
 #include "kernel/tree_plan.h"
-#include "linalg/spatial.h"
 
-/* What one operation costs with five constraints and one column of loads [flop]: counted. */
-enum { RAKE_FLOP = 1100, ABSORB_FLOP = 2700, MERGE_FLOP = 3300, UNDO_FLOP = 320, BODY_FLOP = 250 };
+/* What the functions of compound.h do: joint_compliance of c constraints, joint_force for m columns, one more given
+ * force in the first; rake of a leaf, absorb, merge; what undoing the two does at the parent, and at a leaf. */
+static double compliance(double c) { return c * (c + 1) * (2 * c + 1) / 6 + c * c * (2 * c - 1); }
+static double force(double m) { return SQUARE_VEC_FLOP + SCREW_ADD_FLOP + m * (SQUARE_VEC_FLOP + 3 * SCREW_ADD_FLOP); }
+static double rake(double c, double m)
+{
+    return compliance(c) + force(m) + 2 * SPACE * XFORM_FORCE_FLOP + PACKED + m * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
+}
+static double absorb(double m)
+{
+    const double column = 3 * SQUARE_VEC_FLOP + 2 * SQUARE + 3 * SCREW_ADD_FLOP;
+    return 3 * SQUARE_MUL_FLOP + (4 + 2.0 / 3) * SPACE * SQUARE + m * column + SPACE + PACKED;
+}
+static double merge(double c, double m)
+{
+    const double column = XFORM_MOTION_FLOP + 2 * (SQUARE_VEC_FLOP + SCREW_ADD_FLOP);
+    return compliance(c) + force(m) + 3 * SPACE * XFORM_MOTION_FLOP + PACKED + 3 * SQUARE_MUL_FLOP +
+           2 * PACKED * SCREW_AXPY_FLOP + m * column;
+}
+enum {
+    UNRAKE_FLOP = 3 * SQUARE_VEC_FLOP + 4 * SCREW_ADD_FLOP,
+    LEAF_FLOP = XFORM_MOTION_FLOP + SQUARE_VEC_FLOP + SCREW_ADD_FLOP,
+    UNMERGE_FLOP = 2 * SQUARE_VEC_FLOP + 2 * SCREW_ADD_FLOP + XFORM_FORCE_FLOP
+};
 
 static void add(struct kernel_estimate *e, double messages, double numbers)
 {
@@ -56,13 +78,30 @@ static void contraction(const struct tree_plan *p, const struct model *model, do
         if (op->kind == TREE_RAKE) {
             if (away) add(e, 1, PACKED + SPACE * m);
             if (away) add(e, 1, SPACE * m);
-            e->flops += op->count * RAKE_FLOP + ABSORB_FLOP + (1 + op->count) * UNDO_FLOP * m;
+            e->flops += op->count * (rake(SPACE - d, m) + m * LEAF_FLOP) + absorb(m) + m * UNRAKE_FLOP;
         } else {
             if (away) add(e, 1, compound_size((int)m) + nq + d + (terms ? SPACE : 0));
             if (away) add(e, 1, 2 * SPACE * m);
-            e->flops += MERGE_FLOP + UNDO_FLOP * m;
+            e->flops += merge(SPACE - d, m) + m * UNMERGE_FLOP;
         }
     }
+}
+
+/* bodies: what is done for each body alone: inverse dynamics' part, once; a solution's part, per pass. */
+static double bodies(const struct model *m, const struct job_omit *omit, bool forces)
+{
+    double flops = 0;
+    for (int i = 0; i < m->nbody; i++) {
+        const struct joint_cost *c = joint_cost_of(m->body[i].joint);
+        flops += c->place + (omit->velocity ? 0 : c->rate + c->bias + BODY_GYRO_FLOP) + (forces ? BODY_FORCE_FLOP : 0);
+    }
+    return flops;
+}
+static double solutions(const struct model *model, bool terms, double m)
+{
+    const double loads = terms || m > 1 ? BODY_ACCELERATE_FLOP + SCREW_ADD_FLOP : 0;
+    const double column = BODY_ACCELERATE_FLOP + loads + 2 * SCREW_ADD_FLOP + XFORM_MOTION_FLOP;
+    return model->nbody * (m * column + (terms ? SCREW_ADD_FLOP : 0));
 }
 
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
@@ -71,25 +110,26 @@ void estimate_tree(const struct run_spec *spec, const struct model *model, const
     struct arena *a = arena_create();
     const struct tree_plan *p = tree_plan_make(model, spec->nrank, a);
     const struct jumps j = jumps_of(p);
-    const double n = model->nbody, m = 1 + model->nrow;
+    const double n = model->nbody, m = 1 + loop_rows(model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
     const double passes = (1.0 + spec->kernel.inner_refinements) * (1.0 + spec->kernel.outer_refinements);
     /* up: velocities (loops need the places that their scan finds), accelerations; down: forces */
     const bool forces = inverse || (!direct && !omit->bias);
     const int scans = (!omit->velocity || model->nloop > 0) + 2 * forces;
     for (int k = 0; k < scans; k++) scan(&j, n, k == 0, out);
-    out->flops += n * BODY_FLOP;
+    out->flops += bodies(model, omit, forces);
     if (forward) {
         struct kernel_estimate one = {0};
         contraction(p, model, m, direct && !omit->velocity, &one);
         add(&one, j.entries, SPACE * m);
         out->messages += passes * one.messages;
         out->bytes += passes * one.bytes;
-        out->flops += passes * (one.flops + n * m * 2 * BODY_FLOP);
+        out->flops += passes * (one.flops + solutions(model, direct && !omit->velocity, m));
     }
     double most = 0;
     for (int k = 0; k < spec->nrank; k++)
         if (p->bodies.at[k + 1] - p->bodies.at[k] > most) most = p->bodies.at[k + 1] - p->bodies.at[k];
-    out->rank_bytes = most * (54 + 60 + (forward ? 78 + 90 + 60 * m : 0)) * (double)sizeof(real) + 1024;
+    out->rank_bytes =
+        most * (19 * SPACE + (forward ? COMPOUND_MATRICES + (15 + 10 * m) * SPACE : 0)) * (double)sizeof(real) + 1024;
     arena_destroy(a);
 }

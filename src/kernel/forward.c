@@ -278,11 +278,8 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
         if (j < 0 || j >= ch->n) continue;
         real x[SPACE];
         const struct subspace *s = subspace_of(f, j);
-        assembly_turn_vector(ch, s,
-                             j < ch->lo    ? f->force_left
-                             : j == ch->hi ? f->force_right
-                                           : chain_at(ch, f->force, j),
-                             x);
+        const real *force = j < ch->lo ? f->force_left : j == ch->hi ? f->force_right : chain_at(ch, f->force, j);
+        assembly_turn_vector(ch, s, force, x);
         const int n = active ? s->d : SPACE;
         for (int r = from; r < to; r++)
             for (int k = 0; k < n; k++)

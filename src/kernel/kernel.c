@@ -1,4 +1,4 @@
-/* kernel.c - the table of all kernels, in three precisions. */
+/* kernel.c - the table of all kernels, in three precisions and two spaces. */
 #include "kernel/kernel.h"
 
 #include <string.h>
@@ -9,6 +9,9 @@
 extern const struct kernel_type inverse_kernel_f32, inverse_kernel_f64, inverse_kernel_f128;
 extern const struct kernel_type forward_kernel_f32, forward_kernel_f64, forward_kernel_f128;
 extern const struct kernel_type dynamics_kernel_f32, dynamics_kernel_f64, dynamics_kernel_f128;
+extern const struct kernel_type inverse_kernel_planar_f32, inverse_kernel_planar_f64, inverse_kernel_planar_f128;
+extern const struct kernel_type forward_kernel_planar_f32, forward_kernel_planar_f64, forward_kernel_planar_f128;
+extern const struct kernel_type dynamics_kernel_planar_f32, dynamics_kernel_planar_f64, dynamics_kernel_planar_f128;
 
 #define MICRO &pingpong_kernel, &shift_kernel, &bisection_kernel, &all_to_all_kernel, &hot_spot_kernel, &barrier_kernel
 
@@ -18,6 +21,13 @@ static const struct kernel_type *const in_float[] = {&inverse_kernel_f32, &forwa
                                                      MICRO};
 static const struct kernel_type *const in_quad[] = {&inverse_kernel_f128, &forward_kernel_f128, &dynamics_kernel_f128,
                                                     MICRO};
+static const struct kernel_type *const planar_in_double[] = {&inverse_kernel_planar_f64, &forward_kernel_planar_f64,
+                                                             &dynamics_kernel_planar_f64};
+static const struct kernel_type *const planar_in_float[] = {&inverse_kernel_planar_f32, &forward_kernel_planar_f32,
+                                                            &dynamics_kernel_planar_f32};
+static const struct kernel_type *const planar_in_quad[] = {&inverse_kernel_planar_f128, &forward_kernel_planar_f128,
+                                                           &dynamics_kernel_planar_f128};
+enum { NPLANAR = sizeof planar_in_double / sizeof planar_in_double[0] };
 enum { NKERNEL = sizeof in_double / sizeof in_double[0] };
 
 const struct kernel_type *const *kernel_list(int *n)
@@ -26,14 +36,27 @@ const struct kernel_type *const *kernel_list(int *n)
     return in_double;
 }
 
-const struct kernel_type *kernel_find_precision(const char *name, enum precision precision)
+static const struct kernel_type *find(const struct kernel_type *const *table, int n, const char *name)
 {
-    const struct kernel_type *const *table = precision == PRECISION_FLOAT  ? in_float
-                                             : precision == PRECISION_QUAD ? in_quad
-                                                                           : in_double;
-    for (int i = 0; i < NKERNEL; i++)
+    for (int i = 0; i < n; i++)
         if (strcmp(table[i]->name, name) == 0) return table[i];
     return NULL;
+}
+
+const struct kernel_type *kernel_find_precision(const char *name, enum precision precision)
+{
+    return find(precision == PRECISION_FLOAT  ? in_float
+                : precision == PRECISION_QUAD ? in_quad
+                                              : in_double,
+                NKERNEL, name);
+}
+
+const struct kernel_type *kernel_find_planar(const char *name, enum precision precision)
+{
+    return find(precision == PRECISION_FLOAT  ? planar_in_float
+                : precision == PRECISION_QUAD ? planar_in_quad
+                                              : planar_in_double,
+                NPLANAR, name);
 }
 
 const struct kernel_type *kernel_find(const char *name) { return kernel_find_precision(name, PRECISION_DOUBLE); }

@@ -89,6 +89,10 @@ const struct kernel_type *kernel_find(const char *name);
 /* kernel_find_precision: the same kernel computing in `precision`. Micro-benchmarks are the same in all. */
 const struct kernel_type *kernel_find_precision(const char *name, enum precision precision);
 
+/* kernel_find_planar: the same kernel in three components instead of six, for planar scenes (mech/planar.h). NULL when
+ * there is none. */
+const struct kernel_type *kernel_find_planar(const char *name, enum precision precision);
+
 /* kernel_list: all of them, (*n) pointers, in double precision. */
 const struct kernel_type *const *kernel_list(int *n);
 

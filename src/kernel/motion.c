@@ -84,7 +84,7 @@ static void kick_drift_kick(struct motion *m, real h, bool first)
 static void runge_kutta(struct motion *m, real h)
 {
     static const int weight[4] = {1, 2, 2, 1};
-    const real part[4] = {h / 2, h / 2, h, h / SPACE};
+    const real part[4] = {h / 2, h / 2, h, h / 6};
     memcpy(m->q0, m->q, (size_t)m->nq * sizeof(real));
     memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
     memset(m->qsum, 0, (size_t)m->nq * sizeof(real));

@@ -6,9 +6,9 @@
 #ifndef KERNEL_MOTION_H
 #define KERNEL_MOTION_H
 
+#include "kernel/algebra.h"
 #include "kernel/carve.h"
 #include "kernel/kernel.h"
-#include "mech/body.h"
 
 struct motion {
     const struct kernel_job *job;
@@ -24,11 +24,11 @@ struct motion {
 };
 
 /* motion_carve: room for stepping nq coordinates and nu rates. */
-#define motion_carve REAL_NAME(motion_carve)
+#define motion_carve SPACE_NAME(motion_carve)
 void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu);
 
 /* motion_run: all time steps of the job, the last state into job->q_end, qd_end; without time steps one evaluation. */
-#define motion_run REAL_NAME(motion_run)
+#define motion_run SPACE_NAME(motion_run)
 void motion_run(struct motion *m);
 
 #endif

@@ -5,12 +5,12 @@
 #ifndef KERNEL_TREE_H
 #define KERNEL_TREE_H
 
+#include "kernel/algebra.h"
 #include "kernel/carve.h"
 #include "kernel/closure.h"
 #include "kernel/kernel.h"
 #include "kernel/scan.h"
 #include "kernel/tree_plan.h"
-#include "mech/body.h"
 
 struct tree_shared {
     const struct tree_plan *plan;
@@ -41,34 +41,34 @@ struct tree {
 };
 
 /* tree_shared_make: from a job's model, state and number of ranks. */
-#define tree_shared_make REAL_NAME(tree_shared_make)
+#define tree_shared_make SPACE_NAME(tree_shared_make)
 struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena *a);
 
 /* tree_carve: room for rank `rank`. */
-#define tree_carve REAL_NAME(tree_carve)
+#define tree_carve SPACE_NAME(tree_carve)
 void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank);
 
 /* tree_load, tree_place, tree_velocity, tree_bias, tree_acceleration, tree_force: as those of chain.h; `more` (own
  * bodies x SPACE) is added to the bodies' forces, NULL: nothing. */
-#define tree_load REAL_NAME(tree_load)
+#define tree_load SPACE_NAME(tree_load)
 void tree_load(struct tree *t);
-#define tree_place REAL_NAME(tree_place)
+#define tree_place SPACE_NAME(tree_place)
 void tree_place(struct tree *t);
-#define tree_velocity REAL_NAME(tree_velocity)
+#define tree_velocity SPACE_NAME(tree_velocity)
 void tree_velocity(struct tree *t);
-#define tree_bias REAL_NAME(tree_bias)
+#define tree_bias SPACE_NAME(tree_bias)
 void tree_bias(struct tree *t);
-#define tree_acceleration REAL_NAME(tree_acceleration)
+#define tree_acceleration SPACE_NAME(tree_acceleration)
 void tree_acceleration(struct tree *t, const real *ud);
-#define tree_force REAL_NAME(tree_force)
+#define tree_force SPACE_NAME(tree_force)
 void tree_force(struct tree *t, real *tau, const real *more);
 
 /* tree_gyro: P - Fext of own body l into f (SPACE). */
-#define tree_gyro REAL_NAME(tree_gyro)
+#define tree_gyro SPACE_NAME(tree_gyro)
 void tree_gyro(struct tree *t, int l, real *f);
 
 /* tree_base_pose: own body l to base; needs `poses` and tree_velocity. */
-#define tree_base_pose REAL_NAME(tree_base_pose)
+#define tree_base_pose SPACE_NAME(tree_base_pose)
 void tree_base_pose(struct tree *t, int l, struct xform *x);
 
 /* tree_parent: index of own body l's parent among own bodies; -1: it is the anchor (or the base). */

@@ -4,7 +4,6 @@
  * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
  * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
  * pass unchanged between model order and here. H and its complement W are orthonormal.
- *
  * Work: the functions do not count; joint_cost_of has what each does for a joint type. */
 #ifndef MECH_BODY_H
 #define MECH_BODY_H
@@ -52,13 +51,19 @@ struct joint_cost {
     int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
 };
 
-/* body_make: the constants of body i of m, in *b. bodies_make: of all of them, (nbody): in double the
- * model's own, which model_finish made; in another precision made in `a`. Bodies equal to their predecessor cost
- * nothing. */
+/* body_make: the constants of body i of m, in *b. bodies_make: of all, (nbody): in double the model's own, made by
+ * model_finish; otherwise made in `a`. Bodies equal to their predecessor cost nothing. */
 #define body_make REAL_NAME(body_make)
 void body_make(const struct model *m, int i, struct body *b);
 #define bodies_make REAL_NAME(bodies_make)
 const struct body *bodies_make(const struct model *m, struct arena *a);
+
+/* body_picks: no column of the joint's H and W is ever written: all of them are unit vectors for good. */
+static inline bool body_picks(const struct body *b)
+{
+    const enum model_joint j = b->joint;
+    return j != JOINT_HELICAL && j != JOINT_UNIVERSAL && j != JOINT_SLOT && j != JOINT_POINT_PLANE;
+}
 
 /* base_motion: acceleration of the base minus gravity (6), [angular; linear]. */
 #define base_motion REAL_NAME(base_motion)
@@ -110,11 +115,9 @@ static inline void body_force(const struct body *b, const real *a, real *f)
     vec3_cross_add(f, b->s, f + 3);
 }
 
-/* body_accelerate: a = Phi f (6), BODY_ACCELERATE_FLOP; the body must have a Phi (model.has_phi). */
-enum { BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP };
+/* body_accelerate: a = Phi f (6); the body must have a Phi (model.has_phi). body_phi: Phi as a full matrix (6 x 6). */
+enum { BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP, BODY_SHARE_FLOP = 900 /* of a balanced partition: sweeps, assembly */ };
 static inline void body_accelerate(const struct body *b, const real *f, real *a) { sym6_mul(a, &b->phi, f); }
-
-/* body_phi: Phi as a full matrix (6 x 6). */
 static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
 
 /* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about shift^T is I. */
@@ -139,7 +142,7 @@ void body_step(const struct body *b, real *q, const real *u, real h);
 #define body_qdot REAL_NAME(body_qdot)
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
 
-/* joint_cost_of: by type, never NULL. The table is the same in every precision. */
+/* joint_cost_of: by type, never NULL; the same in every precision. body_cost: of a body. */
 #define joint_cost_of REAL_NAME(joint_cost_of)
 const struct joint_cost *joint_cost_of(enum model_joint joint);
 static inline const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(b->joint); }

@@ -37,6 +37,15 @@ struct loop_pose {
 #define loop_make REAL_NAME(loop_make)
 void loop_make(const struct model *m, int i, struct loop *l);
 
+/* loop_rows: constraints of all loops. loops_make: the constants of all loops (nloop), and of each constraint its place
+ * in the model's lambda. */
+static inline int loop_rows(const struct model *m) { return m->nrow; }
+static inline void loops_make(const struct model *m, struct loop *loop, int *place)
+{
+    for (int l = 0; l < m->nloop; l++) loop_make(m, l, &loop[l]);
+    for (int k = 0; k < m->nrow; k++) place[k] = k;
+}
+
 /* loop_place: the loop's pose and velocity terms.
  *
  *   xa, xb  in  transforms of the internal frames of a and b to the base, or to any one common frame (identity for

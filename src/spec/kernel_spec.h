@@ -8,6 +8,7 @@
 enum formulation { FORMULATION_PAPER, FORMULATION_DIRECT };
 enum solver { SOLVER_PCR_SYMMETRIC, SOLVER_PCR, SOLVER_CR, SOLVER_CR_PCR, SOLVER_PARTITION, SOLVER_THOMAS };
 enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
+enum algebra { ALGEBRA_AUTO, ALGEBRA_SPATIAL, ALGEBRA_PLANAR };
 enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
 enum part_solver { PART_PCR, PART_CR };
 enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
@@ -20,6 +21,7 @@ struct kernel_spec {
     enum solver solver;
     enum part_solver part_solver; /* what solver partition uses on the interfaces */
     enum operators operators;    /* dense: general 6x6 operators as the paper's code, structured: (r, p) pairs */
+    enum algebra algebra;        /* auto: planar where the scene is, unless the operators are dense */
     enum precision precision;
     enum partition_rule partition;
     bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2; trees

@@ -30,7 +30,7 @@ archives() {
     local room file found
     for room in $(room_names); do
         found=
-        for file in "$HOUSE_BUILD/lib$room.a" "$HOUSE_BUILD/lib${room}"_f*.a "$HOUSE_BUILD/src/app"/*.o; do
+        for file in "$HOUSE_BUILD/lib$room.a" "$HOUSE_BUILD/lib${room}"_[fp]*.a "$HOUSE_BUILD/src/app"/*.o; do
             case $file in *.o) [ "$room" = app ] || continue ;; esac
             [ -e "$file" ] || continue
             echo "$room $file"

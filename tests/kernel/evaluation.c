@@ -86,7 +86,9 @@ struct evaluation evaluate_model(const struct run_spec *spec, const struct model
 {
     struct err e = {0};
     struct evaluation v = {0};
-    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
+    const struct kernel_type *k = spec->kernel.algebra == ALGEBRA_PLANAR
+                                      ? kernel_find_planar(spec->kernel.name, spec->kernel.precision)
+                                      : kernel_find_precision(spec->kernel.name, spec->kernel.precision);
     assert_non_null(k);
     struct kernel_job job = {.spec = spec, .model = model, .state = state, .nrank = spec->nrank};
     const int nu = model ? model->nu : 0, nq = model ? model->nq : 0;

@@ -171,7 +171,7 @@ static void estimates_of_all_rows_and_of_trees(void **state)
             struct work all = {0};
             for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &r.stage_work[stage]);
             const double done = (double)operations(&all);
-            if (!(e.flops > 0.7 * done && e.flops < 1.4 * done))
+            if (!(e.flops > 0.95 * done && e.flops < 1.1 * done))
                 fail_msg("case %d P %d: %g, not %g", k, P, e.flops, done);
         }
 }

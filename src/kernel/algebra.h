@@ -1,0 +1,18 @@
+/* algebra.h - bodies, loops, transforms and vectors of the build's space: those of body.h and loop.h, or those of
+ * planar_body.h and planar_loop.h.
+ *
+ * The programs are written once for both; sizes are SPACE, SQUARE, PACKED and XFORM_NUMBERS. */
+#ifndef KERNEL_ALGEBRA_H
+#define KERNEL_ALGEBRA_H
+
+#include "linalg/space.h"
+
+#if SPACE == 6
+#include "mech/body.h"
+#include "mech/loop.h"
+#else
+#include "mech/planar_body.h"
+#include "mech/planar_loop.h"
+#endif
+
+#endif
