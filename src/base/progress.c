@@ -51,17 +51,25 @@ static void span_text(double s, char buffer[32])
     else snprintf(buffer, 32, "%ld h %ld min", n / 3600, n / 60 % 60);
 }
 
+bool progress_due(const struct progress *p)
+{
+    if (p->quiet) return false;
+    double due = !p->tty ? p->last + FILE_INTERVAL : p->shown ? p->last + TTY_INTERVAL : p->start + PATIENCE;
+    return host_seconds() >= due;
+}
+
 void progress_show(struct progress *p, double done)
 {
-    if (p->quiet) return;
-    double now = host_seconds(), spent = now - p->start;
-    double due = !p->tty ? p->last + FILE_INTERVAL : p->shown ? p->last + TTY_INTERVAL : p->start + PATIENCE;
-    if (now < due) return;
-    double rate = done / spent;
-    char left[32] = "unknown time";
-    if (rate > 0) span_text((p->total - done) / rate, left);
-    fprintf(stderr, "%s%s: %.0f %% (%.4g of %.4g, %.3g/s), %s left%s", p->tty ? "\r" : "", p->what,
-            100 * done / p->total, done, p->total, rate, left, p->tty ? "\033[K" : "\n");
+    if (!progress_due(p)) return;
+    double now = host_seconds(), rate = done / (now - p->start);
+    char left[32], state[96];
+    if (rate > 0) {
+        span_text((p->total - done) / rate, left);
+        snprintf(state, sizeof state, "%.0f %% (%.4g of %.4g, %.3g/s), %s left", 100 * done / p->total, done, p->total,
+                 rate, left);
+    } else snprintf(state, sizeof state, "0 of %.4g", p->total);
+    fprintf(stderr, "%s%s: %s%s%s%s", p->tty ? "\r" : "", p->what, state, p->detail ? "; " : "",
+            p->detail ? p->detail : "", p->tty ? "\033[K" : "\n");
     fflush(stderr);
     p->last = now;
     p->shown = true;

@@ -11,14 +11,18 @@ struct progress {
     double total;      /* units of work, > 0 */
     double start;      /* host seconds */
     double last;       /* host seconds of the last line */
+    const char *detail; /* borrowed; put behind the line, NULL: nothing */
     bool quiet, tty, shown;
 };
 
 /* progress_make: begin; `quiet` shows nothing ever. */
 struct progress progress_make(const char *what, double total, bool quiet);
 
-/* progress_show: `done` of the total is finished; prints percent, rate and time left when it is time to. */
+/* progress_show: `done` of the total is finished; prints percent, rate, time left and p->detail when it is time to. */
 void progress_show(struct progress *p, double done);
+
+/* progress_due: whether progress_show would print now. */
+bool progress_due(const struct progress *p);
 
 /* progress_end: remove the line on a terminal. */
 void progress_end(struct progress *p);

@@ -4,13 +4,16 @@
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/check.h"
 #include "base/progress.h"
+#include "measure/run_pulse.h"
 #include "run/run.h"
 #include "run/scene.h"
 
@@ -101,16 +104,50 @@ struct campaign {
     run_done_fn *done;
     void *context;
     struct progress progress;
+    char detail[96];
+    struct run_pulse *pulse; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
 };
 
-static _Noreturn void worker_main(const struct run_spec *spec, int orders, int answers)
+/* Show the progress, with how far the runs of busy workers are (worker 0 is this process when there are none). */
+static void show_progress(void *context)
+{
+    struct campaign *c = context;
+    double events = 0, rate = 0, now = host_seconds();
+    int ended = 0, nrank = 0;
+    if (!progress_due(&c->progress)) return;
+    for (int i = 0; c->pulse && (i < c->nworker || i == 0); i++) {
+        const struct run_pulse *p = &c->pulse[i];
+        double mine = (double)atomic_load_explicit(&p->events, memory_order_relaxed);
+        if (mine == 0 || (c->nworker > 0 && c->worker[i].busy < 0)) continue;
+        events += mine;
+        rate += mine / (now - atomic_load_explicit(&p->begin, memory_order_relaxed));
+        ended += atomic_load_explicit(&p->ended, memory_order_relaxed);
+        nrank += atomic_load_explicit(&p->nrank, memory_order_relaxed);
+    }
+    snprintf(c->detail, sizeof c->detail, "%.3g million events, %.2g million/s, %d of %d ranks ended",
+             1e-6 * events, 1e-6 * rate, ended, nrank);
+    c->progress.detail = events > 0 ? c->detail : NULL;
+    progress_show(&c->progress, c->ndone);
+}
+
+/* The run as the plan has it, with a place to tell how far it is. */
+static struct run_spec with_pulse(const struct run_spec *spec, struct run_pulse *pulse)
+{
+    struct run_spec own = *spec;
+    own.pulse = pulse;
+    if (pulse) atomic_store_explicit(&pulse->events, 0, memory_order_relaxed);
+    return own;
+}
+
+static _Noreturn void worker_main(const struct run_spec *spec, struct run_pulse *pulse, int orders, int answers)
 {
     int index;
     struct scene_shelf *shelf = scene_shelf_create();
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
-        a.ok = run_sharing(&spec[index], shelf, arena, &a.result, &a.error);
+        struct run_spec own = with_pulse(&spec[index], pulse);
+        a.ok = run_sharing(&own, shelf, arena, &a.result, &a.error);
         if (!send_answer(answers, &a)) break;
         arena_destroy(arena);
     }
@@ -130,7 +167,7 @@ static bool start_worker(struct campaign *c, struct err *e)
             close(c->worker[i].orders);
             close(c->worker[i].answers);
         }
-        worker_main(c->spec, orders[0], answers[1]);
+        worker_main(c->spec, c->pulse ? &c->pulse[c->nworker] : NULL, orders[0], answers[1]);
     }
     close(orders[0]);
     close(answers[1]);
@@ -171,7 +208,8 @@ static bool hand_over(struct campaign *c, struct err *e)
         c->arena[i] = NULL;
         c->slot[i] = NULL;
         c->handed++;
-        progress_show(&c->progress, ++c->ndone);
+        c->ndone++;
+        show_progress(c);
         if (!ok) return false;
     }
     return true;
@@ -199,7 +237,7 @@ static bool serve(struct campaign *c, struct err *e)
             if (errno != EINTR) return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
             continue;
         }
-        progress_show(&c->progress, c->ndone);
+        show_progress(c);
         for (int i = 0; i < c->nworker; i++)
             if (p[i].fd >= 0 && p[i].revents && !take_answer(c, &c->worker[i], e)) return false;
     }
@@ -224,9 +262,11 @@ static bool run_here(struct campaign *c, struct err *e)
         if (c->skip && c->skip[i]) continue;
         struct arena *arena = arena_create();
         struct run_result result;
-        ok = run_sharing(&c->spec[i], shelf, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
+        struct run_spec own = with_pulse(&c->spec[i], c->pulse);
+        ok = run_sharing(&own, shelf, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
         arena_destroy(arena);
-        progress_show(&c->progress, ++c->ndone);
+        c->ndone++;
+        show_progress(c);
     }
     scene_shelf_destroy(shelf);
     return ok;
@@ -248,6 +288,14 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
     return ok;
 }
 
+/* Memory that workers share with the parent, all zero; NULL when there is none, which only costs a remark. */
+static struct run_pulse *pulses_make(void)
+{
+    void *p = mmap(NULL, MOST_WORKERS * sizeof(struct run_pulse), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
+                   -1, 0);
+    return p == MAP_FAILED ? NULL : p;
+}
+
 bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
                   void *context, struct err *e)
 {
@@ -258,7 +306,10 @@ bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int 
     if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (workers > c.ntodo) workers = c.ntodo;
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
+    if (!quiet) c.pulse = pulses_make();
+    if (c.pulse && workers <= 1) c.pulse->beat = show_progress, c.pulse->context = &c;
     bool ok = workers <= 1 ? run_here(&c, e) : run_workers(&c, workers, e);
     progress_end(&c.progress);
+    if (c.pulse) munmap(c.pulse, MOST_WORKERS * sizeof *c.pulse);
     return ok;
 }

@@ -33,6 +33,6 @@ bool launch_job(const struct kernel_type *kernel, const struct kernel_job *job, 
                 struct arena *a, struct run_result *out, struct err *e)
 {
     struct launch l = {kernel, job, make_workspaces(job, kernel, scratch)};
-    struct world_load load = {job->nrank, program, &l, kernel->nstage, kernel->stage_name, largest};
+    struct world_load load = {job->nrank, program, &l, kernel->nstage, kernel->stage_name, largest, job->spec->pulse};
     return world_run(m, &load, record, seed, a, out, e);
 }

@@ -27,6 +27,8 @@ struct level_choice {
     char at[64];             /* where it was measured: "n=P=128" */
 };
 
+struct run_pulse;
+
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
     struct machine_spec machine;
@@ -39,6 +41,7 @@ struct run_spec {
     char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
     const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
     struct level_choice level_choice;
+    struct run_pulse *pulse; /* where the run tells how far it is, NULL: nowhere; no setting either, and borrowed */
     unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */
 };
 

@@ -8,6 +8,7 @@
 #include "base/digest.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "measure/run_pulse.h"
 #include "vp/vp.h"
 
 enum { STACK_BYTES = 64 * 1024 };
@@ -143,9 +144,21 @@ static inline void warm_up(const struct world *w)
     }
 }
 
+enum { PULSE_EVENTS = 1 << 14 }; /* 5 to 30 ms of the host */
+
+static void tell_pulse(const struct world *w)
+{
+    struct run_pulse *p = w->load->pulse;
+    if (!p) return;
+    atomic_store_explicit(&p->events, sim_events(w->sim), memory_order_relaxed);
+    atomic_store_explicit(&p->ended, w->nfinished, memory_order_relaxed);
+    if (p->beat) p->beat(p->context);
+}
+
 /* Ranks run ahead until they wait; only then is it safe to let simulated time pass. */
 static void loop(struct world *w)
 {
+    unsigned quiet_events = PULSE_EVENTS;
     do {
         while (w->ready_count) {
             warm_up(w);
@@ -154,7 +167,21 @@ static void loop(struct world *w)
             w->ready_count--;
             fiber_enter(v->fiber);
         }
+        if (--quiet_events == 0) {
+            tell_pulse(w);
+            quiet_events = PULSE_EVENTS;
+        }
     } while (sim_step(w->sim));
+}
+
+static void begin_pulse(const struct world *w, double now)
+{
+    struct run_pulse *p = w->load->pulse;
+    if (!p) return;
+    atomic_store_explicit(&p->events, 0, memory_order_relaxed);
+    atomic_store_explicit(&p->ended, 0, memory_order_relaxed);
+    atomic_store_explicit(&p->nrank, w->nrank, memory_order_relaxed);
+    atomic_store_explicit(&p->begin, now, memory_order_relaxed);
 }
 
 static void collect(struct world *w)
@@ -217,6 +244,7 @@ static void run(struct world *w, uint64_t seed)
 {
     struct run_result *r = w->result;
     double begin = host_seconds();
+    begin_pulse(w, begin);
     make_ranks(w, seed);
     background_start(w, seed);
     loop(w);

@@ -23,6 +23,7 @@ struct world_load {
     const char *const *stage_name; /* (nstage); one more, "end", is added for idling until the makespan */
     int64_t largest_message;       /* bytes; a promise (CHECK), -1: none. When every message is eager, sends of a node
                                       come in order and some levels need fewer events, with the same times */
+    struct run_pulse *pulse;       /* where to tell how far the run is, NULL: nowhere */
 };
 
 /* world_run: run a load on machine `m` to the end.

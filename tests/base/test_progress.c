@@ -90,6 +90,20 @@ static void a_file_gets_a_line_every_ten_seconds(void **state)
     assert_string_equal(out, "");
 }
 
+static void what_has_not_ended_yet_shows_its_detail(void **state)
+{
+    (void)state;
+    char out[400];
+    struct progress p = progress_make("runs", 1, false);
+    p.tty = true;
+    p.detail = "3 million events";
+    assert_false(progress_due(&p));
+    shown(&p, 0, 2, out, sizeof out);
+    assert_string_equal(out, "\rruns: 0 of 1; 3 million events\033[K");
+    p.quiet = true;
+    assert_false(progress_due(&p));
+}
+
 static void quiet_is_quiet(void **state)
 {
     (void)state;
@@ -107,6 +121,7 @@ int main(void)
         cmocka_unit_test(nothing_is_said_in_the_first_second),
         cmocka_unit_test(a_terminal_gets_one_line_rewritten),
         cmocka_unit_test(a_file_gets_a_line_every_ten_seconds),
+        cmocka_unit_test(what_has_not_ended_yet_shows_its_detail),
         cmocka_unit_test(quiet_is_quiet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
