@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "app/flag.h"
-#include "app/levels.h"
+#include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
 #include "report/report.h"
@@ -33,37 +33,16 @@ static bool read_within(const char *text, double *within, struct err *e)
     return true;
 }
 
-static bool store_choice(struct store *s, const char *scenario, const struct accuracy_choice *c, struct err *e)
-{
-    static const char *const name[] = {"scenario", "ladder", "at", "quantity", "tolerance", "method", "rung",
-                                       "relative_error", "cost_ratio"};
-    const struct store_value value[] = {
-        store_text(scenario), store_text(c->ladder), store_text(c->at), store_text(c->quantity),
-        store_real(c->tolerance), store_text(c->rung ? c->rung->method : NULL),
-        store_text(c->rung ? c->rung->rung : NULL), store_real(c->rung ? c->rung->error : NAN),
-        store_real(c->rung ? c->cost_ratio : NAN)};
-    return store_insert(s, "ladder_choice", 9, name, value, e);
-}
-
-static bool store_all(struct store *s, const struct accuracy_report *r, struct err *e)
-{
-    if (!store_begin(s, e)) return false;
-    bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
-              store_delete(s, "ladder_choice", "scenario", store_text(r->scenario), e) && ladder_store(s, r, e);
-    for (int i = 0; ok && i < r->nchoice; i++) ok = store_choice(s, r->scenario, &r->choice[i], e);
-    if (ok) return store_commit(s, e);
-    store_rollback(s);
-    return false;
-}
-
 static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct err *e)
 {
     struct store *s = store_open(c->database, STORE_WRITE, e);
     if (!s) return false;
     struct text figure = {0};
     text_add(&figure, "accuracy-%s", r->scenario);
-    bool ok = store_all(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
-    if (ok && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    bool ok = keep_accuracy(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
+    if (ok && !c->quiet)
+        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
+                c->database);
     text_free(&figure);
     store_close(s);
     return ok;

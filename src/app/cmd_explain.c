@@ -161,7 +161,9 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
     text_add(&figure, "omissions-%s", all->scenario);
     bool ok = s && savings_store(s, all, e);
     ok = ok && (all->n == 0 || report_figure(s, plan_data_dir(), figure.s, c->directory, e));
-    if (ok && all->n > 0 && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    if (ok && all->n > 0 && !c->quiet)
+        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
+                c->database);
     text_free(&figure);
     store_close(s);
     return ok;

@@ -1,8 +1,8 @@
 /* cmd_stability.c - mimdsim stability: stiff and extreme scenes against every algorithm. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
 #include "report/report.h"
@@ -15,32 +15,16 @@ static const char doc[] =
     "stability.png and .svg, that of a scenario to stability-SCENARIO.png and .svg.\n\n"
     "Example: mimdsim stability\n";
 
-static bool store_row(struct store *s, const struct stability_report *r, int i, struct err *e)
-{
-    static const char *const name[] = {"suite", "subject", "algorithm", "precision", "ordinal", "status",
-                                       "relative_error", "residual", "condition", "growth", "refinements",
-                                       "energy_drift", "step_s", "reason"};
-    const struct stability_row *x = &r->row[i];
-    const struct store_value value[] = {
-        store_text(r->suite), store_text(x->subject), store_text(x->algorithm), store_text(x->precision), store_int(i),
-        store_text(stability_word(x->status)), store_real(x->error), store_real(x->residual), store_real(x->condition),
-        store_real(x->growth), x->refinements >= 0 ? store_int(x->refinements) : store_null(),
-        store_real(x->energy_drift), store_real(x->step_s), store_text(x->reason)};
-    return store_insert(s, "stability", 14, name, value, e);
-}
-
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
 {
     struct store *s = store_open(c->database, STORE_WRITE, e);
     if (!s) return false;
-    bool ok = store_begin(s, e) && store_delete(s, "stability", "suite", store_text(r->suite), e);
-    for (int i = 0; ok && i < r->nrow; i++) ok = store_row(s, r, i, e);
-    if (ok) ok = store_commit(s, e);
-    else store_rollback(s);
     struct text figure = {0};
     text_add(&figure, strcmp(r->suite, "suite") == 0 ? "stability" : "stability-%s", r->suite);
-    ok = ok && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
-    if (ok && !c->quiet) fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, figure.s);
+    bool ok = keep_stability(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
+    if (ok && !c->quiet)
+        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
+                c->database);
     text_free(&figure);
     store_close(s);
     return ok;

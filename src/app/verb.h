@@ -36,6 +36,7 @@ int cmd_validate(int argc, char **argv);  /* machines against published figures 
 int cmd_links(int argc, char **argv);     /* the most loaded links */
 int cmd_verify(int argc, char **argv);    /* reference vectors */
 int cmd_accuracy(int argc, char **argv);  /* error against run time */
+int cmd_report(int argc, char **argv);    /* all that a database holds */
 int cmd_stability(int argc, char **argv); /* stiff and extreme cases */
 
 enum { COMMON_MOST_SETS = 256 };

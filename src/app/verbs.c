@@ -18,6 +18,7 @@ const struct verb verb_list[] = {
     {"netcheck", "hold the network levels against reference answers", cmd_netcheck},
     {"accuracy", "error against run time: network, arithmetic, integration", cmd_accuracy},
     {"stability", "stiff and extreme cases against every algorithm", cmd_stability},
+    {"report", "all that a database holds, as figures, Markdown and HTML", cmd_report},
     {"query", "run SQL on a database", cmd_query},
     {0},
 };

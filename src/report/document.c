@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "report/findings.h"
 #include "report/page.h"
 
 #define IN_ORDER " ORDER BY substr(id, 1, 1) <> 'C', length(id), id"
@@ -127,7 +128,7 @@ static void caption(const char *sql, struct text *out)
 {
     while (strncmp(sql, "-- ", 3) == 0) {
         size_t n = strcspn(sql, "\n");
-        if (strncmp(sql, "-- needs:", 9) != 0) {
+        if (strncmp(sql, "-- needs:", 9) != 0 && strncmp(sql, "-- each:", 8) != 0) {
             if (out->length) text_add(out, " ");
             text_add_bytes(out, sql + 3, n - 3);
         }
@@ -137,6 +138,7 @@ static void caption(const char *sql, struct text *out)
 
 static bool figures(struct chapter *c)
 {
+    if (!c->d->whole && c->d->nfigure == 0) return true;
     page_heading(c->page, 2, "Figures");
     for (int i = 0; i < c->d->nfigure; i++) {
         struct text path = {0}, sql = {0}, words = {0};
@@ -160,6 +162,7 @@ static bool figures(struct chapter *c)
 static bool machines(struct chapter *c)
 {
     static const char *const head[] = {"key", "value", "range", "evidence", "source"};
+    if (!c->d->whole && c->d->nparameter == 0) return true;
     page_heading(c->page, 2, "The machines");
     page_paragraph(c->page,
                    "Evidence: P published and read again, PR published but recalled, D derived, E estimated. A value "
@@ -203,28 +206,39 @@ static bool numerics(struct chapter *c)
                  "No run is stored.");
 }
 
+static bool left_out_of_runs(struct chapter *c)
+{
+    return table(c,
+                 "SELECT 'runs that did not end well' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
+                 "'') AS which"
+                 "  FROM run WHERE status <> 'ok'"
+                 " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
+                 "  ifnull(format('n from %d to %d', min(n), max(n)), '') FROM run r WHERE status = 'ok' AND kernel = "
+                 "'dynamics'"
+                 "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
+                 " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
+                 "  WHERE level = 'loggp' GROUP BY level"
+                 " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' || level, count(*),"
+                 "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
+                 " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not stored', count(*), "
+                 "'' FROM run WHERE links = 0",
+                 "Nothing.") &&
+           table(c,
+                 "SELECT what, why, class || iif(max(bound) IS NULL, '', format(' %.0e', max(bound))) AS class,"
+                 " count(*) AS runs FROM run_omission GROUP BY what, why, class ORDER BY runs DESC, what",
+                 "No run says that it left something out.");
+}
+
 static bool omissions(struct chapter *c)
 {
-    page_heading(c->page, 2, "What was left out");
-    if (!table(c,
-               "SELECT 'runs that did not end well' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
-               "'') AS which"
-               "  FROM run WHERE status <> 'ok'"
-               " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
-               "  ifnull(format('n from %d to %d', min(n), max(n)), '') FROM run r WHERE status = 'ok' AND kernel = "
-               "'dynamics'"
-               "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
-               " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
-               "  WHERE level = 'loggp' GROUP BY level"
-               " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' || level, count(*),"
-               "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
-               " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not stored', count(*), '' "
-               "FROM run"
-               "  WHERE links = 0",
-               "Nothing."))
+    bool runs, savings;
+    if (!findings_any(c->d->store, "SELECT 1 FROM run LIMIT 1", &runs, c->e) ||
+        !findings_any(c->d->store, "SELECT 1 FROM omission LIMIT 1", &savings, c->e))
         return false;
-    return table(c, "SELECT scenario, what, why, class, bound FROM omission ORDER BY scenario, what",
-                 "No further omission is recorded.");
+    if (!c->d->whole && !runs && !savings) return true;
+    page_heading(c->page, 2, "What was left out");
+    if ((c->d->whole || runs) && !left_out_of_runs(c)) return false;
+    return findings_savings(c->page, c->d->store, c->e);
 }
 
 static bool effort(struct chapter *c)
@@ -233,7 +247,7 @@ static bool effort(struct chapter *c)
     page_heading(c->page, 2, "How long it took");
     text_add(&t, "The command that wrote this report took %.1f s, runs that were stored before not counted.",
              c->d->host_s);
-    page_paragraph(c->page, t.s);
+    if (c->d->host_s > 0) page_paragraph(c->page, t.s);
     text_free(&t);
     return table(
         c,
@@ -264,8 +278,17 @@ static bool provenance(struct chapter *c)
 
 static bool chapters(struct chapter *c)
 {
-    return contradictions(c) && estimates(c) && claims(c) && figures(c) && variants(c) && machines(c) && numerics(c) &&
-           omissions(c) && effort(c) && provenance(c);
+    const struct document *d = c->d;
+    bool claimed, run;
+    if (!findings_any(d->store, "SELECT 1 FROM claim LIMIT 1", &claimed, c->e) ||
+        !findings_any(d->store, "SELECT 1 FROM run LIMIT 1", &run, c->e))
+        return false;
+    claimed = claimed || d->whole;
+    run = run || d->whole;
+    return (!claimed || (contradictions(c) && estimates(c) && claims(c))) && figures(c) &&
+           findings_accuracy(c->page, d->store, c->e) && findings_stability(c->page, d->store, c->e) &&
+           (!claimed || variants(c)) && machines(c) && (!run || numerics(c)) && omissions(c) &&
+           (!run || (effort(c) && provenance(c)));
 }
 
 bool document_write(const struct document *d, struct err *e)
@@ -279,8 +302,7 @@ bool document_write(const struct document *d, struct err *e)
     if (slash) text_add(&folder, "%.*s", slash == figures_folder ? 1 : (int)(slash - figures_folder), figures_folder);
     else text_add(&folder, ".");
     struct chapter c = {d, &page, e};
-    bool ok = page_open(&page, folder.s, "paper",
-                        "Parallel multibody dynamics on MIMD machines: the evaluation reproduced", figures_folder, e) &&
+    bool ok = page_open(&page, folder.s, d->name, d->title, figures_folder, e) &&
               chapters(&c);
     ok = page_close(&page, e) && ok;
     text_free(&folder);

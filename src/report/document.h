@@ -1,4 +1,4 @@
-/* document.h - the report on the paper, paper.md and paper.html, out of the database alone. */
+/* document.h - a report as NAME.md and NAME.html, on the paper or on whatever a database holds, out of that alone. */
 #ifndef REPORT_DOCUMENT_H
 #define REPORT_DOCUMENT_H
 
@@ -14,17 +14,19 @@ struct document_parameter {
 
 struct document {
     struct store *store;
+    const char *name, *title;
+    bool whole;           /* every chapter, telling what is missing; otherwise those that the database has rows for */
     const char *data_dir; /* holds plots/ */
     const char *figures;  /* folder of the pictures; the report is written beside it */
     int nfigure;
     const char *const *figure; /* (nfigure) names, in order */
     int nparameter;
     const struct document_parameter *parameter;
-    double host_s; /* how long the command took */
+    double host_s; /* how long the command took; 0: not told */
 };
 
-/* document_write: claims that fail first, then the table of claims, the figures, the machines, accuracy, what was left
- * out, time and provenance. Returns false with ERR_CREATE, ERR_IO or ERR_DATA. */
+/* document_write: claims that fail first, then the table of claims, the figures, error against run time, stability, the
+ * machines, accuracy, what was left out, time and provenance. Returns false with ERR_CREATE, ERR_IO or ERR_DATA. */
 bool document_write(const struct document *d, struct err *e);
 
 #endif

@@ -99,3 +99,53 @@ scenario() {
     fails_with 65 mimdsim run small.yaml --set level='auto-tolerance -1%'
     works mimdsim run small.yaml --quiet --set level=link --set machine.network.tolerance=1%
 }
+
+@test "the report tells what the three commands stored, from the database alone" {
+    scenario
+    works mimdsim accuracy small.yaml --quiet
+    works mimdsim stability small.yaml --quiet
+    works mimdsim explain small.yaml --measure --quiet
+    # a rung and a case that failed are planted; nothing may hide them
+    sqlite3 mimdsim.db "UPDATE ladder SET status = 'failed', relative_error = NULL, text = 'planted, on purpose'
+                            WHERE method = 'rkck' AND rung = 'tolerance 1e-05';
+                        UPDATE stability SET status = 'failed', relative_error = 1234 WHERE algorithm = 'crba'"
+    rm -r figures small.yaml
+    works mimdsim report
+    stdout_says mimdsim.md
+    [ -s mimdsim.html ]
+    for section in 'Error against run time' 'Stability' 'What was left out'; do grep -q "^## $section" mimdsim.md; done
+    ! grep -q '^## The claims' mimdsim.md
+    for figure in accuracy stability omissions; do
+        [ -s "figures/$figure-small.png" ] && [ "$(wc -l <figures/$figure-small.csv)" -gt 2 ]
+        grep -q "(figures/$figure-small.svg)" mimdsim.md
+    done
+    grep -q 'rkck | tolerance 1e-05 | planted, on purpose' mimdsim.md
+    grep -q 'rkck: 1e-05' figures/accuracy-small.failed.csv
+    grep -q '| crba | double | 0 | 0 | 1 | 1.2e+03 |' mimdsim.md
+    cheapest=$(sql mimdsim.db "SELECT method FROM ladder_choice WHERE ladder = 'network'")
+    grep -q "cheapest is $cheapest" mimdsim.md
+    counts=$(sql mimdsim.db "SELECT format('%d ok, %d degraded, %d failed', sum(status = 'ok'), sum(status = 'degraded'), sum(status = 'failed')) FROM stability")
+    grep -q "^$counts" mimdsim.md
+    saved=$(sql mimdsim.db "SELECT format('%.4g us', machine_saved_ps / 1e6) FROM omission WHERE what = 'external forces'")
+    grep -q "external forces .* $saved" mimdsim.md
+    works mimdsim report --json
+    json_is_valid
+    json_is '$[0]' mimdsim.md
+    fails_with 66 mimdsim report none.db
+}
+
+@test "a figure of the ladders draws no exact answer at a decade, and one scenario alone when asked" {
+    scenario
+    works mimdsim accuracy small.yaml --quiet
+    sqlite3 mimdsim.db "INSERT INTO ladder SELECT 'other', ladder, at, family, method, rung, ordinal, quantity, reference,
+                            relative_error, host_s, machine_ps, status, text FROM ladder"
+    works mimdsim plot mimdsim.db accuracy --dir both
+    stdout_says both/accuracy-other.png
+    [ -s both/accuracy-small.svg ] && [ -s both/accuracy-other.svg ]
+    works mimdsim plot mimdsim.db accuracy-other --dir one
+    [ -s one/accuracy-other.svg ] && [ ! -e one/accuracy-small.svg ]
+    grep -q '>exact<' one/accuracy-other.svg
+    # what is exact has no other error in the numbers beside the picture
+    sqlite3 :memory: ".import --csv one/accuracy-other.csv t" "SELECT count(*) FROM t WHERE method = 'flit' AND relative_error + 0 <> 0" | grep -qx 0
+    fails_with 66 mimdsim plot mimdsim.db accuracy-nobody
+}

@@ -329,8 +329,8 @@ static void put_tables(struct fixture *f)
                                          "family"};
     static const char *const case_[] = {"suite",   "subject", "algorithm",      "precision",
                                         "ordinal", "status",  "relative_error", "reason"};
-    static const char *const left_out[] = {"scenario", "what", "ordinal", "why", "class", "at", "host_s", "host_saved_s",
-                                           "host_noise_s", "machine_ps", "machine_saved_ps"};
+    static const char *const left_out[] = {"scenario", "what", "ordinal", "why", "class", "at", "host_s",
+                                           "host_saved_s", "host_noise_s", "machine_ps", "machine_saved_ps"};
     static const char *const claim[] = {"id", "variant", "statement", "test", "unit", "share", "verdict"};
     for (int i = 0; i < 2; i++) {
         const struct store_value rung[] = {store_text("made"),

@@ -1,0 +1,146 @@
+/* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and HTML. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/parameters.h"
+#include "app/verb.h"
+#include "base/check.h"
+#include "base/json.h"
+#include "base/text.h"
+#include "report/document.h"
+#include "report/report.h"
+#include "store/store.h"
+
+static const char doc[] =
+    "Draw every figure that the database DB (default mimdsim.db) has rows for, and write DB.md and DB.html beside the\n"
+    "folder of figures: claims, figures, error against run time, stability, what was left out and what that saves.\n\n"
+    "Example: mimdsim report mimdsim.db\n\v"
+    "From the database alone: nothing is run. `mimdsim accuracy`, `stability` and `explain --measure` fill it.";
+
+enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
+
+struct report {
+    const struct common *common;
+    struct store *store;
+    struct err *e;
+    int nfigure;
+    char *figure[MOST_FIGURES]; /* drawn, and not shown in a section of their own */
+    int nplan;
+    struct plan plan[MOST_SCENARIOS];
+};
+
+static bool has_section(const char *figure)
+{
+    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0;
+}
+
+/* Draw `name`, taken over, if there are rows for it. */
+static bool draw(struct report *r, char *name)
+{
+    struct err e;
+    err_clear(&e);
+    bool drawn = report_figure(r->store, plan_data_dir(), name, r->common->directory, &e);
+    if (!drawn && e.kind == ERR_UNAVAILABLE) {
+        err_print(&e);
+        drawn = true; /* as numbers */
+    }
+    if (drawn && !has_section(name) && r->nfigure < MOST_FIGURES) r->figure[r->nfigure++] = name;
+    else free(name);
+    if (!drawn && e.kind != ERR_NO_INPUT) *r->e = e;
+    return drawn || e.kind == ERR_NO_INPUT;
+}
+
+static bool draw_all(struct report *r)
+{
+    char **name;
+    int n = report_figures(plan_data_dir(), &name);
+    bool ok = true;
+    for (int i = 0; i < n; i++) {
+        if (ok) ok = draw(r, name[i]);
+        else free(name[i]);
+    }
+    free(name);
+    return ok;
+}
+
+/* The plan of a scenario, for the numbers of its machine; a file that is not there any more tells nothing. */
+static bool add_plan(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct report *r = context;
+    struct plan_options o = common_plan(r->common);
+    struct err ignored;
+    (void)ncolumn;
+    (void)name;
+    err_clear(&ignored);
+    if (r->nplan == MOST_SCENARIOS) return false;
+    if (plan_read(&r->plan[r->nplan], value[0], &o, &ignored)) r->nplan++;
+    else plan_free(&r->plan[r->nplan]);
+    return true;
+}
+
+/* "a/paper.db": "paper". */
+static char *stem_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *stem = strdup(slash ? slash + 1 : path);
+    CHECK(stem);
+    char *dot = strrchr(stem, '.');
+    if (dot && dot != stem) *dot = '\0';
+    return stem;
+}
+
+static bool write_document(struct report *r, const char *path, const char *stem)
+{
+    struct arena *a = arena_create();
+    struct text title = {0};
+    text_add(&title, "What %s holds", path);
+    struct document d = {.store = r->store, .name = stem, .title = title.s, .data_dir = plan_data_dir(),
+                         .figures = r->common->directory, .nfigure = r->nfigure,
+                         .figure = (const char *const *)r->figure};
+    bool ok = store_select(r->store, "SELECT DISTINCT scenario FROM run ORDER BY 1", 0, NULL, add_plan, r, r->e) &&
+              parameters_gather(r->plan, r->nplan, a, &d.parameter, &d.nparameter, r->e) &&
+              document_write(&d, r->e);
+    text_free(&title);
+    arena_destroy(a);
+    return ok;
+}
+
+static void tell(const struct common *c, const char *stem)
+{
+    static const char *const ending[] = {"md", "html"};
+    const char *slash = strrchr(c->directory, '/');
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    for (int i = 0; i < 2; i++) {
+        struct text t = {0};
+        text_add(&t, "%.*s%s.%s", slash ? (int)(slash + 1 - c->directory) : 0, c->directory, stem, ending[i]);
+        if (c->json) json_text(&j, t.s);
+        else puts(t.s);
+        text_free(&t);
+    }
+    if (!c->json) return;
+    json_end(&j);
+    json_finish(&j);
+}
+
+int cmd_report(int argc, char **argv)
+{
+    struct common c;
+    common_parse(&c, argc, argv, TAKES_DIR, "[DB]", doc, 0, 1);
+    const char *path = c.narg ? c.arg[0] : "mimdsim.db";
+    char *stem = stem_of(path);
+    struct err e;
+    err_clear(&e);
+    struct report *r = calloc(1, sizeof *r);
+    CHECK(r);
+    *r = (struct report){.common = &c, .e = &e};
+    r->store = store_open(path, STORE_READ, &e);
+    bool ok = r->store && draw_all(r) && write_document(r, path, stem);
+    if (ok) tell(&c, stem);
+    store_close(r->store);
+    for (int i = 0; i < r->nfigure; i++) free(r->figure[i]);
+    for (int i = 0; i < r->nplan; i++) plan_free(&r->plan[i]);
+    free(r);
+    free(stem);
+    return ok ? 0 : common_fail(&c, &e);
+}

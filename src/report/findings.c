@@ -1,0 +1,226 @@
+/* findings.c - see findings.h. */
+#include "report/findings.h"
+
+#include "base/text.h"
+
+/* Where the writing of one section stands; an error inside a row's function stops it. */
+struct section {
+    struct page *page;
+    struct store *store;
+    struct err *e;
+};
+
+static bool note_row(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    (void)ncolumn;
+    (void)name;
+    (void)value;
+    *(bool *)context = true;
+    return false;
+}
+
+bool findings_any(struct store *s, const char *sql, bool *any, struct err *e)
+{
+    *any = false;
+    return store_select(s, sql, 0, NULL, note_row, any, e);
+}
+
+static bool table(struct section *c, const char *sql, const char *param, const char *empty)
+{
+    return page_table(c->page, c->store, sql, param != NULL, &param, empty, c->e);
+}
+
+static bool tell_sentence(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct section *c = context;
+    (void)ncolumn;
+    (void)name;
+    page_paragraph(c->page, value[0]);
+    return true;
+}
+
+/* A paragraph for each row of `sql`. */
+static bool sentences(struct section *c, const char *sql, const char *param)
+{
+    return store_select(c->store, sql, param != NULL, &param, tell_sentence, c, c->e);
+}
+
+/* --- error against run time --------------------------------------------------------------------------------------- */
+
+static const char choice_sentences[] =
+    "SELECT format('%s (%s, %s within %g): ', c.ladder, c.at, c.quantity, c.tolerance) ||"
+    " iif(c.method IS NULL, 'no rung is good enough.',"
+    " format('cheapest is %s %s%s%s; the finest costs %.3g times as much.',"
+    "  c.method || iif(c.rung = c.method, '', ', ' || c.rung),"
+    "  iif(c.relative_error = 0, 'and exact', format('with an error of %.1e', c.relative_error)),"
+    "  iif(c.ladder = 'network' OR l.machine_ps IS NULL, '', format(', %.4g us of the machine', l.machine_ps / 1e6)),"
+    "  iif(c.ladder = 'integration', ' (' || l.text || ')', ''), c.cost_ratio))"
+    " FROM ladder_choice c LEFT JOIN ladder l ON l.scenario = c.scenario AND l.ladder = c.ladder AND l.at = c.at"
+    "  AND l.method = c.method AND l.rung = c.rung AND l.quantity = c.quantity"
+    " WHERE c.scenario = ?1 GROUP BY c.ladder, c.at, c.quantity, c.tolerance"
+    " ORDER BY CASE c.ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END, c.tolerance";
+
+static const char failed_rungs[] =
+    "SELECT ladder, at, method, group_concat(rung, ', ') AS rungs, text AS reason FROM"
+    " (SELECT *, iif(relative_error IS NULL, text, format('error %.1e', relative_error)) AS text FROM ladder"
+    "  WHERE scenario = ?1 AND status = 'failed' AND quantity IN ('makespan', 'qdd', 'state') ORDER BY ordinal)"
+    " GROUP BY ladder, at, method, text ORDER BY min(ordinal)";
+
+static bool tell_ladders(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct section *c = context;
+    struct text figure = {0};
+    (void)ncolumn;
+    (void)name;
+    page_heading(c->page, 3, value[0]);
+    text_add(&figure, "accuracy-%s", value[0]);
+    bool ok = sentences(c, choice_sentences, value[0]);
+    if (ok)
+        page_figure(c->page, figure.s,
+                    "Error of every rung against its time on this computer and on the simulated machine; an exact "
+                    "answer stands on the line at the bottom.");
+    if (ok) page_paragraph(c->page, "Rungs that failed:");
+    ok = ok && table(c, failed_rungs, value[0], "None.");
+    text_free(&figure);
+    return ok;
+}
+
+bool findings_accuracy(struct page *p, struct store *s, struct err *e)
+{
+    struct section c = {p, s, e};
+    bool any;
+    if (!findings_any(s, "SELECT 1 FROM ladder LIMIT 1", &any, e)) return false;
+    if (!any) return true;
+    page_heading(p, 2, "Error against run time");
+    page_paragraph(p, "How wrong each cheaper way is: network levels against the finest, accelerations of every "
+                      "algorithm and precision against quad precision, motions against a tight reference. Cost is "
+                      "this computer's time for the network and the machine's predicted time for the others. Made by "
+                      "mimdsim accuracy.");
+    if (!table(&c,
+               "SELECT scenario, ladder, at, quantity, format('%g', tolerance) AS \"error allowed\","
+               " ifnull(method || iif(rung = method, '', ', ' || rung), 'none is good enough') AS cheapest,"
+               " CASE WHEN relative_error IS NULL THEN '' WHEN relative_error = 0 THEN 'exact' ELSE"
+               " format('%.1e', relative_error) END AS \"its error\","
+               " iif(cost_ratio IS NULL, '', format('%.3g', cost_ratio)) AS \"cost of the finest over its\""
+               " FROM ladder_choice ORDER BY scenario, CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2"
+               " ELSE 3 END, tolerance",
+               NULL, "No choice was made."))
+        return false;
+    if (!table(&c,
+               "SELECT scenario, ladder, at, reference, sum(status = 'ok') AS ok, sum(status = 'degraded') AS degraded,"
+               " sum(status = 'failed') AS failed FROM ladder WHERE quantity IN ('makespan', 'qdd', 'state')"
+               " GROUP BY scenario, ladder, at, family ORDER BY scenario, min(ordinal)",
+               NULL, "No rung is stored."))
+        return false;
+    return store_select(s, "SELECT DISTINCT scenario FROM ladder ORDER BY 1", 0, NULL, tell_ladders, &c, e) &&
+           e->kind == ERR_NONE;
+}
+
+/* --- stability ---------------------------------------------------------------------------------------------------- */
+
+static const char by_algorithm[] =
+    "SELECT algorithm, precision, sum(status = 'ok') AS ok, sum(status = 'degraded') AS degraded,"
+    " sum(status = 'failed') AS failed,"
+    " iif(max(relative_error) IS NULL, '', format('%.1e', max(relative_error))) AS \"largest error\","
+    " iif(min(status) = 'ok' AND max(status) = 'ok', '', (SELECT subject FROM stability w"
+    "   WHERE w.suite = s.suite AND w.algorithm = s.algorithm"
+    "   AND w.precision = s.precision ORDER BY w.status = 'failed' DESC, w.status = 'degraded' DESC,"
+    "   w.relative_error IS NULL DESC, w.relative_error DESC LIMIT 1)) AS \"worst case\""
+    " FROM stability s WHERE suite = ?1 GROUP BY algorithm, precision ORDER BY min(ordinal)";
+
+static const char worst_cases[] =
+    "SELECT subject AS \"worst cases\", sum(status = 'failed') AS failed, sum(status = 'degraded') AS degraded,"
+    " count(*) AS answers, iif(max(condition) IS NULL, '', format('%.0e', max(condition))) AS condition,"
+    " iif(max(growth) IS NULL, '', format('%.0e', max(growth))) AS growth,"
+    " ifnull(group_concat(DISTINCT iif(status = 'failed', algorithm || iif(precision = 'double', '',"
+    "  ' (' || precision || ')'), NULL)), '') AS \"failed by\","
+    " ifnull(max(iif(status = 'failed', nullif(reason, ''), NULL)), '') AS reason"
+    " FROM stability WHERE suite = ?1 GROUP BY subject HAVING sum(status <> 'ok') > 0"
+    " ORDER BY failed DESC, degraded DESC, min(ordinal) LIMIT 16";
+
+/* Evaluations stand at the beginning of a motion's reason. */
+static const char stiff_motions[] =
+    "WITH motion AS (SELECT *, algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,"
+    "  iif(status = 'ok' AND reason GLOB '[0-9]*evaluations*', CAST(reason AS REAL), NULL) AS evaluations"
+    "  FROM stability WHERE suite = ?1 AND (algorithm LIKE 'own %' OR algorithm IN ('rkf45', 'rk8pd', 'msadams',"
+    "  'rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf')))"
+    " SELECT subject AS \"stiff motion\", iif(max(iif(algorithm LIKE 'own %', step_s, NULL)) IS NULL, 'none',"
+    "  format('%.2e', max(iif(algorithm LIKE 'own %', step_s, NULL))))"
+    "  AS \"largest stable explicit step\", min(iif(implicit, NULL, evaluations)) AS \"explicit evaluations\","
+    "  min(iif(implicit, evaluations, NULL)) AS \"implicit evaluations\","
+    "  CASE WHEN min(iif(implicit, evaluations, NULL)) IS NULL THEN 'no implicit is ok'"
+    "   WHEN min(iif(implicit, NULL, evaluations)) IS NULL THEN 'no explicit is ok' ELSE"
+    "   format('%.3g', min(iif(implicit, NULL, evaluations)) / min(iif(implicit, evaluations, NULL))) END"
+    "  AS \"explicit over implicit\", sum(status = 'failed') AS \"steppers failed\""
+    " FROM motion GROUP BY subject ORDER BY min(ordinal)";
+
+static bool tell_suite(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct section *c = context;
+    struct text figure = {0};
+    const bool built_in = value[1][0] == '1';
+    (void)ncolumn;
+    (void)name;
+    page_heading(c->page, 3, built_in ? "The suite" : value[0]);
+    text_add(&figure, built_in ? "stability" : "stability-%s", value[0]);
+    page_paragraph(c->page, value[2]);
+    page_figure(c->page, figure.s,
+                "Cases against algorithms; in a cell the power of ten of the relative error. Of stiff motions: error, "
+                "step, evaluations and energy drift.");
+    bool ok = table(c, by_algorithm, value[0], "No row.") &&
+              table(c, worst_cases, value[0], "Nothing failed and nothing degraded.") &&
+              table(c, stiff_motions, value[0], "None of these scenes has springs or dampers whose motion was tried.");
+    text_free(&figure);
+    return ok;
+}
+
+bool findings_stability(struct page *p, struct store *s, struct err *e)
+{
+    struct section c = {p, s, e};
+    bool any;
+    if (!findings_any(s, "SELECT 1 FROM stability LIMIT 1", &any, e)) return false;
+    if (!any) return true;
+    page_heading(p, 2, "Stability");
+    page_paragraph(p, "Stiff and extreme scenes by every algorithm and stepper, graded: of accelerations in double "
+                      "precision an error up to 1e-8 is ok and up to 1e-2 degraded, in float 1e-3 and 1e-1. Made by "
+                      "mimdsim stability.");
+    return store_select(s,
+                        "SELECT suite, suite = 'suite', format('%d ok, %d degraded, %d failed of %d answers on %d "
+                        "scenes.', sum(status = 'ok'), sum(status = 'degraded'), sum(status = 'failed'), count(*),"
+                        " count(DISTINCT subject)) FROM stability GROUP BY suite ORDER BY suite <> 'suite', suite",
+                        0, NULL, tell_suite, &c, e) &&
+           e->kind == ERR_NONE;
+}
+
+/* --- what leaving out saves --------------------------------------------------------------------------------------- */
+
+static const char saving_rows[] =
+    "SELECT what, why, class || iif(bound IS NULL, '', format(' %.0e', bound)) AS class, at,"
+    " CASE WHEN host_saved_s IS NULL THEN 'cannot be put back'"
+    "  WHEN abs(host_saved_s) <= host_noise_s THEN format('less than the noise, %.2g ms', host_noise_s * 1e3)"
+    "  ELSE format('%.3g ms of %.3g', host_saved_s * 1e3, (host_s + host_saved_s) * 1e3) END"
+    " AS \"this computer saves\","
+    " CASE WHEN machine_saved_ps IS NULL THEN '' WHEN machine_saved_ps = 0 THEN 'nothing'"
+    "  ELSE format('%.4g us of %.6g', machine_saved_ps / 1e6, (machine_ps + machine_saved_ps) / 1e6) END"
+    " AS \"the machine saves, predicted\" FROM omission WHERE scenario = ?1 ORDER BY ordinal";
+
+static bool tell_savings(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct section *c = context;
+    struct text figure = {0};
+    (void)ncolumn;
+    (void)name;
+    page_heading(c->page, 3, value[0]);
+    text_add(&figure, "omissions-%s", value[0]);
+    page_figure(c->page, figure.s,
+                "Time that each omission saves: the same run with it put back, less the run without it.");
+    text_free(&figure);
+    return table(c, saving_rows, value[0], "Nothing.");
+}
+
+bool findings_savings(struct page *p, struct store *s, struct err *e)
+{
+    struct section c = {p, s, e};
+    return store_select(s, "SELECT DISTINCT scenario FROM omission ORDER BY 1", 0, NULL, tell_savings, &c, e) &&
+           e->kind == ERR_NONE;
+}
