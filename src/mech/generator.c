@@ -207,15 +207,36 @@ static bool add_polymer(struct model *m, const struct model_spec *spec, struct e
     return true;
 }
 
+static bool is_usual(double x) { return x >= 1e-6 && x <= 1e6; }
+
+/* Units of links far from a metre or a kilogram: powers of two near the links' own, and the time in which the given
+ * torques (or gravity) turn one about. Products of masses and lengths then stay within any precision, and no number is
+ * rounded by it. */
+static struct model_spec in_own_units(const struct model_spec *spec, struct model *m)
+{
+    struct model_spec x = *spec;
+    if (spec->generator == MODEL_POLYMER || (is_usual(spec->length) && is_usual(spec->mass))) return x;
+    const double *g = spec->gravity, gravity = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
+    const int metre = ilogb(spec->length), kilogram = ilogb(spec->mass);
+    int square = 0; /* of the unit of time */
+    if (spec->torque > 0) square = kilogram + 2 * metre - ilogb(spec->torque);
+    else if (gravity > 0) square = metre - ilogb(gravity);
+    m->metre = ldexp(1, metre), m->kilogram = ldexp(1, kilogram), m->second = ldexp(1, square / 2);
+    x.length = ldexp(spec->length, -metre), x.radius = ldexp(spec->radius, -metre);
+    x.mass = ldexp(spec->mass, -kilogram);
+    return x;
+}
+
 struct model *generator_model(const struct model_spec *spec, struct arena *a, struct err *e)
 {
     struct model *m = model_begin(a, NULL);
+    const struct model_spec x = in_own_units(spec, m);
     bool good;
     switch (spec->generator) {
-    case MODEL_RING: good = add_ring(m, spec, e); break;
-    case MODEL_FOUR_BAR: good = add_four_bar(m, spec, e); break;
-    case MODEL_POLYMER: good = add_polymer(m, spec, e); break;
-    default: good = add_rods(m, spec, e);
+    case MODEL_RING: good = add_ring(m, &x, e); break;
+    case MODEL_FOUR_BAR: good = add_four_bar(m, &x, e); break;
+    case MODEL_POLYMER: good = add_polymer(m, &x, e); break;
+    default: good = add_rods(m, &x, e);
     }
     for (int k = 0; k < 3; k++) m->gravity[k] = spec->gravity[k] * m->second * m->second / m->metre;
     return good && model_finish(m, false, e) ? m : NULL;

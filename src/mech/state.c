@@ -90,7 +90,7 @@ struct state *state_make(const struct model *m, const struct model_spec *spec, s
         return vector_state_make(m, spec, a, &e);
     }
     struct state *s = state_take(m, a);
-    double length = m->metre == 1 ? spec->length : 1, rate = spec->rate * m->second;
+    double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
     double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)

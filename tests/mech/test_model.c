@@ -246,6 +246,57 @@ static void springs_and_dampers_act(void **state)
     scene_end(&s);
 }
 
+/* The same scene 2^-35 as long, 2^-90 as heavy and 2^-20 as fast is the same numbers in units of its own. */
+static void units_of_small_links_round_nothing(void **state)
+{
+    (void)state;
+    struct model_spec usual = spec_random(MODEL_RANDOM_TREE, 12, JOINT_MIXED, 3), small = usual;
+    usual.stiffness = small.stiffness = 0;
+    const int metre = -35, kilogram = -90, second = -20;
+    small.length = ldexp(usual.length, metre), small.radius = ldexp(usual.radius, metre);
+    small.mass = ldexp(usual.mass, kilogram);
+    small.rate = ldexp(usual.rate, -second);
+    small.torque = ldexp(usual.torque, kilogram + 2 * metre - 2 * second);
+    small.external_force = ldexp(usual.external_force, kilogram + metre - 2 * second);
+    for (int k = 0; k < 3; k++) small.gravity[k] = ldexp(usual.gravity[k], metre - 2 * second);
+    struct scene a = scene_of(&usual), b = scene_of(&small);
+    assert_true(b.model->metre == ldexp(1, metre) && b.model->kilogram == ldexp(1, kilogram) &&
+                b.model->second == ldexp(1, second));
+    for (int i = 0; i < a.model->nbody; i++) {
+        const struct body_def *x = &a.model->body[i], *y = &b.model->body[i];
+        assert_true(x->mass == y->mass);
+        assert_memory_equal(x->inertia, y->inertia, sizeof x->inertia);
+        assert_memory_equal(x->com, y->com, sizeof x->com);
+        assert_memory_equal(&x->placement, &y->placement, sizeof x->placement);
+    }
+    assert_memory_equal(a.model->gravity, b.model->gravity, sizeof a.model->gravity);
+    assert_memory_equal(a.state->q, b.state->q, (size_t)a.model->nq * sizeof(double));
+    assert_memory_equal(a.state->qd, b.state->qd, (size_t)a.model->nu * sizeof(double));
+    assert_memory_equal(a.state->tau, b.state->tau, (size_t)a.model->nu * sizeof(double));
+    assert_memory_equal(a.state->fext, b.state->fext, (size_t)(6 * a.model->nbody) * sizeof(double));
+    scene_end(&a);
+    scene_end(&b);
+}
+
+/* Molecules in SI units are beyond single precision (inertias of 1e-47); in their own they are not. */
+static void single_precision_reaches_molecules_and_denormals(void **state)
+{
+    (void)state;
+    struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 16, JOINT_REVOLUTE, 3);
+    spec.length = 1.5e-10, spec.radius = 1e-11, spec.mass = 2.3e-26, spec.torque = 1e-21, spec.external_force = 0;
+    for (int k = 0; k < 2; k++) {
+        struct scene s = scene_of(&spec);
+        double single[16], right[16];
+        assert_true(dynamics_type_of(PRECISION_FLOAT)
+                        ->forward(s.model, s.state, FORWARD_CFA_DIRECT, s.a, single, NULL, NULL, NULL));
+        assert_true(dynamics_type_of(PRECISION_QUAD)
+                        ->forward(s.model, s.state, FORWARD_ABA, s.a, right, NULL, NULL, NULL));
+        assert_true(relative_error(16, single, right) < 1e-3);
+        scene_end(&s);
+        spec.length = 1, spec.radius = 0.05, spec.mass = spec.torque = 1e-308;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +309,8 @@ int main(void)
         cmocka_unit_test(generators_make_their_trees),
         cmocka_unit_test(the_same_seed_gives_the_same_scene_and_another_a_different_one),
         cmocka_unit_test(molecular_units_are_a_change_of_units),
+        cmocka_unit_test(units_of_small_links_round_nothing),
+        cmocka_unit_test(single_precision_reaches_molecules_and_denormals),
         cmocka_unit_test(springs_and_dampers_act),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
