@@ -42,6 +42,17 @@ struct kinds {
     } kind[MOST_KINDS];
 };
 
+/* The first run, when what its file makes idle is so in all runs; NULL otherwise. */
+static const struct run_estimate *unused_by_all(const struct plan *p, const struct run_estimate *r)
+{
+    for (int i = 1; i < p->nrun; i++) {
+        if (r[i].nunused != r[0].nunused) return NULL;
+        for (int k = 0; k < r[i].nunused; k++)
+            if (strcmp(r[i].unused[k], r[0].unused[k]) != 0) return NULL;
+    }
+    return p->nrun > 0 ? r : NULL;
+}
+
 static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r)
 {
     struct kinds *k = calloc(1, sizeof *k);
@@ -88,6 +99,8 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     }
     free(k);
     for (int i = 0; i < p->nunused; i++) printf("unused: %s\n", p->unused[i]);
+    const struct run_estimate *all = unused_by_all(p, r);
+    for (int i = 0; all && i < all->nunused; i++) printf("unused: %s\n", all->unused[i]);
 }
 
 static void json_pair(struct json *j, const char *key, double value)
@@ -148,6 +161,8 @@ static void print_json(const struct plan *p, const struct run_estimate *r, const
     json_key(&j, "unused");
     json_array(&j);
     for (int i = 0; i < p->nunused; i++) json_text(&j, p->unused[i]);
+    const struct run_estimate *all = unused_by_all(p, r);
+    for (int i = 0; all && i < all->nunused; i++) json_text(&j, all->unused[i]);
     json_end(&j);
     json_end(&j);
     json_finish(&j);

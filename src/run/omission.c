@@ -144,3 +144,20 @@ int omission_list(const struct kernel_job *job, const struct kernel_type *kernel
     if (!spec->record.links) add(&l, KEEP_LINKS, 0, "counters of single links", "record.links does not ask for them");
     return l.n;
 }
+
+int omission_unused(const struct kernel_job *job, const struct kernel_type *kernel, const char **out)
+{
+    const struct kernel_spec *k = &job->spec->kernel;
+    const enum model_generator made = job->spec->model.generator;
+    int n = 0;
+    if (!job->model || (made != MODEL_URDF && made != MODEL_VECTOR)) return 0;
+    const bool branches = !job->model->is_chain || job->model->nloop > 0;
+    const bool idle = k->formulation == FORMULATION_DIRECT ? job->omit.velocity : job->omit.bias;
+    if (branches && kernel->does_forward && k->solver != SOLVER_PCR_SYMMETRIC)
+        out[n++] = "kernel.solver: the file's model branches or closes loops: it is contracted";
+    if (k->composites_incoming && branches)
+        out[n++] = "kernel.composites_incoming: the file's model branches or closes loops: it takes incoming ones";
+    else if (k->composites_incoming && idle && !kernel->does_inverse && k->outer_refinements == 0)
+        out[n++] = "kernel.composites_incoming: nothing moves in the file's state, so nothing is scanned";
+    return n;
+}

@@ -29,6 +29,10 @@ struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
  * how many. */
 int omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct omission *out);
 
+/* omission_unused: settings that act nowhere because of what a model's file says, "key: reason" (constant texts), into
+ * out (2); what the settings alone decide is in the fields' tables. Returns how many. */
+int omission_unused(const struct kernel_job *job, const struct kernel_type *kernel, const char **out);
+
 /* omission_largest_message, omission_machine, omission_record: what the world is told, with spec->keep obeyed. */
 int64_t omission_largest_message(const struct run_spec *spec, const struct kernel_type *kernel,
                                  const struct kernel_job *job);

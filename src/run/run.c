@@ -167,13 +167,14 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     if (ok) {
         struct kernel_estimate k = {0};
         kernel->estimate(spec, job.model, &job.omit, &k);
-        out->nbody = m ? m->nbody : 0;
+        out->nbody = m ? m->nbody + job.omit.fixed : 0;
         out->nu = m ? m->nu : 0;
         if (m) out->metre = m->metre, out->kilogram = m->kilogram, out->second = m->second;
         out->messages = k.messages;
         out->bytes = k.bytes;
         out->flops = k.flops;
         out->nomission = omission_list(&job, kernel, out->omission);
+        out->nunused = omission_unused(&job, kernel, out->unused);
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
         double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;

@@ -33,6 +33,8 @@ struct run_estimate {
     double host_bytes; /* estimated memory */
     int nomission;     /* what the run leaves out */
     struct omission omission[RUN_MAX_OMISSIONS];
+    int nunused;       /* settings that the model's file makes idle: "key: reason" */
+    const char *unused[2];
 };
 
 /* run_explain: estimate one run without making it. Returns false as run_one. */

@@ -108,6 +108,30 @@ static const char *idle_unless_open_chain(const struct run_spec *r)
     return branches(r) ? "trees and closed chains always take incoming composites" : NULL;
 }
 
+static bool all_zero(const double *x, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (x[i] != 0) return false;
+    return true;
+}
+
+/* Scans along the chain carry velocities, accelerations and forces that the bodies have by themselves. */
+static const char *idle_without_scans(const struct run_spec *r)
+{
+    const char *why = idle_unless_open_chain(r);
+    if (why != NULL) return why;
+    const struct model_spec *m = &r->model;
+    const struct kernel_spec *k = &r->kernel;
+    const bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
+    if (strcmp(k->name, "forward") != 0 || from_file || m->rate != 0 || k->steps > 0 || k->outer_refinements > 0)
+        return NULL;
+    if (k->formulation == FORMULATION_DIRECT) return "nothing moves, so the direct formulation scans nothing";
+    const bool still = m->base != BASE_MOVING || all_zero(m->base_acceleration, 6);
+    return still && all_zero(m->gravity, 3) && m->external_force == 0
+               ? "nothing moves and nothing weighs, so the paper's formulation scans nothing"
+               : NULL;
+}
+
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 32, .fallback = "dynamics",
      .doc = "the program; see `mimdsim kernels`"},
@@ -124,7 +148,7 @@ static const struct field fields[] = {
     {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",
      .idle = idle_without_branch_choice, .doc = "bodies over ranks: equal counts, or equal work"},
     {.key = "composites_incoming", .kind = FIELD_BOOL, AT(composites_incoming), .fallback = "false",
-     .idle = idle_unless_open_chain,
+     .idle = idle_without_scans,
      .doc = "transforms of the recursive doubling: incoming composites, or the paper's outgoing ones"},
     {.key = "hybrid_levels", .kind = FIELD_INT, AT(hybrid_levels), .min = 0, .max = 32, .fallback = "1",
      .idle = idle_unless_hybrid, .doc = "levels of cyclic reduction before parallel cyclic reduction"},

@@ -56,6 +56,24 @@ scenario() {
     sql_is mimdsim.db "SELECT class FROM run_omission WHERE what = 'velocity terms'" exact
 }
 
+@test "explain lists every kind that some run leaves out, and the settings that act nowhere" {
+    scenario 'sweep: {level: [loggp, auto], model.rate: [0 rad/s, 1 rad/s]}'
+    works mimdsim explain small.yaml
+    stdout_says 'left out (exact, in 2 of 4 runs): velocity terms: all joint rates are zero, without time steps'
+    stdout_says 'left out (exact, in 2 of 4 runs): contention where routes share no link'
+    stdout_says 'left out (bounded by 2.0e-08): branch and loop phases'
+    works mimdsim explain small.yaml --json
+    json_is_valid
+    json_is "$.omissions[#-1].class" exact
+    scenario
+    works mimdsim explain small.yaml --set kernel.name=forward --set kernel.formulation=direct --set model.rate=0rad/s \
+        --set kernel.composites_incoming=true
+    stdout_says 'unused: kernel.composites_incoming: nothing moves, so the direct formulation scans nothing'
+    works mimdsim explain small.yaml --set model.generator=vector --set kernel.solver=cr \
+        --set "model.path=$MIMDSIM_SRCDIR/tests/data/vectors/closed_fourbar.json" --set ranks=2
+    stdout_says "unused: kernel.solver: the file's model branches or closes loops: it is contracted"
+}
+
 @test "explain measures what leaving out saves, stores and draws it" {
     scenario
     works mimdsim explain small.yaml --measure

@@ -81,8 +81,8 @@ static void compare(const struct kernel_job *job, struct arena *a, struct evalua
     v->qdd_error = relative_error(m->nu, job->qdd, reference);
 }
 
-struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                 struct arena *a)
+struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                    struct job_omit omit, struct arena *a)
 {
     struct err e = {0};
     struct evaluation v = {0};
@@ -90,7 +90,7 @@ struct evaluation evaluate_model(const struct run_spec *spec, const struct model
                                       ? kernel_find_planar(spec->kernel.name, spec->kernel.precision)
                                       : kernel_find_precision(spec->kernel.name, spec->kernel.precision);
     assert_non_null(k);
-    struct kernel_job job = {.spec = spec, .model = model, .state = state, .nrank = spec->nrank};
+    struct kernel_job job = {.spec = spec, .model = model, .state = state, .omit = omit, .nrank = spec->nrank};
     const int nu = model ? model->nu : 0, nq = model ? model->nq : 0;
     if (k->does_inverse) job.tau = v.tau = TAKE(a, nu + 1, double);
     if (k->does_forward) job.qdd = v.qdd = TAKE(a, nu + 1, double);
@@ -120,6 +120,12 @@ struct evaluation evaluate_model(const struct run_spec *spec, const struct model
     }
     if (k->needs_model && spec->kernel.steps == 0) compare(&job, a, &v);
     return v;
+}
+
+struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                 struct arena *a)
+{
+    return evaluate_omitting(spec, model, state, (struct job_omit){0}, a);
 }
 
 struct evaluation evaluate(const struct run_spec *spec, struct arena *a)

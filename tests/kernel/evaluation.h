@@ -27,7 +27,11 @@ struct run_spec evaluation_spec(const char *name, int n, int P);
  * ends, nothing is left unread and the kernel accepts the spec. */
 struct evaluation evaluate(const struct run_spec *spec, struct arena *a);
 
-/* evaluate_model: the same for a given model and state. */
+/* evaluate_omitting: the same for a given model and state, without what the job is to leave out. */
+struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                    struct job_omit omit, struct arena *a);
+
+/* evaluate_model: the same, and nothing is left out. */
 struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
                                  struct arena *a);
 

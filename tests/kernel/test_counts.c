@@ -144,6 +144,45 @@ static void estimates_equal_what_is_sent(void **state)
         }
 }
 
+/* At rest, with and without gravity: all counts fall, and the estimates know. */
+static void estimates_know_what_is_left_out(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {7, 7}, {64, 64}, {61, 16}};
+    static const char *const names[] = {"inverse", "forward", "dynamics"};
+    for (int variant = 0; variant < 4 * 3 * 8; variant++) {
+        const int *size = sizes[variant % 4], bits = variant / 12;
+        struct run_spec spec = evaluation_spec(names[variant / 4 % 3], size[0], size[1]);
+        spec.model.rate = 0;
+        spec.model.gravity[2] = bits & 1 ? 0 : -9.81;
+        spec.kernel.formulation = bits & 2 ? FORMULATION_DIRECT : FORMULATION_PAPER;
+        spec.kernel.composites_incoming = bits & 4;
+        spec.kernel.solver = SOLVER_PARTITION;
+        struct arena *a = arena_create();
+        struct err err = {0};
+        const struct kernel_type *kernel = kernel_find(spec.kernel.name);
+        const struct model *m = model_build(&spec.model, a, &err);
+        const struct job_omit omit = {.velocity = true, .load = true, .base = bits & 1, .bias = bits & 1};
+        const struct evaluation whole = evaluate(&spec, a);
+        const struct evaluation lean = evaluate_omitting(&spec, m, state_make(m, &spec.model, a), omit, a);
+        struct kernel_estimate e;
+        kernel->estimate(&spec, m, &omit, &e);
+        assert_int_equal((int64_t)e.messages, lean.counts.messages);
+        assert_int_equal((int64_t)e.bytes, lean.counts.bytes);
+        assert_true(lean.counts.messages <= whole.counts.messages && lean.counts.bytes <= whole.counts.bytes);
+        struct work all = {0};
+        for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) work_add(&all, &lean.counts.stage_work[stage]);
+        const double done = (double)operations(&all);
+        if (size[0] > 1 && !(e.flops > 0.9 * done && e.flops < 1.1 * done))
+            fail_msg("variant %d: %g flops, not %g", variant, e.flops, done);
+        for (int i = 0; i < m->nu; i++) {
+            if (lean.qdd) assert_true(lean.qdd[i] == whole.qdd[i]);
+            if (lean.tau) assert_true(lean.tau[i] == whole.tau[i]);
+        }
+        arena_destroy(a);
+    }
+}
+
 static void estimates_of_all_rows_and_of_trees(void **state)
 {
     (void)state;
@@ -186,6 +225,7 @@ int main(void)
         cmocka_unit_test(the_solvers_work_adds_up),
         cmocka_unit_test(eliminating_a_row_costs_915_385_and_212),
         cmocka_unit_test(estimates_equal_what_is_sent),
+        cmocka_unit_test(estimates_know_what_is_left_out),
         cmocka_unit_test(estimates_of_all_rows_and_of_trees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
