@@ -5,6 +5,7 @@
 
 #include "kernel/assembly.h"
 #include "kernel/blocks.h"
+#include "kernel/implicit.h"
 #include "kernel/tags.h"
 #include "linalg/dense.h"
 
@@ -54,7 +55,8 @@ struct chain_shared *chain_shared_make(const struct kernel_job *job, struct aren
     s->body = bodies_make(model, a);
     s->layout = (struct row_layout){.nrow = n, .nrank = nrank, .size = size, .interface = interface};
     for (int i = 0; i < n; i++) {
-        size[i] = (unsigned char)(SPACE - s->body[i].d);
+        const bool soft = spring_resistance(&s->body[i], implicit_step(job)) > 0;
+        size[i] = (unsigned char)(soft ? SPACE : SPACE - s->body[i].d);
         if (size[i] > s->layout.largest) s->layout.largest = size[i];
         picked = picked && body_picks(&s->body[i]);
     }

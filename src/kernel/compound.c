@@ -33,10 +33,30 @@ void packed_multiply(const real *S, const real *x, real *y, struct work *w)
     w->call++;
 }
 
-bool joint_compliance(const struct subspace *s, const real *Z, real *N, struct work *w)
+/* soft_compliance: N = (Z + H s^-1 H^T)^-1. */
+static bool soft_compliance(const struct joint_view *v, const real *Z, real *N, struct work *w)
 {
+    real G[PACKED], inverse[SQUARE] = {0}, h[SPACE];
+    memcpy(G, Z, sizeof G);
+    for (int k = 0; k < v->s->d; k++) {
+        subspace_column(v->s, k, h);
+        for (int i = 0; i < SPACE; i++)
+            for (int j = 0; j <= i; j++) G[packed_index(i, j)] += h[i] * h[j] / v->resistance;
+    }
+    if (!dense_factor(SPACE, G, G, w)) return false;
+    for (int i = 0; i < SPACE; i++) inverse[(SPACE + 1) * i] = 1;
+    dense_solve(SPACE, SPACE, G, inverse, w);
+    pack(inverse, N);
+    w->flop += (uint64_t)(v->s->d * 2 * PACKED);
+    return true;
+}
+
+bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct work *w)
+{
+    const struct subspace *s = v->s;
     const int c = s->c;
     real full[SQUARE], projected[SQUARE], G[PACKED], columns[SQUARE], spread[SQUARE];
+    if (v->resistance > 0) return soft_compliance(v, Z, N, w);
     unpack(Z, full);
     subspace_project(s, true, full, s, true, projected);
     for (int i = 0; i < c; i++)
@@ -100,7 +120,7 @@ bool compound_rake(const struct joint_view *v, int m, const struct compound *lea
 {
     real full[SQUARE], moved[SQUARE], packed[PACKED], carried[SPACE];
     real *N = joint, *h = joint + PACKED;
-    if (!joint_compliance(v->s, leaf->p11, N, w)) return false;
+    if (!joint_compliance(v, leaf->p11, N, w)) return false;
     joint_force(v, m, leaf->p11, N, leaf->beta1, NULL, h, w);
     unpack(N, full);
     move_forces(v->x, full, moved, w); /* N X^T */
@@ -194,7 +214,7 @@ bool compound_merge(const struct joint_view *v, int m, struct compound *u, const
     real *h = record, *M1 = record + SPACE * m, *M3 = M1 + SQUARE;
     real entry[SPACE], moved[SPACE];
     pulled_back(v->x, below->p11, u->p22, Z, w);
-    if (!joint_compliance(v->s, Z, N, w)) return false;
+    if (!joint_compliance(v, Z, N, w)) return false;
     for (int j = 0; j < m; j++) xform_motion(h + SPACE * j, v->x, u->beta2 + SPACE * j);
     w->flop += (uint64_t)(m * XFORM_MOTION_FLOP);
     for (int j = 0; j < m; j++) { /* one column at a time: h holds the entries until they are used */

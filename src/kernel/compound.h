@@ -30,15 +30,17 @@ struct joint_view {
     const struct subspace *s;
     const real *active; /* (d); NULL: zero */
     const real *bias;   /* (SPACE); NULL: zero */
+    real resistance;    /* of a linearly implicit spring (implicit.h); 0: none */
 };
 
 /* packed_multiply: y (SPACE) = S x for a packed symmetric square S; y may not be x. SQUARE_VEC_FLOP. */
 #define packed_multiply SPACE_NAME(packed_multiply)
 void packed_multiply(const real *S, const real *x, real *y, struct work *w);
 
-/* joint_compliance: N (packed) = W (W^T Z W)^-1 W^T for the packed Z. False when W^T Z W is not positive definite. */
+/* joint_compliance: N (packed) = W (W^T Z W)^-1 W^T for the packed Z, with a resistance (Z + H s^-1 H^T)^-1. False when
+ * what is inverted is not positive definite. */
 #define joint_compliance SPACE_NAME(joint_compliance)
-bool joint_compliance(const struct subspace *s, const real *Z, real *N, struct work *w);
+bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct work *w);
 
 /* joint_force: h (SPACE x m): h_j = H active - N (Z H active + beta_j - entry_j - bias), active and bias for j = 0
  * only; `entry` (SPACE x m) is the acceleration of the parent's side in this frame, NULL: zero. */

@@ -8,6 +8,7 @@
 #include "kernel/chain.h"
 #include "kernel/compound.h"
 #include "kernel/extremes.h"
+#include "kernel/implicit.h"
 #include "kernel/tags.h"
 
 enum { TAG_ANCHOR = TAG_TREE + 2 };
@@ -70,7 +71,8 @@ static void given_forces(struct contraction *k)
         for (int i = 0; i < b->d; i++) tau[i] = (real)t->job->state->tau[b->u_at + i];
         if (!b->has_spring) continue;
         body_spring(b, t->q + t->q_at[l], t->u + t->u_at[l], tau);
-        t->work.flop += BODY_SPRING_FLOP;
+        spring_force(b, implicit_step(t->job), t->u + t->u_at[l], tau);
+        t->work.flop += BODY_SPRING_FLOP + (steps_implicitly(t->job) ? 3 : 0);
     }
 }
 
@@ -275,7 +277,10 @@ static bool refine(struct contraction *k, struct refinement *course)
     loop_forces(k, k->residual_bias);
     tree_force(t, k->active, k->residual_bias);
     for (int i = 0; i < t->nu; i++) k->active[i] = k->tau[i] - k->active[i];
-    t->work.flop += (uint64_t)t->nu;
+    for (int l = 0; l < t->n && steps_implicitly(t->job); l++)
+        for (int i = t->u_at[l]; i < t->u_at[l] + tree_body(t, l)->d; i++)
+            k->active[i] -= spring_resistance(tree_body(t, l), implicit_step(t->job)) * k->answer[i];
+    t->work.flop += (uint64_t)(steps_implicitly(t->job) ? 3 * t->nu : t->nu);
     tree_report(t);
     k->m = 1;
     k->given = (struct contraction_given){.active = k->active};

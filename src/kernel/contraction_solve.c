@@ -4,6 +4,7 @@
 
 #include "kernel/compound.h"
 #include "kernel/contraction.h"
+#include "kernel/implicit.h"
 #include "kernel/tags.h"
 #include "linalg/dense.h"
 
@@ -24,6 +25,7 @@ static struct joint_view own_joint(const struct contraction *k, int body)
     const int l = local_of(k, body);
     const struct tree *t = &k->tree;
     struct joint_view v = {.x = &t->pose[l].x, .s = &t->pose[l].s};
+    v.resistance = spring_resistance(tree_body(t, l), implicit_step(t->job));
     if (k->given.active) v.active = k->given.active + t->u_at[l];
     if (k->given.bias) v.bias = k->given.bias + SPACE * l;
     return v;
@@ -113,7 +115,8 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
         body_place(b, q, &pose);
         t->work.flop += (uint64_t)body_cost(b)->place;
         t->work.trig += (uint64_t)body_cost(b)->place_trig;
-        joint = (struct joint_view){&pose.x, &pose.s, nactive ? active : NULL, nbias ? bias : NULL};
+        joint = (struct joint_view){&pose.x, &pose.s, nactive ? active : NULL, nbias ? bias : NULL,
+                                    spring_resistance(b, implicit_step(t->job))};
         below = compound_at(k->message, m);
     }
     struct compound u = own_compound(k, op->into);
@@ -139,7 +142,7 @@ static void solve_roots(struct contraction *k)
             t->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
         }
         seen.bias = bias;
-        check(k, joint_compliance(joint.s, c.p11, N, &t->work));
+        check(k, joint_compliance(&joint, c.p11, N, &t->work));
         joint_force(&seen, k->m, c.p11, N, c.beta1, NULL, columns(k->f1, k->room, local_of(k, v)), &t->work);
         memset(columns(k->f2, k->room, local_of(k, v)), 0, (size_t)(SPACE * k->m) * sizeof(real));
     }

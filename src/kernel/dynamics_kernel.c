@@ -38,6 +38,17 @@ static bool accepts_inverse(const struct run_spec *spec, const struct model *mod
     return true;
 }
 
+static bool accepts_implicit(const struct run_spec *spec, const struct model *model, struct err *e)
+{
+    const struct kernel_spec *k = &spec->kernel;
+    if (k->formulation != FORMULATION_DIRECT)
+        return err_set(e, ERR_CONFIG, "linearly implicit steps exist in the direct formulation: kernel.formulation");
+    if (model->nloop > 0) return err_set(e, ERR_CONFIG, "linearly implicit steps exist for open systems only");
+    if (kernel_branches(spec, model) && k->inner_refinements > 0)
+        return err_set(e, ERR_CONFIG, "linearly implicit steps of trees have no inner refinement: take an outer one");
+    return true;
+}
+
 static bool accepts_forward(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     const struct kernel_spec *k = &spec->kernel;
@@ -46,7 +57,7 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
         return err_set(e, ERR_CONFIG, "a body has no invertible inertia: the constraint force algorithm needs one");
     if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
-    return true;
+    return k->steps == 0 || k->step != STEP_LINEARLY_IMPLICIT || accepts_implicit(spec, model, e);
 }
 
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)

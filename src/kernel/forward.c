@@ -6,6 +6,7 @@
 
 #include "kernel/assembly.h"
 #include "kernel/extremes.h"
+#include "kernel/forward_rows.h"
 #include "kernel/tags.h"
 
 void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank)
@@ -16,6 +17,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     const bool refine = spec->outer_refinements > 0;
     f->direct = spec->formulation == FORMULATION_DIRECT;
     f->watch = job->residual || refine;
+    f->step = implicit_step(job);
     chain_carve(ch, c, job, rank, true, refine || !f->direct);
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
     f->tau = CARVE(c, nu, real);
@@ -47,13 +49,6 @@ void forward_set(struct forward *f, struct comm *c)
 
 static bool has_left(const struct forward *f) { return f->chain.lo > 0; }
 static bool has_right(const struct forward *f) { return f->chain.hi < f->chain.n; }
-static const struct body *body_of(const struct forward *f, int i) { return &f->chain.shared->body[i]; }
-
-/* subspace_of: H and W of joint i, own or beside the block. */
-static const struct subspace *subspace_of(const struct forward *f, int i)
-{
-    return i < f->chain.lo ? f->left : &chain_pose(&f->chain, i)->s;
-}
 
 /* exchange_joints: coordinates of the edge joints both ways; the neighbours' subspaces and transform from them. */
 static void exchange_joints(struct forward *f)
@@ -62,10 +57,10 @@ static void exchange_joints(struct forward *f)
     struct comm *c = ch->comm;
     const int k = comm_rank(c), last = ch->hi - 1;
     const int64_t size = sizeof(real);
-    if (has_left(f)) comm_send(c, k - 1, TAG_JOINT, ch->q, body_of(f, ch->lo)->nq * size);
-    if (has_right(f)) comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last), body_of(f, last)->nq * size);
+    if (has_left(f)) comm_send(c, k - 1, TAG_JOINT, ch->q, forward_body(f, ch->lo)->nq * size);
+    if (has_right(f)) comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last), forward_body(f, last)->nq * size);
     if (has_right(f)) {
-        const struct body *b = body_of(f, ch->hi);
+        const struct body *b = forward_body(f, ch->hi);
         const struct joint_cost *cost = body_cost(b);
         comm_recv(c, k + 1, TAG_JOINT, f->message, b->nq * size);
         body_place(b, f->message, chain_pose(ch, ch->hi));
@@ -76,7 +71,7 @@ static void exchange_joints(struct forward *f)
             transform_expand(true, ch->matrix + SQUARE * (ch->hi - ch->lo), &chain_pose(ch, ch->hi)->x, &ch->work);
     }
     if (has_left(f)) {
-        const struct body *b = body_of(f, ch->lo - 1);
+        const struct body *b = forward_body(f, ch->lo - 1);
         comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
         body_subspace(b, f->message, f->left);
         if (!f->left->pick) {
@@ -91,13 +86,14 @@ static void exchange_joints(struct forward *f)
 static void given_forces(struct forward *f)
 {
     struct chain *ch = &f->chain;
-    const int first = body_of(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    const int first = forward_body(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
     for (int k = 0; k < nu; k++) f->tau[k] = (real)ch->job->state->tau[first + k];
     for (int i = ch->lo; i < ch->hi; i++) {
-        const struct body *b = body_of(f, i);
+        const struct body *b = forward_body(f, i);
         if (!b->has_spring) continue;
         body_spring(b, ch->q + chain_q_at(ch, i), ch->u + chain_u_at(ch, i), f->tau + chain_u_at(ch, i));
-        ch->work.flop += BODY_SPRING_FLOP;
+        spring_force(b, f->step, ch->u + chain_u_at(ch, i), f->tau + chain_u_at(ch, i));
+        ch->work.flop += BODY_SPRING_FLOP + (f->step > 0 ? 3 : 0);
     }
 }
 
@@ -108,9 +104,11 @@ static void assemble_direct(struct forward *f)
     for (int i = ch->lo; i < ch->hi; i++) {
         real D[SQUARE], E[SQUARE], A[SQUARE];
         assembly_operators(ch, i, D, E);
-        assembly_project(ch, subspace_of(f, i), D, subspace_of(f, i), A);
-        assembly_pack(subspace_of(f, i)->c, A, subspace_of(f, i)->c, blocks_row_D(&f->blocks, i));
-        if (i > 0) assembly_project(ch, subspace_of(f, i), E, subspace_of(f, i - 1), blocks_row_L(&f->blocks, i));
+        forward_project(f, i, D, i, A);
+        const real resistance = forward_resistance(f, i);
+        for (int k = 0; k < forward_body(f, i)->d && resistance > 0; k++) A[(SPACE + 1) * k] += 1 / resistance;
+        assembly_pack(forward_row_size(f, i), A, forward_row_size(f, i), blocks_row_D(&f->blocks, i));
+        if (i > 0) forward_project(f, i, E, i - 1, blocks_row_L(&f->blocks, i));
     }
 }
 
@@ -121,15 +119,15 @@ static void assemble_paper(struct forward *f)
     for (int i = ch->lo; i < ch->hi + has_right(f); i++) {
         real D[SQUARE], E[SQUARE], *turned = f->E + SQUARE * (i - ch->lo);
         const bool own = i < ch->hi;
-        const struct subspace *s = subspace_of(f, i);
+        const struct subspace *s = forward_subspace(f, i);
         assembly_operators(ch, i, own ? D : NULL, E);
-        if (i > 0) assembly_turn(ch, s, E, subspace_of(f, i - 1), turned);
+        if (i > 0) assembly_turn(ch, s, E, forward_subspace(f, i - 1), turned);
         if (!own) continue;
         real *diagonal = f->D + SQUARE * (i - ch->lo), *L = blocks_row_L(&f->blocks, i);
         assembly_turn(ch, s, D, s, diagonal);
         assembly_pack(s->c, diagonal + (SPACE + 1) * s->d, SPACE, blocks_row_D(&f->blocks, i));
         if (i == 0) continue;
-        const int before = subspace_of(f, i - 1)->d, nbefore = SPACE - before;
+        const int before = forward_subspace(f, i - 1)->d, nbefore = SPACE - before;
         for (int r = 0; r < s->c; r++)
             memcpy(L + r * nbefore, turned + SPACE * (s->d + r) + before, (size_t)nbefore * sizeof(real));
     }
@@ -139,15 +137,8 @@ static void assemble_paper(struct forward *f)
 static void active_force(struct forward *f, int i, const real *x, real *force)
 {
     screw_zero(force);
-    subspace_h(subspace_of(f, i), x, force);
-    f->chain.work.flop += (uint64_t)body_cost(body_of(f, i))->h;
-}
-
-/* add_reaction: F += W x for joint i, x (c). */
-static void add_reaction(struct forward *f, int i, const real *x, real *force)
-{
-    subspace_w(subspace_of(f, i), x, force);
-    f->chain.work.flop += (uint64_t)body_cost(body_of(f, i))->w;
+    subspace_h(forward_subspace(f, i), x, force);
+    f->chain.work.flop += (uint64_t)body_cost(forward_body(f, i))->h;
 }
 
 /* begin_forces: F = H x of own joints and, by messages, of those beside the block; direct: the gain of body lo-1 comes
@@ -156,20 +147,21 @@ static void begin_forces(struct forward *f, const real *x, bool gain)
 {
     struct chain *ch = &f->chain;
     struct comm *c = ch->comm;
-    const int k = comm_rank(c), last = ch->hi - 1, d = body_of(f, last)->d;
+    const int k = comm_rank(c), last = ch->hi - 1, d = forward_body(f, last)->d;
     const int64_t size = sizeof(real);
+    f->active = x;
     for (int i = ch->lo; i < ch->hi; i++) active_force(f, i, x + chain_u_at(ch, i), chain_at(ch, f->force, i));
     chain_report(ch);
-    if (has_left(f)) comm_send(c, k - 1, TAG_ACTIVE, x, body_of(f, ch->lo)->d * size);
+    if (has_left(f)) comm_send(c, k - 1, TAG_ACTIVE, x, forward_body(f, ch->lo)->d * size);
     if (has_right(f)) {
         memcpy(f->message, x + chain_u_at(ch, last), (size_t)d * sizeof(real));
         if (gain) screw_copy(f->message + d, chain_at(ch, f->gain, last));
         comm_send(c, k + 1, TAG_ACTIVE, f->message, (d + (gain ? SPACE : 0)) * size);
-        comm_recv(c, k + 1, TAG_ACTIVE, f->message, body_of(f, ch->hi)->d * size);
+        comm_recv(c, k + 1, TAG_ACTIVE, f->message, forward_body(f, ch->hi)->d * size);
         active_force(f, ch->hi, f->message, f->force_right);
     }
     if (!has_left(f)) return;
-    const int before = body_of(f, ch->lo - 1)->d;
+    const int before = forward_body(f, ch->lo - 1)->d;
     comm_recv(c, k - 1, TAG_ACTIVE, f->message, (before + (gain ? SPACE : 0)) * size);
     active_force(f, ch->lo - 1, f->message, f->force_left);
     if (gain) screw_copy(f->gain_left, f->message + before);
@@ -183,12 +175,13 @@ static void add_reactions(struct forward *f)
     const int k = comm_rank(c);
     const int64_t size = sizeof(real);
     if (has_left(f))
-        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), (SPACE - body_of(f, ch->lo)->d) * size);
-    for (int i = ch->lo; i < ch->hi; i++) add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
-    if (has_left(f)) add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
+        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), forward_row_size(f, ch->lo) * size);
+    for (int i = ch->lo; i < ch->hi; i++)
+        forward_add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
+    if (has_left(f)) forward_add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
     if (!has_right(f)) return;
-    comm_recv(c, k + 1, TAG_REACTION, f->message, (SPACE - body_of(f, ch->hi)->d) * size);
-    add_reaction(f, ch->hi, f->message, f->force_right);
+    comm_recv(c, k + 1, TAG_REACTION, f->message, forward_row_size(f, ch->hi) * size);
+    forward_add_reaction(f, ch->hi, f->message, f->force_right);
 }
 
 /* body_acceleration: y = Phi_i (F_i - X_{i+1} F_{i+1} + gain). */
@@ -204,7 +197,7 @@ static void body_acceleration(struct forward *f, int i, const real *force, const
         ch->work.flop += SCREW_ADD_FLOP;
     }
     if (gain) screw_add(net, gain);
-    body_accelerate(body_of(f, i), net, y);
+    body_accelerate(forward_body(f, i), net, y);
     ch->work.flop += (uint64_t)(BODY_ACCELERATE_FLOP + (gain ? SCREW_ADD_FLOP : 0));
     ch->work.call++;
 }
@@ -230,7 +223,6 @@ static void operator_form(struct forward *f, bool terms)
     else screw_copy(before, ch->shared->base);
     for (int i = lo; i < hi; i++) {
         real *z = chain_at(ch, f->z, i), reaction[SPACE];
-        const struct subspace *s = subspace_of(f, i);
         body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL,
                           y);
         screw_copy(z, y);
@@ -248,22 +240,23 @@ static void operator_form(struct forward *f, bool terms)
         }
         screw_copy(before, y);
         if (!watch) continue;
-        subspace_w_transposed(s, z, reaction);
-        residual = largest_size(residual, s->c, reaction);
+        forward_violation(f, i, z, reaction);
+        residual = largest_size(residual, forward_row_size(f, i), reaction);
     }
     f->residual = scale > 0 ? residual / scale : residual;
     f->residual_scale = scale;
 }
 
-/* right_hand_side: r = -W^T z. */
+/* right_hand_side: r = - what the joints' rows are violated by. */
 static void right_hand_side(struct forward *f)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
         real *r = blocks_row_r(&f->blocks, i);
-        subspace_w_transposed(subspace_of(f, i), chain_at(ch, f->z, i), r);
-        for (int k = 0; k < subspace_of(f, i)->c; k++) r[k] = -r[k];
-        ch->work.flop += (uint64_t)body_cost(body_of(f, i))->w_transposed;
+        forward_violation(f, i, chain_at(ch, f->z, i), r);
+        for (int k = 0; k < forward_row_size(f, i); k++) r[k] = -r[k];
+        ch->work.flop += (uint64_t)forward_violation_flops(f, i);
+        ch->work.div += forward_resistance(f, i) > 0;
     }
 }
 
@@ -277,7 +270,7 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
     for (int j = i - 1; j <= i + 1; j++) {
         if (j < 0 || j >= ch->n) continue;
         real x[SPACE];
-        const struct subspace *s = subspace_of(f, j);
+        const struct subspace *s = forward_subspace(f, j);
         const real *force = j < ch->lo ? f->force_left : j == ch->hi ? f->force_right : chain_at(ch, f->force, j);
         assembly_turn_vector(ch, s, force, x);
         const int n = active ? s->d : SPACE;
@@ -296,7 +289,7 @@ static void paper_residual(struct forward *f)
     const struct work before = ch->work;
     real residual = 0, scale = 0, y[SPACE];
     for (int i = ch->lo; i < ch->hi; i++) {
-        const int d = subspace_of(f, i)->d;
+        const int d = forward_subspace(f, i)->d;
         multiply_rows(f, i, d, SPACE, false, y);
         residual = largest_size(residual, SPACE - d, y + d);
         body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), NULL, y);
@@ -331,8 +324,8 @@ static void joint_accelerations(struct forward *f, real *ud)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
-        subspace_h_transposed(subspace_of(f, i), chain_at(ch, f->z, i), ud + chain_u_at(ch, i));
-        ch->work.flop += (uint64_t)body_cost(body_of(f, i))->h_transposed;
+        subspace_h_transposed(forward_subspace(f, i), chain_at(ch, f->z, i), ud + chain_u_at(ch, i));
+        ch->work.flop += (uint64_t)body_cost(forward_body(f, i))->h_transposed;
     }
     chain_report(ch);
 }
@@ -360,7 +353,7 @@ static void paper_solution(struct forward *f, const real *active)
     real y[SPACE];
     begin_forces(f, active, false);
     for (int i = ch->lo; i < ch->hi; i++) {
-        const int d = subspace_of(f, i)->d;
+        const int d = forward_subspace(f, i)->d;
         real *r = blocks_row_r(&f->blocks, i);
         multiply_rows(f, i, d, SPACE, true, y);
         for (int k = d; k < SPACE; k++) r[k - d] = -y[k];
@@ -380,8 +373,8 @@ static void paper_solution(struct forward *f, const real *active)
         add_reactions(f);
     }
     for (int i = ch->lo; i < ch->hi; i++) {
-        multiply_rows(f, i, 0, subspace_of(f, i)->d, false, y);
-        memcpy(f->ud + chain_u_at(ch, i), y, (size_t)subspace_of(f, i)->d * sizeof(real));
+        multiply_rows(f, i, 0, forward_subspace(f, i)->d, false, y);
+        memcpy(f->ud + chain_u_at(ch, i), y, (size_t)forward_subspace(f, i)->d * sizeof(real));
     }
     chain_report(ch);
     if (f->watch) paper_residual(f);
@@ -413,7 +406,10 @@ static bool refine(struct forward *f, struct refinement *course)
     comm_stage(ch->comm, STAGE_FORCE);
     chain_force(ch, rest);
     for (int k = 0; k < nu; k++) rest[k] = f->tau[k] - rest[k];
-    ch->work.flop += (uint64_t)nu;
+    for (int i = ch->lo; i < ch->hi && f->step > 0; i++)
+        for (int k = 0; k < forward_body(f, i)->d; k++)
+            rest[chain_u_at(ch, i) + k] -= forward_resistance(f, i) * f->ud[chain_u_at(ch, i) + k];
+    ch->work.flop += (uint64_t)(f->step > 0 ? 3 * nu : nu);
     comm_stage(ch->comm, STAGE_ASSEMBLY);
     begin_forces(f, rest, false);
     solve_operator_form(f, false, true);
@@ -462,7 +458,7 @@ static void store(const struct forward *f)
 {
     const struct chain *ch = &f->chain;
     const struct kernel_job *job = ch->job;
-    const int k = comm_rank(ch->comm), first = body_of(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    const int k = comm_rank(ch->comm), first = forward_body(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
     for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
     if (job->residual) job->residual[k] = (double)f->residual;
     if (job->residual_scale) job->residual_scale[k] = (double)f->residual_scale;

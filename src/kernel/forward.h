@@ -18,6 +18,8 @@ struct forward {
     struct subspace *left; /* of joint lo-1 */
     bool direct;
     bool watch; /* somebody wants the residual */
+    real step;                      /* h of linearly implicit steps; 0: springs are explicit (implicit.h) */
+    const real *active;             /* own joints: the forces that the present solution began with */
     real *tau;                      /* own joints: given forces and springs */
     real *ud;                       /* own joints: the answer */
     real *force;                    /* own bodies (SPACE): F in the body's frame */

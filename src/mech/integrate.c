@@ -49,6 +49,16 @@ static bool step_semi_implicit(struct integrator *it)
     return true;
 }
 
+static bool step_linearly_implicit(struct integrator *it)
+{
+    it->evaluations++;
+    if (it->d->model->nloop > 0 || !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
+        return false;
+    combine(it->d->nu, it->u, it->h, it->a, it->u);
+    drift(it);
+    return true;
+}
+
 static bool step_kdk(struct integrator *it)
 {
     int n = it->d->nu;
@@ -119,6 +129,7 @@ bool integrator_step(struct integrator *it)
     switch (it->rule) {
     case STEP_KDK: return step_kdk(it);
     case STEP_RK4: return step_rk4(it);
+    case STEP_LINEARLY_IMPLICIT: return step_linearly_implicit(it);
     case STEP_SEMI_IMPLICIT: break;
     }
     return step_semi_implicit(it);

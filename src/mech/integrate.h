@@ -14,6 +14,13 @@
 #define dynamics_forward REAL_NAME(dynamics_forward)
 bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 
+/* implicit_forward: ud that gives velocities at the end of a step of h when spring and damper forces are those at its
+ * end, linearised: (M + s) ud = tau - k (q - rest + h u) - c u - xi, s = h c + h^2 k, physics (9.0). Open systems only.
+ * Returns false when a pivot is not positive. */
+#define implicit_forward REAL_NAME(implicit_forward)
+bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
+                      struct work *w);
+
 struct integrator {
     struct dynamics *d;
     enum step_rule rule;
@@ -34,7 +41,8 @@ struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real 
  *   semi-implicit  u += h a(q, u); q += h N(q) u                                                     order 1
  *   kdk            u += h/2 a0; q += h N u; a1 = a(q, u + h/2 a0); u += h/2 a1; a1 is the next a0    order 2
  *   rk4            the classical Runge-Kutta method on (q, u)                                        order 4
- *   Returns false when the dynamics broke down. */
+ *   linearly-implicit  semi-implicit with a from implicit_forward: stable whatever k and c             order 1
+ *   Returns false when the dynamics broke down, or a closed system is to be stepped implicitly. */
 #define integrator_step REAL_NAME(integrator_step)
 bool integrator_step(struct integrator *it);
 

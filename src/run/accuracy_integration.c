@@ -26,6 +26,7 @@ struct climb {
     struct ending begin, reference;
     double uncertainty;     /* of the reference's state */
     int64_t evaluation_ps;  /* least predicted time of one evaluation */
+    int64_t implicit_ps;    /* of one linearly implicit step on as many processors; -1: there is none */
     int processors;         /* and on how many */
 };
 
@@ -84,6 +85,29 @@ static void fastest_evaluation(struct climb *c)
         if (better) c->evaluation_ps = t.makespan_ps, c->processors = P;
         arena_release(l->arena, mark);
     }
+}
+
+/* One implicit step: two less one, so that what comes once is not in it. */
+static void implicit_evaluation(struct climb *c)
+{
+    struct ladder *l = c->l;
+    struct run_spec spec = l->spec;
+    int64_t ps[2] = {-1, -1};
+    spec.kernel.precision = PRECISION_DOUBLE;
+    spec.kernel.formulation = FORMULATION_DIRECT;
+    spec.kernel.step = STEP_LINEARLY_IMPLICIT;
+    spec.kernel.step_size = c->duration * l->model->second / MOST_FIXED_STEPS;
+    text_copy(spec.kernel.name, sizeof spec.kernel.name, "forward");
+    spec.record = (struct record_spec){0};
+    spec.nrank = c->processors;
+    for (int k = 0; k < 2 && c->processors > 0; k++) {
+        struct arena_mark mark = arena_mark(l->arena);
+        spec.kernel.steps = k + 1;
+        struct trial t = trial_run(&spec, l->model, l->state, l->arena);
+        if (t.answered) ps[k] = t.makespan_ps;
+        arena_release(l->arena, mark);
+    }
+    c->implicit_ps = ps[0] >= 0 && ps[1] >= 0 ? ps[1] - ps[0] : -1;
 }
 
 /* Largest difference of x and reference over the largest number that the reference has at the begin or the end: what
@@ -168,8 +192,8 @@ static void library_rung(struct climb *c, const char *stepper, double tolerance,
 
 static void own_rung(struct climb *c, enum step_rule rule, int steps)
 {
-    static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4"};
-    static const int evaluations[] = {1, 1, 4};
+    static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4", "own implicit"};
+    static const int evaluations[] = {1, 1, 4, 1};
     struct ladder *l = c->l;
     struct arena_mark mark = arena_mark(l->arena);
     struct ending x = {.s = copy_of(l->model, l->state, l->arena)};
@@ -180,7 +204,10 @@ static void own_rung(struct climb *c, enum step_rule rule, int steps)
     bool good = dynamics_type_of(PRECISION_DOUBLE)
                     ->advance(l->model, x.s, rule, c->duration / steps, steps, l->arena, &w);
     long count = (long)steps * evaluations[rule] + (rule == STEP_KDK);
+    const int64_t explicit_ps = c->evaluation_ps;
+    if (rule == STEP_LINEARLY_IMPLICIT) c->evaluation_ps = c->implicit_ps;
     add_rows(c, name[rule], rung, good ? &x : NULL, count, host_seconds() - begin, "the dynamics broke down");
+    c->evaluation_ps = explicit_ps;
     arena_release(l->arena, mark);
 }
 
@@ -225,9 +252,10 @@ void ladder_integration(struct ladder *l)
     struct climb c = {.l = l, .duration = duration_of(l)};
     if (!reference_find(&c)) return;
     fastest_evaluation(&c);
+    implicit_evaluation(&c);
     for (const char *const *s = trajectory_steppers(); *s; s++)
         library_rungs(&c, *s);
-    for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++)
+    for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_LINEARLY_IMPLICIT; rule++)
         for (int steps = LEAST_FIXED_STEPS; steps <= MOST_FIXED_STEPS / (rule == STEP_RK4 ? 4 : 1); steps *= 4)
             own_rung(&c, (enum step_rule)rule, steps);
 }

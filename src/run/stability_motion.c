@@ -9,7 +9,10 @@
 #include "run/stability_scene.h"
 #include "run/trial.h"
 
-enum { STEPS = 400, MOST_EVALUATIONS = 300000, SHORT_STEPS = 32, MOST_MOVED = 8192 };
+enum { STEPS = 400, MOST_EVALUATIONS = 300000, SHORT_STEPS = 32, MOST_MOVED = 8192, MOST_OWN = 40000 };
+
+/* Steps [model's time] longer than this are not tried. */
+#define LONGEST 10.0
 
 static struct state copy_of(const struct model *m, const struct state *s, struct arena *a)
 {
@@ -41,11 +44,12 @@ static bool is_stable(const struct model *m, const struct state *s, enum step_ru
     return isfinite(after) && after < before + room;
 }
 
-/* By bisection of the logarithm, to 2%. 0: none of 1e-12 .. 1. */
+/* By bisection of the logarithm, to 2%. 0: none of 1e-12 .. LONGEST. */
 static double largest_step(const struct model *m, const struct state *s, enum step_rule rule, struct arena *a)
 {
-    double low = 1e-12, high = 0.1;
+    double low = 1e-12, high = LONGEST;
     if (!is_stable(m, s, rule, low, a)) return 0;
+    if (is_stable(m, s, rule, high, a)) return high;
     while (high / low > 1.02) {
         double h = sqrt(low * high);
         if (is_stable(m, s, rule, h, a)) low = h;
@@ -54,33 +58,61 @@ static double largest_step(const struct model *m, const struct state *s, enum st
     return low;
 }
 
+/* Simulated seconds of `steps` time steps of the parallel kernel, a body a processor. NaN: it cannot. */
+static double machine_time(const struct model *m, const struct state *s, enum step_rule rule, int steps, double h,
+                           struct arena *a)
+{
+    struct arena_mark mark = arena_mark(a);
+    struct run_spec spec = {.machine = trial_machine(m->nbody), .nrank = m->nbody};
+    spec.kernel = (struct kernel_spec){.name = "forward", .formulation = FORMULATION_DIRECT, .solver = SOLVER_CR,
+                                       .composites_incoming = true, .steps = steps, .step = rule,
+                                       .step_size = h * m->second};
+    struct trial t = trial_run(&spec, m, s, a);
+    arena_release(a, mark);
+    return t.answered ? (double)t.makespan_ps * 1e-12 : NAN;
+}
+
+/* Error of `steps` steps; their end in *end. INFINITY: broke down. */
+static double error_of(const struct model *m, const struct state *s, enum step_rule rule, double duration,
+                       double steps, const struct state *reference, struct state *end, struct arena *a)
+{
+    struct work w = {0};
+    *end = copy_of(m, s, a);
+    bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, end, rule, duration / steps, (int)steps, a, &w);
+    if (!good) return INFINITY;
+    return fmax(trial_error(end->q, reference->q, m->nq), trial_error(end->qd, reference->qd, m->nu));
+}
+
+/* The largest stable step, then as many steps, from half of that on, as an error of 1% takes. */
 static void own_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
                     enum step_rule rule, double duration, const struct state *reference, struct arena *a)
 {
-    static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4"};
+    static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4", "own implicit"};
     struct stability_row *x = row_add(r, subject, name[rule], "double");
     x->step_s = largest_step(m, s, rule, a);
     if (x->step_s == 0) {
         text_copy(x->reason, sizeof x->reason, "no step is stable");
         return;
     }
-    double steps = ceil(2 * duration / x->step_s);
-    long evaluations = (long)steps * (rule == STEP_RK4 ? 4 : 1);
-    if (evaluations > MOST_EVALUATIONS) {
-        snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run", (double)evaluations);
+    const int each = rule == STEP_RK4 ? 4 : 1;
+    double steps = ceil(2 * duration / x->step_s), error = INFINITY;
+    if (steps * each > MOST_EVALUATIONS) {
+        snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run", steps * each);
         x->status = STABILITY_DEGRADED;
         return;
     }
-    struct state end = copy_of(m, s, a);
-    struct work w = {0};
-    bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, &end, rule, duration / steps, (int)steps, a, &w);
-    double error = NAN;
-    if (good) error = fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu));
-    x->error = isfinite(error) ? error : NAN;
+    struct state end = {0};
+    for (;; steps *= 2) {
+        error = error_of(m, s, rule, duration, steps, reference, &end, a);
+        if (error <= 0.01 || 2 * steps * each > MOST_OWN) break;
+    }
+    row_grade(x, error, false);
     x->status = error <= 0.01 ? STABILITY_OK : isfinite(error) ? STABILITY_DEGRADED : STABILITY_FAILED;
-    double E = energy_of(m, reference, a);
-    if (good) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
-    snprintf(x->reason, sizeof x->reason, "%ld evaluations at half the largest stable step", evaluations);
+    double E = energy_of(m, reference, a), h = duration / steps;
+    if (isfinite(error)) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
+    double each_s = machine_time(m, s, rule, 2, h, a) - machine_time(m, s, rule, 1, h, a);
+    snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s of the machine%s%s", steps * each, steps * each_s,
+             error <= 0.01 ? "" : "; 1% takes more", x->step_s >= LONGEST ? "; longer steps not tried" : "");
 }
 
 static void library_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
@@ -102,7 +134,8 @@ static void library_row(struct stability_report *r, const char *subject, const s
     x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
     double E = energy_of(m, reference, a);
     x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
-    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6", t.evaluations);
+    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6, %.3g s of the machine", t.evaluations,
+             (double)t.evaluations * machine_time(m, s, STEP_SEMI_IMPLICIT, 0, 0, a));
 }
 
 void stability_motion(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
@@ -121,7 +154,7 @@ void stability_motion(struct stability_report *r, const char *subject, const str
         text_copy(row_add(r, subject, tight.stepper, "double")->reason, 120, e.text);
         return;
     }
-    for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++)
+    for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_LINEARLY_IMPLICIT; rule++)
         own_row(r, subject, m, s, (enum step_rule)rule, duration, &reference, scratch);
     for (size_t k = 0; k < sizeof stepper / sizeof *stepper; k++)
         library_row(r, subject, m, s, stepper[k], duration, &reference, scratch);

@@ -14,7 +14,7 @@ static const char *const operators[] = {"structured", "dense", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
-static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", NULL};
+static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", "linearly-implicit", NULL};
 static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier", "hot-spot", "shift"};
 
 bool kernel_spec_needs_model(const struct kernel_spec *k)
@@ -165,7 +165,8 @@ static const struct field fields[] = {
      .fallback = "1 ms", .idle = idle_without_steps, .doc = "of a time step"},
     {.key = "step", .kind = FIELD_CHOICE, AT(step), .choice = step_rules, .fallback = "semi-implicit",
      .idle = idle_without_steps,
-     .doc = "semi-implicit Euler (order 1), kick-drift-kick (order 2, one evaluation a step) or Runge-Kutta 4"},
+     .doc = "semi-implicit Euler (order 1), kick-drift-kick (order 2, one evaluation a step), Runge-Kutta 4, or "
+            "linearly implicit in springs and dampers (order 1)"},
     {.key = "repeat", .kind = FIELD_INT, AT(repeat), .min = 1, .max = 1 << 30, .fallback = "1",
      .idle = idle_with_model, .doc = "benchmarks: repetitions within a run"},
     {.key = "message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(message_bytes), .min = 0, .max = 1e12,

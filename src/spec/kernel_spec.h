@@ -13,7 +13,7 @@ enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
 enum part_solver { PART_PCR, PART_CR };
 enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
 enum refinement_rule { REFINEMENT_AS_NEEDED, REFINEMENT_AS_GIVEN };
-enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4 };
+enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4, STEP_LINEARLY_IMPLICIT };
 
 struct kernel_spec {
     char name[32];               /* "inverse", "forward", "dynamics" (both), "pingpong", ...: see room kernel */

@@ -6,8 +6,10 @@
 
 #include <cmocka.h>
 #include <math.h>
+#include <string.h>
 
 #include "evaluation.h"
+#include "mech/dynamics_table.h"
 #include "mech/trajectory.h"
 
 /* distance: largest difference of the end state from a tight reference. */
@@ -112,6 +114,95 @@ static void the_number_of_ranks_does_not_matter(void **state)
     arena_destroy(a);
 }
 
+/* stiff: springs whose explicit limit is far below the step; chains of every sort and trees. */
+static struct run_spec stiff(enum model_generator generator, enum model_joint joint, int n, int P, double stiffness)
+{
+    struct run_spec s = moving(generator, joint, n, P);
+    s.model.stiffness = stiffness;
+    s.model.damping = 1e-2 * stiffness;
+    s.kernel.step = STEP_LINEARLY_IMPLICIT;
+    s.kernel.steps = 5;
+    s.kernel.step_size = 1e-2;
+    return s;
+}
+
+/* off_serial: largest difference of the end from the serial integrator's, relative to the largest rate. */
+static double off_serial(const struct run_spec *spec)
+{
+    struct arena *a = arena_create();
+    struct err e = {0};
+    struct model *m = model_build(&spec->model, a, &e);
+    assert_non_null(m);
+    struct state *s = state_make(m, &spec->model, a);
+    for (int i = 0; i < m->nbody; i++)
+        if (m->body[i].stiffness > 0) s->q[m->q_at[i]] += 0.1 * (i % 3 - 1);
+    const struct evaluation v = evaluate_model(spec, m, s, a);
+    const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
+    assert_true(t->advance(m, s, spec->kernel.step, spec->kernel.step_size / m->second, spec->kernel.steps, a, NULL));
+    double worst = 0, scale = 1;
+    for (int i = 0; i < m->nu; i++) scale = fmax(scale, fabs(s->qd[i]));
+    for (int i = 0; i < m->nq; i++) worst = fmax(worst, fabs(v.q_end[i] - s->q[i]));
+    for (int i = 0; i < m->nu; i++) worst = fmax(worst, fabs(v.qd_end[i] - s->qd[i]) / scale);
+    assert_true(v.residual < 1e-6);
+    arena_destroy(a);
+    return worst;
+}
+
+static void implicit_springs_are_those_of_the_serial_integrator(void **state)
+{
+    (void)state;
+    static const int joints[] = {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_MIXED};
+    for (int j = 0; j < 3; j++)
+        for (int solver = 0; solver <= SOLVER_THOMAS; solver++)
+            for (int P = 1; P <= 9; P += 4)
+                for (int k = 2; k <= 8; k += 3) {
+                    if (solver == SOLVER_PCR && k == 8) continue; /* nothing refines it: all digits may go */
+                    struct run_spec s = stiff(MODEL_SERIAL_CHAIN, joints[j], 9, P, pow(10, k));
+                    s.kernel.solver = solver;
+                    s.kernel.inner_refinements = solver != SOLVER_PCR;
+                    s.kernel.outer_refinements = solver == SOLVER_CR;
+                    s.kernel.operators = P == 5 ? OPERATORS_DENSE : OPERATORS_STRUCTURED;
+                    if (P == 9) s.model.base = BASE_FLOATING;
+                    const double off = off_serial(&s);
+                    if (!(off < (solver == SOLVER_PCR ? 1e-6 : 1e-9)))
+                        fail_msg("joint %d solver %d P %d k 1e%d: %.2e", j, solver, P, k, off);
+                }
+}
+
+static void implicit_springs_of_trees_too(void **state)
+{
+    (void)state;
+    static const int generators[] = {MODEL_COMB, MODEL_STAR, MODEL_DENDRIMER, MODEL_RANDOM_TREE};
+    for (int g = 0; g < 4; g++)
+        for (int P = 1; P <= 13; P += 4) {
+            struct run_spec s = stiff(generators[g], P < 9 ? JOINT_REVOLUTE : JOINT_MIXED, 13, P, 1e6);
+            s.kernel.outer_refinements = P == 5;
+            const double off = off_serial(&s);
+            if (!(off < 1e-9)) fail_msg("tree %d P %d: %.2e", g, P, off);
+        }
+}
+
+static void implicit_steps_are_refused_where_they_do_not_exist(void **state)
+{
+    (void)state;
+    const struct kernel_type *kernel = kernel_find("forward");
+    struct arena *a = arena_create();
+    for (int k = 0; k < 3; k++) {
+        struct run_spec s = stiff(k == 0   ? MODEL_SERIAL_CHAIN
+                                  : k == 1 ? MODEL_RING
+                                           : MODEL_COMB, JOINT_REVOLUTE, 9, 3, 1);
+        struct err e = {0};
+        if (k == 0) s.kernel.formulation = FORMULATION_PAPER;
+        s.kernel.inner_refinements = k == 2;
+        const struct model *m = model_build(&s.model, a, &e);
+        assert_non_null(m);
+        assert_false(kernel->accepts(&s, m, &e));
+        assert_int_equal(e.kind, ERR_CONFIG);
+        assert_non_null(strstr(e.text, "linearly implicit"));
+    }
+    arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -119,6 +210,9 @@ int main(void)
         cmocka_unit_test(small_steps_follow_the_reference),
         cmocka_unit_test(springs_and_closed_chains_move_too),
         cmocka_unit_test(the_number_of_ranks_does_not_matter),
+        cmocka_unit_test(implicit_springs_are_those_of_the_serial_integrator),
+        cmocka_unit_test(implicit_springs_of_trees_too),
+        cmocka_unit_test(implicit_steps_are_refused_where_they_do_not_exist),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "mech/dynamics_table.h"
+#include "mech/integrate.h"
 #include "mech/trajectory.h"
 #include "mech/vector_model.h"
 #include "scene.h"
@@ -39,16 +40,18 @@ static double error_of(const struct scene *s, enum step_rule rule, int n, const 
 static void steps_have_their_orders(void **state)
 {
     (void)state;
-    static const int order[] = {[STEP_SEMI_IMPLICIT] = 1, [STEP_KDK] = 2, [STEP_RK4] = 4};
+    static const int order[] = {[STEP_SEMI_IMPLICIT] = 1, [STEP_KDK] = 2, [STEP_RK4] = 4, [STEP_LINEARLY_IMPLICIT] = 1};
     for (uint64_t seed = 2; seed < 5; seed++) {
         struct model_spec spec = spec_random(MODEL_RANDOM_TREE, 9, JOINT_MIXED, seed);
         spec.external_force = 0;
         spec.base = BASE_FLOATING;
         spec.mass_ratio = 1;
+        spec.stiffness = 3;
+        spec.damping = 0.1;
         struct scene s = scene_of(&spec);
         struct state *reference = copy_of(&s);
         assert_true(exact()->advance(s.model, reference, STEP_RK4, 0.2 / 800, 800, s.a, NULL));
-        for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_RK4; rule++) {
+        for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_LINEARLY_IMPLICIT; rule++) {
             double coarse = error_of(&s, (enum step_rule)rule, 50, reference);
             double fine = error_of(&s, (enum step_rule)rule, 100, reference);
             assert_true(fabs(log2(coarse / fine) - order[rule]) < 0.35);
@@ -74,6 +77,61 @@ static void free_motion_conserves(void **state)
     assert_true(relative_error(3, after.linear, before.linear) < 1e-8);
     assert_true(relative_error(3, after.angular, before.angular) < 1e-8);
     scene_end(&s);
+}
+
+/* (M + s) u' = tau - k (q - rest + h u) - c u - xi with the mass matrix and inverse dynamics, joints of every kind. */
+static void implicit_accelerations_solve_their_equation(void **state)
+{
+    (void)state;
+    int springs = 0;
+    for (uint64_t seed = 1; seed < 9; seed++) {
+        struct model_spec spec = spec_random(MODEL_RANDOM_TREE, 9, seed % 2 ? JOINT_MIXED : JOINT_REVOLUTE, seed);
+        const double h = 1e-2, k = pow(10, (double)seed), c = seed % 3 ? 1e-2 * k : 0;
+        spec.base = seed % 4 ? BASE_FIXED : BASE_FLOATING;
+        spec.stiffness = k, spec.damping = c;
+        struct scene s = scene_of(&spec);
+        struct dynamics *d = dynamics_take(s.model, s.a);
+        const int n = s.model->nu;
+        double *ud = TAKE(s.a, n, double), *mass = TAKE(s.a, n * n, double), *xi = TAKE(s.a, n, double);
+        struct work w = {0};
+        dynamics_load(d, s.state);
+        assert_true(implicit_forward(d, h, s.state->q, s.state->qd, s.state->tau, ud, &w));
+        crba(d, s.state->q, mass, &w);
+        rnea(d, s.state->q, s.state->qd, d->zero, xi, &w);
+        for (int i = 0; i < s.model->nbody; i++)
+            for (int r = s.model->u_at[i]; r < s.model->u_at[i + 1]; r++) {
+                const struct body_def *b = &s.model->body[i];
+                const double q = s.state->q[s.model->q_at[i]], u = s.state->qd[r];
+                double left = xi[r] - s.state->tau[r], scale = fabs(left);
+                if (b->stiffness > 0) {
+                    left += b->stiffness * (q - b->rest + h * u) + b->damping * u + h * (c + h * k) * ud[r];
+                    scale = fmax(scale, fabs(h * (c + h * k) * ud[r]));
+                    springs++;
+                }
+                for (int j = 0; j < n; j++) left += mass[n * r + j] * ud[j], scale += fabs(mass[n * r + j] * ud[j]);
+                assert_true(fabs(left) <= 1e-11 * scale);
+            }
+        scene_end(&s);
+    }
+    assert_true(springs > 30);
+}
+
+/* Steps a thousand times above the explicit limit: springs come to rest, explicitly they break everything. */
+static void implicit_steps_are_stable_at_any_stiffness(void **state)
+{
+    (void)state;
+    for (int damped = 0; damped < 2; damped++) {
+        struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 6, JOINT_REVOLUTE, 5);
+        spec.stiffness = 1e8, spec.damping = damped ? 1e6 : 0;
+        struct scene s = scene_of(&spec);
+        struct state *c = copy_of(&s), *explicit = copy_of(&s);
+        for (int i = 0; i < 6; i++) c->q[i] += 0.1, explicit->q[i] += 0.1;
+        assert_true(exact()->advance(s.model, c, STEP_LINEARLY_IMPLICIT, 0.1, 200, s.a, NULL));
+        for (int i = 0; i < 6; i++) assert_true(fabs(c->q[i] - s.model->body[i].rest) < 1e-3 && fabs(c->qd[i]) < 1e-2);
+        const bool went = exact()->advance(s.model, explicit, STEP_SEMI_IMPLICIT, 0.1, 200, s.a, NULL);
+        assert_true(!went || !(fabs(explicit->qd[0]) < 1e6));
+        scene_end(&s);
+    }
 }
 
 /* Every GSL stepper brings a short reference trajectory to its tolerance. */
@@ -195,6 +253,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_have_their_orders),
         cmocka_unit_test(free_motion_conserves),
+        cmocka_unit_test(implicit_accelerations_solve_their_equation),
+        cmocka_unit_test(implicit_steps_are_stable_at_any_stiffness),
         cmocka_unit_test(gsl_steppers_follow_reference_trajectories),
         cmocka_unit_test(fixed_steps_of_the_library_have_their_orders),
         cmocka_unit_test(the_best_stepper_follows_all_instants),
