@@ -9,8 +9,10 @@ pass = 0; open = 0; fail = 0
 stats data using (claim[int(column("y"))] = strcol("id").": ".strcol("statement"), \
     variant[int(column("x"))] = strcol("variant"), g = column("grade"), v = strcol("variant") eq "verdict", pass = pass + (v && g == 0), open = open + (v && g == 1), \
     fail = fail + (v && g == 2), 0) nooutput
-# at most 74 letters of a statement
-cut(s) = strlen(s) > 74 ? s[1:73]."…" : s
+# a statement of more than 72 letters takes two lines, parted at the last blank of its first half and a little more
+blank(s, k) = k < 2 || s[k:k] eq " " ? k : blank(s, k - 1)
+part(s, k) = s[1:k - 1]."\n".s[k + 1:strlen(s)]
+wrap(s) = strlen(s) > 72 ? part(s, blank(s, int(strlen(s)/2) + 5)) : s
 headline = "The claims of the paper"
 subline = sprintf("%d pass, %d not testable, %d fail; percentages: share of parameter samples in which a claim holds", pass, open, fail)
 is(grade, v) = column("grade") == grade ? v : NaN
@@ -18,7 +20,7 @@ array grade_name[3] = ["pass", "not testable", "fail"]
 array grade_colour[3] = ["#d5e8f3", "#f4f4f4", "#b0401a"]
 
 do for [format in formats] {
-    high = 300 + 26*claims
+    high = 300 + 32*claims
     eval page(format, 1200, high); tiny = small(format)
     set multiplot
     unset grid
@@ -29,7 +31,7 @@ do for [format in formats] {
     set xtics scale 0 rotate by 35 right noenhanced font tiny; set ytics scale 0 noenhanced font tiny
     set xtics (0); set ytics (0)
     do for [i=1:columns] { set xtics add (variant[i] i) }
-    do for [i=1:claims] { set ytics add (cut(claim[i]) i) }
+    do for [i=1:claims] { set ytics add (wrap(claim[i]) i) }
     eval title_at(format, 1.0 - 16.0/high); eval foot(format)
     set key at screen 0.5,(1.0 - 50.0/high) center top horizontal maxrows 1 samplen 1.2 width 1
     plot for [j=0:2] data using (is(j, column("x"))):"y":(0.47):(0.44) with boxxyerror linewidth 0.3 \

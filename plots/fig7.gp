@@ -16,14 +16,14 @@ values = "over_serial over_conventional"
 
 set xrange [pmin*0.9:pmax*1.12]
 do for [format in formats] {
-    high = 150 + 230*panels
+    high = 164 + 230*panels
     eval page(format, 800, high)
     set multiplot
     # the legend, in a frame as wide as the page
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
     unset border; unset tics; unset logscale; set yrange [0:1]
     eval title_at(format, 1.0 - 18.0/high); eval foot(format)
-    set key at screen 0.53,(1.0 - 60.0/high) center top horizontal maxrows 2 samplen 3 width -1
+    set key at screen 0.53,(1.0 - 73.0/high) center top horizontal maxrows 2 samplen 3 width -1
     plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \
             linecolor rgb colour[k] title method[k]
     unset key; unset label 97; unset label 98; unset label 99
@@ -33,8 +33,8 @@ do for [format in formats] {
     set xtics (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
     do for [p=1:panels] { do for [side=1:2] {
         set lmargin at screen (side == 1 ? 0.09 : 0.58); set rmargin at screen (side == 1 ? 0.495 : 0.985)
-        set tmargin at screen 1.0 - (112.0 + 230*(p - 1) + 18)/high
-        set bmargin at screen 1.0 - (112.0 + 230*p - 42)/high
+        set tmargin at screen 1.0 - (126.0 + 230*(p - 1) + 18)/high
+        set bmargin at screen 1.0 - (126.0 + 230*p - 42)/high
         if (side == 1) { set logscale y 2; set yrange [*:*]; set ylabel "speedup" } else { unset logscale y; set yrange [*<0.9:*]; set ylabel "factor" }
         set xlabel (p == panels ? "number of processors P" : "")
         set title size_name[p].", ".over[side] offset 0,-0.7

@@ -1,4 +1,4 @@
--- One-way time against message size on every machine that was run, and the published points beside them. Published
+-- One-way time against message size on the machines that were run, and the published points beside them. Published
 -- rates and round trips are shown as the one-way times that they mean; an empty message is drawn at 4 bytes.
 -- needs: mimdsim run pingpong-machines && mimdsim validate all
 WITH size AS (
