@@ -12,8 +12,8 @@
  *   (uniform parent). ring: a closed polygon with the base, or a floating body 0, as last side; four-bar: n = 3;
  *   polymer: n CH2 groups on torsion joints in amu, angstrom and picoseconds.
  *
- *   Links shorter than 1e-6 or longer than 1e6 m, lighter than 1e-6 or heavier than 1e6 kg get units of their own: powers
- *   of two, so that nothing is rounded and no precision's range is left. */
+ *   Links shorter than 1e-6 or longer than 1e6 m, lighter than 1e-6 or heavier than 1e6 kg get units of their own:
+ *   powers of two, so that nothing is rounded and no precision's range is left. */
 struct model *generator_model(const struct model_spec *spec, struct arena *a, struct err *e);
 
 #endif

@@ -100,8 +100,8 @@ static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
     return status == GSL_SUCCESS ? (long)driver->e->count : -1;
 }
 
-/* The same in `steps` equal steps, past the driver's control of the error; it still says how well implicit equations are
- * to be solved. */
+/* The same in `steps` equal steps, past the driver's control of the error; it still says how well implicit equations
+ * are to be solved. */
 static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, double *y, double *error)
 {
     const double h = duration / (double)steps;

@@ -322,5 +322,6 @@ void expand_unused(struct plan *p, const struct scenario *s)
         for (int j = 0; j < s->axis[i].npoint; j++) add_unused_of(p, &s->axis[i].point[j]);
     add_unused_of(p, &s->set);
     for (int i = 0; i < p->nrun && !random; i++) random = run_spec_is_random(&p->run[i]);
-    if (s->repetitions > 1 && !random) add_unused(p, "repetitions", "nothing is random in these runs, so each is made once");
+    if (s->repetitions > 1 && !random)
+        add_unused(p, "repetitions", "nothing is random in these runs, so each is made once");
 }

@@ -89,7 +89,8 @@ static void sweeps_are_cross_products_in_stated_order(void **state)
     const char *path = scratch_write(
         &scratch, "cross.yaml",
         "schema_version: 1\nmachine: t3e-300\nranks: [2, 4, 8]\nkernel: dynamics\nrepetitions: 2\n"
-        "machine.noise.compute: 1 %\nsweep:\n  n_over_p: [1, 16]\n  variant:\n    - {kernel.solver: pcr, kernel.formulation: direct}\n"
+        "machine.noise.compute: 1 %\nsweep:\n  n_over_p: [1, 16]\n  variant:\n"
+        "    - {kernel.solver: pcr, kernel.formulation: direct}\n"
         "    - {kernel: {solver: cr}}\n");
     struct plan p = scratch_plan(path, NULL, 0);
     static const int ranks[] = {2, 4, 8};
