@@ -4,10 +4,10 @@ data = figure.".csv"
 refused = figure.".failed.csv"
 array ladder_name[3] = ["Network", "Arithmetic", "Integration"]
 array family[9] = ["", "", "", "serial methods", "paper formulation, by solver", "direct formulation, by solver", \
-    "explicit steppers, by tolerance", "implicit steppers, by tolerance", "own parallel steppers, by steps"]
+    "explicit steppers", "implicit steppers", "own parallel steppers"]
 array notes[3] = ["the same program on every level; a level's answer against that of the finest", \
     "○ float   □ double   △ quad (no machine time);   open: plain,  with +: solver refined,  filled: whole solve refined,  ×: error above 0.1", \
-    "the motion's end against a tight reference; machine time on as many processors as are fastest for one evaluation"]
+    "the motion's end against a tight reference; ●, solid: by tolerance;  ○, dashed: by fixed steps;  machine time on the number of processors that is fastest for one evaluation"]
 array open_point[6] = [6, 4, 8, 10, 12, 3]
 array full_point[6] = [7, 5, 9, 11, 13, 15]
 array by_precision[3] = [6, 4, 8]
@@ -118,11 +118,14 @@ do for [format in formats] {
                     for [k=1:n] NaN with lines linewidth 3 linecolor rgb colour[k] title curve_name[10*(3*b-3+c) - 10 + k]
             }
             if (b == 3) {
-                plot for [k=1:n] data using (good(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1 linecolor rgb colour[(k-1)%8+1] \
-                        title curve_name[10*(3*b-3+c) - 10 + k], \
+                plot for [k=1:n] data using (good(b, p, k) && column("refinement") == 0 ? column(cost) : NaN):(level(column("relative_error"))) \
+                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1 linecolor rgb colour[(k-1)%8+1], \
+                    for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN):(level(column("relative_error"))) \
+                        with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1 linecolor rgb colour[(k-1)%8+1], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with points pointtype 2 pointsize 1.2 linewidth 1.6 linecolor rgb colour[(k-1)%8+1]
+                        with points pointtype 2 pointsize 1.2 linewidth 1.6 linecolor rgb colour[(k-1)%8+1], \
+                    for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1 linecolor rgb colour[(k-1)%8+1] \
+                        title curve_name[10*(3*b-3+c) - 10 + k]
             }
             unset label 1; unset label 2; unset label 3; unset label 97; unset label 98; unset label 99; unset arrow 1
         }}}
@@ -149,7 +152,7 @@ do for [format in formats] {
             set xrange [0:1]; set yrange [0:1]
             set label 1 "failed:" at screen at_x(14),at_y(lower + 8) left noenhanced font tiny textcolor rgb "#b0401a"
             plot refused using (column("block") == b ? at_x(column_left(b == 1 ? 1 : column("panel"))) : NaN):(at_y(lower + 15*column("line") - 7)) \
-                :(short(strcol("text"), b == 1 ? 160 : 65)) \
+                :(short(strcol("text"), b == 1 ? 160 : 68)) \
                 with labels left noenhanced font tiny textcolor rgb "#b0401a"
             unset label 1
             set border 3 linewidth 0.8; set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6

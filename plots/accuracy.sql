@@ -11,10 +11,12 @@ rung AS (
            CASE WHEN ladder = 'network' THEN 1
                 WHEN method LIKE 'paper %' THEN 2 WHEN method LIKE 'direct %' THEN 3
                 WHEN method LIKE 'own %' THEN 3
-                WHEN method IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2 ELSE 1 END AS panel,
+                WHEN replace(method, ' fixed', '') IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2
+                ELSE 1 END AS panel,
            CASE WHEN ladder <> 'arithmetic' THEN 0 WHEN rung LIKE 'float%' THEN 1 WHEN rung LIKE 'double%' THEN 2
                 ELSE 3 END AS precision,
-           CASE WHEN ladder <> 'arithmetic' THEN 0 WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
+           CASE WHEN ladder = 'integration' THEN method LIKE '% fixed' OR method LIKE 'own %' WHEN ladder <> 'arithmetic' THEN 0
+                WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
                 ELSE 0 END AS refinement
     FROM ladder l JOIN place USING (ladder, at, family)
     WHERE scenario = ?1 AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd'
@@ -22,15 +24,15 @@ rung AS (
 method AS (
     SELECT block, panel, method, min(ordinal) AS first,
            iif(block = 2, group_concat(rung || ' ' || ifnull(relative_error, status) || ' ' || ifnull(machine_ps, ''), ';'),
-               method) AS same
+               replace(method, ' fixed', '')) AS same
     FROM (SELECT * FROM rung ORDER BY ordinal) GROUP BY block, panel, method),
 curve AS (
     SELECT block, panel, same, min(first) AS first, row_number() OVER (PARTITION BY block, panel ORDER BY min(first)) AS series,
-           group_concat(CASE WHEN block = 2 OR method LIKE 'own %' THEN substr(method, instr(method, ' ') + 1) ELSE method END,
-                        ' = ') AS name
+           CASE WHEN block = 1 THEN same WHEN block = 3 THEN replace(same, 'own ', '')
+                ELSE group_concat(substr(method, instr(method, ' ') + 1), ' = ') END AS name
     FROM (SELECT * FROM method ORDER BY first) GROUP BY block, panel, same)
 SELECT r.block, r.panel, c.series, r.precision, r.refinement, c.name, r.method, r.rung, r.at, r.quantity, r.reference,
-       r.relative_error, r.host_s, r.machine_ps / 1e12 AS machine_s, r.status, m.first = c.first AS drawn,
+       r.relative_error, r.host_s, r.machine_ps / 1e12 AS machine_s, r.status, r.block = 3 OR m.first = c.first AS drawn,
        (SELECT f.relative_error FROM ladder f WHERE f.scenario = r.scenario AND f.at = r.at AND f.family = r.family AND f.ladder = r.ladder
                AND f.method = r.method AND f.rung = r.rung AND f.quantity = 'finish times') AS finish_error,
        r.text, r.scenario
@@ -47,7 +49,8 @@ failed AS (
            CASE WHEN ladder = 'network' THEN 1
                 WHEN method LIKE 'paper %' THEN 2 WHEN method LIKE 'direct %' THEN 3
                 WHEN method LIKE 'own %' THEN 3
-                WHEN method IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2 ELSE 1 END AS panel,
+                WHEN replace(method, ' fixed', '') IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') THEN 2
+                ELSE 1 END AS panel,
            replace(replace(rung, 'tolerance ', ''), ' steps', '') AS rung, ordinal, relative_error,
            iif(relative_error IS NULL, replace(text, ',', ' –'), 'error above 0.1') AS reason
     FROM ladder JOIN place USING (ladder, at, family)

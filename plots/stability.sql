@@ -9,7 +9,7 @@ WITH mine AS (
            CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
                 WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
                 WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5
-                WHEN subject IN ('slender rods', 'nearly points') THEN 6
+                WHEN subject LIKE 'slender%' OR subject LIKE 'nearly points%' THEN 6
                 WHEN subject LIKE 'torques %' OR subject LIKE 'zero gravity%' OR subject LIKE 'denormal%' THEN 7
                 WHEN subject LIKE 'four-bar%' OR subject LIKE 'redundant%' OR subject LIKE '%loop%' THEN 9
                 WHEN subject LIKE 'springs %' THEN 10 ELSE 8 END AS part
@@ -45,7 +45,7 @@ WITH mine AS (
            CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
                 WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
                 WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5
-                WHEN subject IN ('slender rods', 'nearly points') THEN 6
+                WHEN subject LIKE 'slender%' OR subject LIKE 'nearly points%' THEN 6
                 WHEN subject LIKE 'torques %' OR subject LIKE 'zero gravity%' OR subject LIKE 'denormal%' THEN 7
                 WHEN subject LIKE 'four-bar%' OR subject LIKE 'redundant%' OR subject LIKE '%loop%' THEN 9
                 WHEN subject LIKE 'springs %' THEN 10 ELSE 8 END AS part,

@@ -28,7 +28,7 @@ struct savings {
 };
 
 /* savings_measure: each omission of the plan's runs once, at the largest run that has it and takes a moment; shortest
- * times of interleaved repeats. r (p->nrun) from run_explain. Returns false as run_one does. */
+ * processor times of interleaved repeats. r (p->nrun) from run_explain. Returns false as run_one does. */
 bool savings_measure(const struct plan *p, const struct run_estimate *r, struct savings *out, struct err *e);
 
 /* savings_print: a line an omission. savings_json: the same as the array "savings" of an open object. */

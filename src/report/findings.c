@@ -198,6 +198,7 @@ static const char saving_rows[] =
     "SELECT what, why, class || iif(bound IS NULL, '', format(' %.0e', bound)) AS class, at,"
     " CASE WHEN host_saved_s IS NULL THEN 'cannot be put back'"
     "  WHEN abs(host_saved_s) <= host_noise_s THEN format('less than the noise, %.2g ms', host_noise_s * 1e3)"
+    "  WHEN host_saved_s < 0 THEN format('nothing: put back it takes %.2g ms less', -host_saved_s * 1e3)"
     "  ELSE format('%.3g ms of %.3g', host_saved_s * 1e3, (host_s + host_saved_s) * 1e3) END"
     " AS \"this computer saves\","
     " CASE WHEN machine_saved_ps IS NULL THEN '' WHEN machine_saved_ps = 0 THEN 'nothing'"
