@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/progress.h"
 #include "base/text.h"
@@ -30,14 +29,6 @@ static void shortest_add(struct shortest *s, double x)
 /* What chance does to the shortest. */
 static double spread_of(const struct shortest *s) { return s->time[2] - s->time[0]; }
 
-/* Of this process alone: what others do with the processor is no part of a run's cost. */
-static double processor_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool time_run(const struct run_spec *spec, unsigned keep, struct shortest *host, int64_t *machine_ps,
                      struct err *e)
 {
@@ -45,9 +36,9 @@ static bool time_run(const struct run_spec *spec, unsigned keep, struct shortest
     struct run_result result;
     struct arena *a = arena_create();
     with.keep = keep;
-    double begin = processor_seconds();
+    double begin = host_processor_seconds();
     bool ok = run_one(&with, a, &result, e);
-    shortest_add(host, processor_seconds() - begin);
+    shortest_add(host, host_processor_seconds() - begin);
     if (ok) *machine_ps = result.makespan_ps;
     arena_destroy(a);
     return ok;

@@ -12,12 +12,16 @@ static const double PATIENCE = 1.0;        /* s without a word */
 static const double TTY_INTERVAL = 0.1;    /* s between lines on a terminal */
 static const double FILE_INTERVAL = 10.0;  /* s between lines elsewhere */
 
-double host_seconds(void)
+static double clock_seconds(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+double host_seconds(void) { return clock_seconds(CLOCK_MONOTONIC); }
+
+double host_processor_seconds(void) { return clock_seconds(CLOCK_PROCESS_CPUTIME_ID); }
 
 long host_peak_bytes(void)
 {

@@ -30,6 +30,9 @@ void progress_end(struct progress *p);
 /* host_seconds: monotonic wall clock of the host [s]; for progress and cost reports, never for a result. */
 double host_seconds(void);
 
+/* host_processor_seconds: processor time of this process [s], which others' work on the host does not lengthen. */
+double host_processor_seconds(void);
+
 /* host_peak_bytes: largest resident set of this process so far [B]. */
 long host_peak_bytes(void);
 
