@@ -72,6 +72,52 @@ static void thomas_solves_all_orders_of_blocks(void **state)
     }
 }
 
+enum { BEAM = 60 };
+
+/* Solve S K S x = r for x, K = the second difference (condition about BEAM^2), S = diag(scale); the largest error of S x
+ * against `z`. `jacobi`: scale the system to a diagonal of ones first. */
+static double beam_error(const double *scale, const double *z, bool jacobi, struct arena *a)
+{
+    static const unsigned char size[BEAM] = {[0 ... BEAM - 1] = 1};
+    struct block_tridiag t = block_tridiag_make(a, BEAM, size);
+    double x[BEAM * 6] = {0}, by[BEAM], largest = 0, error = 0;
+    struct work w = {0};
+    for (int i = 0; i < BEAM; i++) by[i] = jacobi ? 1 / sqrt(2 * scale[i] * scale[i]) : 1;
+    for (int i = 0; i < BEAM; i++) {
+        __float128 r = 2 * (__float128)z[i];
+        if (i > 0) r -= z[i - 1];
+        if (i < BEAM - 1) r -= z[i + 1];
+        t.D[i * BLOCK_PACKED] = 2 * scale[i] * scale[i] * by[i] * by[i];
+        if (i > 0) t.L[i * BLOCK_FULL] = -scale[i] * scale[i - 1] * by[i] * by[i - 1];
+        x[6 * i] = (double)(r * scale[i]) * by[i];
+    }
+    assert_int_equal(block_tridiag_factor(&t, &w), -1);
+    block_tridiag_solve(&t, 1, x, &w);
+    for (int i = 0; i < BEAM; i++) {
+        error = fmax(error, fabs(x[6 * i] * by[i] * scale[i] - z[i]));
+        largest = fmax(largest, fabs(z[i]));
+    }
+    return error / largest;
+}
+
+/* Scaling a system whose unknowns differ by sixteen decades neither helps nor harms: elimination is invariant to it. */
+static void scaling_by_the_diagonal_changes_no_error(void **state)
+{
+    (void)state;
+    struct random g = random_make(8, 0, 0);
+    double plain = 0, scaled = 0;
+    for (int round = 0; round < 40; round++) {
+        struct arena *a = arena_create();
+        double scale[BEAM], z[BEAM];
+        for (int i = 0; i < BEAM; i++) scale[i] = pow(10, random_uniform(&g, -8, 8)), z[i] = random_uniform(&g, -1, 1);
+        plain += log(beam_error(scale, z, false, a));
+        scaled += log(beam_error(scale, z, true, a));
+        arena_destroy(a);
+    }
+    assert_true(plain < 40 * log(1e-11)); /* the condition seen without scaling is 1e16 and more */
+    assert_true(fabs(plain - scaled) < 40 * log(2));
+}
+
 static void a_row_of_five_costs_480(void **state)
 {
     (void)state;
@@ -201,6 +247,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thomas_solves_all_orders_of_blocks),
+        cmocka_unit_test(scaling_by_the_diagonal_changes_no_error),
         cmocka_unit_test(a_row_of_five_costs_480),
         cmocka_unit_test(the_first_bad_row_is_named),
         cmocka_unit_test(eliminating_a_row_leaves_the_neighbours_schur_complement),
