@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "report/report.h"
 #include "run/run.h"
+#include "spec/field.h"
 #include "store/store.h"
 
 static const char doc[] =
@@ -72,18 +73,41 @@ static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r
     return k;
 }
 
+/* One choice of a run as scenario files write it; to be freed. */
+static struct text choice_of(const struct run_spec *s, const char *key)
+{
+    const struct field_table *table;
+    const struct field *f = field_find_full(key, &table);
+    struct text t = {0};
+    CHECK(f);
+    field_print(f, (const char *)s + table->offset, &t);
+    return t;
+}
+
+static void print_run(const struct run_spec *s, const struct run_estimate *r)
+{
+    struct text level = choice_of(s, "machine.network.level"), form = choice_of(s, "kernel.formulation");
+    printf("%-12.12s %-10s %-12s %-14s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n", s->machine.name,
+           s->kernel.name, r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody, s->nrank, r->messages,
+           r->bytes / 1e6, r->flops / 1e6, r->host_s, r->host_bytes / 1e6);
+    text_free(&level);
+    text_free(&form);
+}
+
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
     struct totals t = {0};
-    printf("%s\n%d runs\n\n%-10s %-12s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun, "kernel",
-           "formulation", "n", "P", "messages", "MB sent", "Mflop", "host s", "host MB");
+    bool open_level = false;
+    printf("%s\n%d runs\n\n%-12s %-10s %-12s %-14s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun,
+           "machine", "kernel", "formulation", "level", "n", "P", "messages", "MB sent", "Mflop", "host s", "host MB");
     for (int i = 0; i < p->nrun; i++) {
-        const struct run_spec *s = &p->run[i];
-        printf("%-10s %-12s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n", s->kernel.name,
-               s->kernel.formulation == FORMULATION_PAPER ? "paper" : "direct", (long long)r[i].nbody, s->nrank,
-               r[i].messages, r[i].bytes / 1e6, r[i].flops / 1e6, r[i].host_s, r[i].host_bytes / 1e6);
+        print_run(&p->run[i], &r[i]);
         add(&t, &r[i]);
+        open_level = open_level || p->run[i].machine.network.level == LEVEL_AUTO_TOLERANCE;
     }
+    if (open_level)
+        printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the database, or by one that "
+               "is measured then\n");
     if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
         printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre, r[0].kilogram, r[0].second);
     printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
@@ -152,6 +176,12 @@ static void print_json(const struct plan *p, const struct run_estimate *r, const
         json_pair(&j, "host_s", r[i].host_s);
         json_key(&j, "kernel");
         json_text(&j, p->run[i].kernel.name);
+        struct text level = choice_of(&p->run[i], "machine.network.level");
+        json_key(&j, "level");
+        json_text(&j, level.s);
+        text_free(&level);
+        json_key(&j, "machine");
+        json_text(&j, p->run[i].machine.name);
         json_pair(&j, "messages", r[i].messages);
         json_pair(&j, "ranks", p->run[i].nrank);
         json_end(&j);

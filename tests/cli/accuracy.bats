@@ -167,3 +167,13 @@ scenario() {
     sqlite3 :memory: ".import --csv one/accuracy-other.csv t" "SELECT count(*) FROM t WHERE method = 'flit' AND relative_error + 0 <> 0" | grep -qx 0
     fails_with 66 mimdsim plot mimdsim.db accuracy-nobody
 }
+
+@test "explain names machine and level of every run, and says when a level is still open" {
+    scenario 'level: auto-tolerance 5%'
+    works mimdsim explain small.yaml
+    stdout_says 't3e-300      dynamics   paper        auto-tolerance'
+    stdout_says 'level auto-tolerance is settled when it runs'
+    works mimdsim explain small.yaml --set level=loggp --json
+    json_is '$.runs[0].level' loggp
+    json_is '$.runs[0].machine' t3e-300
+}
