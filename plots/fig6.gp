@@ -18,7 +18,7 @@ fractions = "0.70 0.80 0.90 0.95 0.97 0.98"
 has_band = name[1] eq "fastest serial"
 first = has_band ? 2 : 1
 rows = ceil((last + 2)/2.0)
-top = 0.912 - 0.0185*rows
+top = 0.915 - 0.0222*rows
 of(k, v) = column("series") == k ? v : NaN
 ymin = 2**floor(log(smin)/log(2)); if (ymin > 0.5) { ymin = 0.5 }
 
@@ -33,7 +33,7 @@ do for [format in formats] {
     # speedup
     set tmargin at screen top; set bmargin at screen 0.475
     eval title_at(format, 0.982)
-    set key at screen 0.52,0.927 center top horizontal maxrows rows samplen 3.5 width -1
+    set key at screen 0.52,0.927 center top vertical maxrows rows samplen 3.5 width -1
     set logscale y 2
     set yrange [ymin:pmax*1.1]
     set ytics ("1/64" 1.0/64, "1/32" 1.0/32, "1/16" 1.0/16, "1/8" 0.125, "1/4" 0.25, "1/2" 0.5, 1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)

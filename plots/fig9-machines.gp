@@ -37,7 +37,7 @@ do for [format in formats] {
     do for [m=1:4] {
         left = m % 2 == 1
         set lmargin at screen (left ? 0.1 : 0.605); set rmargin at screen (left ? 0.485 : 0.985)
-        set tmargin at screen (m <= 2 ? 0.82 : 0.425); set bmargin at screen (m <= 2 ? 0.49 : 0.115)
+        set tmargin at screen (m <= 2 ? 0.82 : 0.41); set bmargin at screen (m <= 2 ? 0.49 : 0.115)
         set ylabel (left ? "speedup S" : "")
         set xlabel (m > 2 ? "number of processors P" : "")
         set title (machine[m] eq "" ? "(no runs)" : machine[m]) noenhanced offset 0,-0.7

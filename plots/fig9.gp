@@ -33,7 +33,7 @@ do for [format in formats] {
     set border 3
     do for [p=1:2] {
         set lmargin at screen (p == 1 ? 0.09 : 0.58); set rmargin at screen (p == 1 ? 0.495 : 0.985)
-        set tmargin at screen 0.825; set bmargin at screen 0.42
+        set tmargin at screen 0.81; set bmargin at screen 0.42
         set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6
         set logscale x 2; set logscale y 2
         set format x ""

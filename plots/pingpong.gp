@@ -35,7 +35,7 @@ width = (0.985 - left - gap*(panels - 1))/panels
 do for [format in formats] {
     eval page(format, panels == 1 ? 760 : panels < 4 ? 420*panels : 360*panels, 560); tiny = small(format)
     set multiplot
-    set tmargin at screen 0.88; set bmargin at screen 0.125
+    set tmargin at screen 0.88; set bmargin at screen 0.14
     do for [p=1:panels] {
         set lmargin at screen left + (p - 1)*(width + gap); set rmargin at screen left + (p - 1)*(width + gap) + width
         if (p == 1) { eval title_at(format, 0.965); eval foot(format) } else { unset label 97; unset label 98; unset label 99 }
@@ -45,9 +45,9 @@ do for [format in formats] {
         plot for [k=first(p):final(p)] data using "shown_bytes":(curve(k, column("us"))) with lines linewidth 1.8 \
                 linecolor rgb colour[turn(k)], \
              for [k=first(p):final(p)] data using "shown_bytes":(read_again(k, column("us"))) with points \
-                pointtype full[turn(k)] pointsize 1.3 linecolor rgb colour[turn(k)], \
+                pointtype full[turn(k)] pointsize 1.1 linecolor rgb colour[turn(k)], \
              for [k=first(p):final(p)] data using "shown_bytes":(estimated(k, column("us"))) with points \
-                pointtype hollow[turn(k)] pointsize 1.3 linewidth 1.5 linecolor rgb colour[turn(k)], \
+                pointtype hollow[turn(k)] pointsize 1.1 linewidth 1.5 linecolor rgb colour[turn(k)], \
              for [k=first(p):final(p)] keyentry with linespoints linewidth 1.8 pointtype full[turn(k)] pointsize 1 \
                 linecolor rgb colour[turn(k)] title machine[k]
     }

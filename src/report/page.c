@@ -18,6 +18,7 @@ static const char style[] =
     "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: #b0401a; color: #fff "
     "}\n"
     "td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }\n"
+    "td.short, td.pass, td.fail { white-space: nowrap }\n"
     "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: 0.85em; color: #444 "
     "}\n"
     "</style>\n";
@@ -100,11 +101,14 @@ void page_paragraph(struct page *p, const char *text)
     fputs("</p>\n", p->html);
 }
 
+enum { SHORT_CELL = 20 }; /* bytes: "0.815 to 0.892" stays on one line */
+
 static const char *cell_class(const char *s)
 {
     if (strcmp(s, "pass") == 0) return " class=\"pass\"";
     if (strcmp(s, "fail") == 0) return " class=\"fail\"";
-    return *s && s[strspn(s, "-+.0123456789e%")] == '\0' ? " class=\"number\"" : "";
+    if (*s && s[strspn(s, "-+.0123456789e%")] == '\0') return " class=\"number\"";
+    return strlen(s) <= SHORT_CELL ? " class=\"short\"" : "";
 }
 
 void page_row(struct page *p, bool head, int n, const char *const *cell)

@@ -154,3 +154,9 @@ END
     script -qec "'$MIMDSIM' run long.yaml -j 1 -o alone.db --set n=$((2 * n))" seen.log >/dev/null
     grep -qE "runs: 0 of 1$line" seen.log
 }
+
+@test "the SVG of a figure names each panel and axis once, as the PNG before it does" {
+    works mimdsim paper fig9 --quiet
+    [ "$(grep -c 'number of processors P' figures/fig9.svg)" -eq 2 ]
+    [ "$(grep -c 'over the fastest serial code' figures/fig9.svg)" -eq 1 ]
+}
