@@ -259,7 +259,7 @@ void chain_acceleration(struct chain *ch, const real *ud)
     }
     if (ch->lo == 0 && !ch->job->omit.base) {
         real moved[SPACE];
-        transform_motion(ch->dense, moved, chain_transform(ch, 0), ch->shared->base, &ch->work);
+        transform_base(ch->dense, ch->job->omit.turn, moved, chain_transform(ch, 0), ch->shared->base, &ch->work);
         screw_add(ch->a, moved);
         ch->work.flop += SCREW_ADD_FLOP;
     }

@@ -228,7 +228,7 @@ static void operator_form(struct forward *f, bool terms)
         screw_copy(z, y);
         if (watch) scale = largest_size(scale, SPACE, y);
         if (i > 0 || base) {
-            transform_motion(ch->dense, moved, chain_transform(ch, i), before, &ch->work);
+            transform_base(ch->dense, i == 0 && omit->turn, moved, chain_transform(ch, i), before, &ch->work);
             screw_sub(z, moved);
             ch->work.flop += SCREW_ADD_FLOP;
             if (watch) scale = largest_size(scale, SPACE, moved);

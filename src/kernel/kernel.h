@@ -24,7 +24,8 @@ struct job_omit {
     bool velocity; /* no joint moves, nor will: no velocities, bias accelerations and gyroscopic forces */
     bool load;     /* nor are there external forces: bodies carry no loads of their own */
     bool base;     /* the base does not accelerate, and there is no gravity */
-    bool bias;     /* all three: the joint forces that the paper's formulation subtracts are zero */
+    bool turn;     /* the base's acceleration has no angular part */
+    bool bias;     /* velocity, load and base: the joint forces that the paper's formulation subtracts are zero */
     int fixed;     /* bodies on fixed joints that have become part of others in job->model */
 };
 

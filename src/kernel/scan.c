@@ -33,6 +33,17 @@ void transform_motion(bool dense, real *y, const real *T, const real *v, struct 
     w->call++;
 }
 
+void transform_base(bool dense, bool slides, real *y, const real *T, const real *v, struct work *w)
+{
+    if (dense || !slides) {
+        transform_motion(dense, y, T, v, w);
+        return;
+    }
+    xform_slide(y, (const struct xform *)T, v);
+    w->flop += XFORM_SLIDE_FLOP;
+    w->call++;
+}
+
 void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w)
 {
     if (dense) {

@@ -229,7 +229,11 @@ void tree_acceleration(struct tree *t, const real *ud)
             subspace_h(&t->pose[l].s, ud + t->u_at[l], tree_at(t->a, l));
             t->work.flop += (uint64_t)body_cost(b)->h;
         }
-        if (b->parent < 0 && !t->job->omit.base) add_motion(t, tree_at(t->a, l), &t->pose[l].x, t->shared->base);
+        if (b->parent >= 0 || t->job->omit.base) continue;
+        real moved[SPACE];
+        transform_base(false, t->job->omit.turn, moved, (const real *)&t->pose[l].x, t->shared->base, &t->work);
+        screw_add(tree_at(t->a, l), moved);
+        t->work.flop += SCREW_ADD_FLOP;
     }
     scan_up(t, t->a, TAG_ACCELERATION);
 }

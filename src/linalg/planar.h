@@ -20,6 +20,7 @@ enum {
     XFORM_NUMBERS = 4,
     XFORM_FORCE_FLOP = 10,
     XFORM_MOTION_FLOP = 10,
+    XFORM_SLIDE_FLOP = 6,
     XFORM_COMPOSE_FLOP = 14,
     SCREW_ADD_FLOP = 3,
     SCREW_DOT_FLOP = 5,
@@ -53,6 +54,15 @@ static inline void xform_motion(real *y, const struct xform *x, const real *v)
 {
     const real vx = v[1] - v[0] * x->p[1], vy = v[2] + v[0] * x->p[0];
     y[0] = v[0];
+    y[1] = x->c * vx + x->s * vy;
+    y[2] = x->c * vy - x->s * vx;
+}
+
+/* xform_slide: y = X^T v of a motion v without angular part: v' = r^T v; 6 flops. y may be v. */
+static inline void xform_slide(real *y, const struct xform *x, const real *v)
+{
+    const real vx = v[1], vy = v[2];
+    y[0] = 0;
     y[1] = x->c * vx + x->s * vy;
     y[2] = x->c * vy - x->s * vx;
 }

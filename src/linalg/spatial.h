@@ -21,6 +21,7 @@ enum {
     XFORM_NUMBERS = 12,
     XFORM_FORCE_FLOP = 42,
     XFORM_MOTION_FLOP = 42,
+    XFORM_SLIDE_FLOP = 15,
     XFORM_COMPOSE_FLOP = 63,
     XFORM_INVERSE_FLOP = 18,
     SCREW_ADD_FLOP = 6,
@@ -82,6 +83,15 @@ static inline void xform_motion(real *y, const struct xform *x, const real *v)
     vec3_cross_add(t, v, x->p);
     mat3_mul_vec_transposed(y, x->r, v);
     mat3_mul_vec_transposed(y + 3, x->r, t);
+}
+
+/* xform_slide: y = X^T v of a motion v without angular part: v' = r^T v; 15 flops. y may be v. */
+static inline void xform_slide(real *y, const struct xform *x, const real *v)
+{
+    real t[3];
+    mat3_mul_vec_transposed(t, x->r, v + 3);
+    vec3_set(y, 0, 0, 0);
+    vec3_copy(y + 3, t);
 }
 
 /* xform_compose: c = a o b, i.e. X_c = X_a X_b: (ra rb, pa + ra pb); 63 flops. c may be neither a nor b. */

@@ -46,6 +46,7 @@ struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
     o.velocity = rest && !(spec->keep & KEEP_VELOCITY);
     o.load = o.velocity && !s->fext;
     o.base = all_zero(s->base_acceleration, 6) && all_zero(m->gravity, 3) && !(spec->keep & KEEP_BASE);
+    o.turn = all_zero(s->base_acceleration, 3) && !(spec->keep & KEEP_TURN);
     o.bias = o.load && o.base && !(spec->keep & KEEP_BIAS);
     return o;
 }
@@ -103,6 +104,7 @@ static void list_terms(const struct kernel_job *job, const struct kernel_type *k
     if (!job->state->fext) add(l, KEEP_EXTERNAL, 0, "external forces", "no body has any");
     if (o->velocity) add(l, KEEP_VELOCITY, 0, "velocity terms", "all joint rates are zero, without time steps");
     if (o->base) add(l, KEEP_BASE, 0, "base and gravity terms", "the base does not accelerate, without gravity");
+    else if (o->turn) add(l, KEEP_TURN, 0, "angular base terms", "the base does not turn");
     if (o->bias && paper)
         add(l, KEEP_BIAS, 0, "bias stage", "no velocities, no gravity, no external forces: there is no bias");
 }

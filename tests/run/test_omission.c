@@ -252,7 +252,8 @@ static void no_omission_changes_a_result_beyond_its_class(void **state)
     for (int number = 0; number < SCENES; number++) scenes += try_scene(number, tally);
     assert_true(scenes >= 200);
     static const unsigned rare[] = {KEEP_EXTERNAL, KEEP_VELOCITY, KEEP_BASE, KEEP_BIAS, KEEP_START_EVENTS,
-                                    KEEP_CONTENTION, KEEP_FIXED, KEEP_GENERAL, KEEP_BRANCHES};
+                                    KEEP_CONTENTION, KEEP_FIXED, KEEP_GENERAL, KEEP_BRANCHES,
+                                    KEEP_TURN};
     for (size_t i = 0; i < sizeof rare / sizeof *rare; i++) {
         int found = 0;
         for (const struct tally *t = tally; t->scenes > 0; t++) found += t->keep == rare[i] ? t->scenes : 0;
