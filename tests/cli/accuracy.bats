@@ -93,17 +93,17 @@ scenario() {
 
 @test "level auto-tolerance takes the cheapest level that its ladder allows, and says how wrong it is" {
     scenario 'level: auto-tolerance 20%'
-    sed -i 's/n: 4/n: 32/' small.yaml
+    sed -i 's/n: 4/n: 8/' small.yaml
     works mimdsim run small.yaml
     stderr_says 'level loggp'
     stderr_says 'measured now'
-    sql_is mimdsim.db "SELECT level, level_asked, level_error <= 0.2, level_error_at FROM run" 'loggp|auto-tolerance 20 %|1|n=P=32'
+    sql_is mimdsim.db "SELECT level, level_asked, level_error <= 0.2, level_error_at FROM run" 'loggp|auto-tolerance 20 %|1|n=P=8'
     # the error it tells is that of the makespan against the finest level, measured here by hand
     works mimdsim run small.yaml --quiet --set level=flit
     sql_is mimdsim.db "SELECT abs(a.level_error - abs(1.0 * a.makespan_ps / b.makespan_ps - 1)) < 1e-12
         FROM run a, run b WHERE a.level = 'loggp' AND b.level = 'flit'" 1
     works mimdsim run small.yaml --set level='auto-tolerance 0%'
-    stderr_says 'level auto, whose error at n=P=32 is 0 % (stored'
+    stderr_says 'level auto, whose error at n=P=8 is 0 % (stored'
     sql_is mimdsim.db "SELECT count(*) FROM ladder WHERE quantity = 'makespan' AND method = 'flit'" 1
     works mimdsim run small.yaml # its level is settled: nothing is run or said again
     stderr_is_empty
