@@ -28,10 +28,12 @@ static void say_order(const struct common *c, int at, struct err *e)
     text_free(&t);
 }
 
-struct store *arguments_database(const struct common *c, struct err *e)
+struct store *arguments_database(const struct common *c, const char *otherwise, struct err *e)
 {
-    struct store *s = store_open(c->arg[0], STORE_READ, e);
-    if (s != NULL) return s;
+    const char *path = c->narg > 0 ? c->arg[0] : otherwise;
+    if (*path == '\0') return err_set(e, ERR_USAGE, "'' is not the name of a database"), NULL;
+    struct store *s = store_open(path, STORE_READ, e);
+    if (s != NULL || c->narg == 0) return s;
     int at = e->kind == ERR_NO_INPUT || e->kind == ERR_DATA ? database_behind(c) : 0;
     if (at > 0) say_order(c, at, e);
     else file_kind_refuse(c->arg[0], FILE_DATABASE, e);

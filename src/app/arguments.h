@@ -5,9 +5,10 @@
 #include "app/verb.h"
 #include "store/store.h"
 
-/* arguments_database: open the first argument for reading. Where it is none, but something else that is known, or
- * the database stands behind it, *e is ERR_USAGE and says so; otherwise as store_open. The caller closes it. */
-struct store *arguments_database(const struct common *c, struct err *e);
+/* arguments_database: open the first argument for reading, or `otherwise` when there is none. Where it is no
+ * database, but something else that is known, or the database stands behind it, *e is ERR_USAGE and says so;
+ * otherwise as store_open. The caller closes it. */
+struct store *arguments_database(const struct common *c, const char *otherwise, struct err *e);
 
 /* arguments_run_number: whether `text` is the number of a run; where not, ERR_USAGE. */
 bool arguments_run_number(const char *text, struct err *e);

@@ -17,7 +17,7 @@ int cmd_claims(int argc, char **argv)
     err_clear(&e);
     struct claim_rules rules = {0};
     /* a database that is not there is not made */
-    struct store *s = c.narg ? arguments_database(&c, &e) : store_open(path, STORE_READ, &e);
+    struct store *s = arguments_database(&c, "paper.db", &e);
     bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
     store_close(s);
     s = ok ? store_open(path, STORE_WRITE, &e) : NULL;

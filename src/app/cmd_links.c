@@ -62,7 +62,7 @@ int cmd_links(int argc, char **argv)
     common_parse(&c, argc, argv, 0, "DB [RUN]", doc, 1, 2);
     struct err e;
     err_clear(&e);
-    struct store *s = arguments_database(&c, &e);
+    struct store *s = arguments_database(&c, "", &e);
     bool ok = s && (c.narg < 2 || arguments_run_number(c.arg[1], &e)) && print_links(&c, s, &e);
     store_close(s);
     return ok ? 0 : common_fail(&c, &e);

@@ -96,7 +96,7 @@ static bool is_figure(const char *word)
 /* A figure alone lacks its database; the rest is as everywhere. */
 static struct store *open_database(const struct common *c, struct err *e)
 {
-    if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0) return arguments_database(c, e);
+    if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0) return arguments_database(c, "", e);
     err_set(e, ERR_USAGE, "'%s' is a figure; the database comes first: `mimdsim plot mimdsim.db %s`", c->arg[0],
             c->arg[0]);
     return NULL;

@@ -12,7 +12,7 @@ int cmd_query(int argc, char **argv)
     common_parse(&c, argc, argv, 0, "DB SQL", doc, 2, 2);
     struct err e;
     err_clear(&e);
-    struct store *s = arguments_database(&c, &e);
+    struct store *s = arguments_database(&c, "", &e);
     bool ok = s && report_query(s, c.arg[1], 0, NULL, c.json, stdout, &e);
     store_close(s);
     return ok ? 0 : common_fail(&c, &e);

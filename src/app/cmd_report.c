@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/parameters.h"
+#include "app/arguments.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
@@ -134,7 +135,7 @@ int cmd_report(int argc, char **argv)
     struct report *r = calloc(1, sizeof *r);
     CHECK(r);
     *r = (struct report){.common = &c, .e = &e};
-    r->store = store_open(path, STORE_READ, &e);
+    r->store = arguments_database(&c, "mimdsim.db", &e);
     bool ok = r->store && draw_all(r) && write_document(r, path, stem);
     if (ok) tell(&c, stem);
     store_close(r->store);

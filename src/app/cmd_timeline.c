@@ -62,7 +62,7 @@ static bool from_database(struct shown *t)
 {
     const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
     const char *const param[] = {wanted};
-    t->store = arguments_database(t->common, t->e);
+    t->store = arguments_database(t->common, "", t->e);
     if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) || !store_query(t->store,
                                   "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P), status,"
                                   " text FROM run"

@@ -30,8 +30,8 @@ static int unknown_verb(int argc, char **argv)
 {
     const char *word = argv[1];
     const struct common c = {.json = common_wants_json(argc, argv)};
-    const char *name[MOST_VERBS];
-    int n = 0;
+    const char *name[MOST_VERBS] = {"--help", "--version"};
+    int n = 2;
     for (const struct verb *v = verb_list; v->name; v++) name[n++] = v->name;
     const char *near = text_nearest(word, name, n);
     struct err e;
@@ -55,22 +55,31 @@ static int finish(int status)
 static int run_verb(const struct verb *v, int argc, char **argv)
 {
     static const char prefix[] = "mimdsim ";
-    char name[sizeof prefix + 32];
+    char name[sizeof prefix + 32], help[] = "--help";
     snprintf(name, sizeof name, "%s%s", prefix, v->name);
     argv[0] = name;
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "-h") == 0) argv[i] = help;
     return finish(v->run(argc, argv));
 }
 
 int main(int argc, char **argv)
 {
+    char help_word[] = "--help";
     argp_err_exit_status = err_exit_status(ERR_USAGE);
     if (argc < 2) {
         print_help(stderr);
         return err_exit_status(ERR_USAGE);
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+    bool help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0;
+    if (help && argc < 3) {
         print_help(stdout);
         return finish(0);
+    }
+    if (help) { /* "help VERB" is "VERB --help" */
+        argv[1] = argv[2];
+        argv[2] = help_word;
+        argc = 3;
     }
     if (strcmp(argv[1], "--version") == 0) {
         print_version();

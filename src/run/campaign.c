@@ -108,7 +108,9 @@ struct campaign {
     struct run_pulse *pulse; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
 };
 
-/* Show the progress, with how far the runs of busy workers are (worker 0 is this process when there are none). */
+static const double LONG_RUN_S = 0.9; /* [s] of the host; shorter runs show in the number of those done */
+
+/* Show the progress, with how far the long runs of busy workers are (worker 0 is this process when there are none). */
 static void show_progress(void *context)
 {
     struct campaign *c = context;
@@ -118,9 +120,10 @@ static void show_progress(void *context)
     for (int i = 0; c->pulse && (i < c->nworker || i == 0); i++) {
         const struct run_pulse *p = &c->pulse[i];
         double mine = (double)atomic_load_explicit(&p->events, memory_order_relaxed);
-        if (mine == 0 || (c->nworker > 0 && c->worker[i].busy < 0)) continue;
+        double spent = now - atomic_load_explicit(&p->begin, memory_order_relaxed);
+        if (mine == 0 || spent < LONG_RUN_S || (c->nworker > 0 && c->worker[i].busy < 0)) continue;
         events += mine;
-        rate += mine / (now - atomic_load_explicit(&p->begin, memory_order_relaxed));
+        rate += mine / spent;
         ended += atomic_load_explicit(&p->ended, memory_order_relaxed);
         nrank += atomic_load_explicit(&p->nrank, memory_order_relaxed);
     }

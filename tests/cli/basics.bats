@@ -27,6 +27,20 @@ verbs() { "$MIMDSIM" --help | awk '/^  [a-z]+ / && $1 != "mimdsim" { print $1 }'
     done
 }
 
+@test "-h and help do as --help" {
+    works mimdsim run --help
+    said=$output
+    works mimdsim run -h
+    stdout_is "$said"
+    works mimdsim help run
+    stdout_is "$said"
+    works mimdsim -h
+    stdout_says "Usage: mimdsim VERB"
+    fails_with 64 mimdsim help rnu
+    fails_with 64 mimdsim --verson
+    stderr_says "did you mean '--version'?"
+}
+
 @test "every verb is in the manual, and so is every long option" {
     for verb in $(verbs); do
         grep -q "^\.B[IR]* \"\?$verb" "$MIMDSIM_SRCDIR/docs/mimdsim.1" || { echo "no $verb in the manual"; return 1; }

@@ -45,6 +45,8 @@ mistaken() {
 64 # the database comes first: `mimdsim timeline some.db 1` # timeline 1 some.db
 64 # speedup-t3e is a scenario, not a database # links speedup-t3e
 64 # my.yaml is a machine, not a database # claims my.yaml
+64 # fig6 is a scenario, not a database # report fig6
+64 # '' is not the name of a database # query '' 'SELECT 1'
 END
 }
 
