@@ -28,19 +28,22 @@ static void make_inertia(const struct model *m, int i, const quad *normal, struc
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const struct body_def *def = &m->body[i];
-    quad own[9], jc = 0, mass = def->mass;
+    quad own[9], jc = 0, jo, mass = def->mass;
     planar_frame(m, i, normal + 3 * (i + 1), own);
     for (int j = 0; j < 9; j++) jc += own[j / 3] * def->inertia[at[j]] * own[j % 3];
     b->m = (real)mass;
     b->jc = (real)jc;
     b->per_m = mass > 0 && jc > 0 ? (real)(1 / mass) : 0;
     b->per_jc = mass > 0 && jc > 0 ? (real)(1 / jc) : 0;
+    jo = jc;
     for (int k = 0; k < 2; k++) {
         quad s = 0;
         for (int j = 0; j < 3; j++) s += own[3 * (k + 1) + j] * def->com[j];
         b->s[k] = (real)s;
         b->ms[k] = (real)(mass * s);
+        jo += mass * s * s;
     }
+    b->jo = (real)jo;
 }
 
 static void place_in_model(const struct model *m, int i, struct body *b)

@@ -23,7 +23,7 @@ struct body {
     bool has_spring, flipped;
     struct xform tree;   /* joint frame -> parent's planar frame */
     real m, s[2], ms[2]; /* mass; centre of mass from the origin; first moment */
-    real jc;             /* inertia about the normal through the centre of mass */
+    real jc, jo;         /* inertia about the normal through the centre of mass, through the origin */
     real per_m, per_jc;  /* their inverses, zero when there are none */
     real frame[9];       /* rows: normal, x, y in the user's body axes */
     real stiffness, rest, damping;

@@ -83,6 +83,7 @@ static void set_axes(struct body_def *def, struct random *r, double tilt, const 
         axis[k] = def->joint == JOINT_PRISMATIC ? across[k] + tilt * normal[k] : sign * normal[k] + tilt * across[k];
     }
     turn(q, true, axis, def->axis);
+    for (int k = 0; k < 3; k++) across[k] -= sign * tilt * normal[k];
     if (def->joint == JOINT_PLANAR) turn(q, true, across, def->axis2);
 }
 
