@@ -61,6 +61,7 @@ struct kernel_type {
     const char *title; /* one line for people */
     bool needs_model;
     bool does_inverse, does_forward;
+    bool planar; /* computes in three components: the scene must be planar (mech/planar.h) */
     int nstage;
     const char *const *stage_name; /* (nstage) */
 

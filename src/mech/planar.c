@@ -121,8 +121,8 @@ quad *planar_normals(const struct model *m, quad tolerance, struct arena *a, str
         rotation_of(&b->placement, r);
         mat3_mul_vec_transposed(n, r, normal + 3 * (b->parent + 1));
         if (settle(b, tolerance, n)) continue;
-        err_set(e, ERR_CONFIG, "the scene is not planar: body '%s' leaves the plane: its %s joint", b->name,
-                joint_name(b->joint));
+        err_set(e, ERR_CONFIG, "the scene is not planar: the %s joint of '%s' leaves the plane", joint_name(b->joint),
+                b->name);
         return NULL;
     }
     return normal;

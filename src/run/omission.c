@@ -4,6 +4,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "mech/lump.h"
+#include "mech/planar.h"
 #include "run/launch.h"
 #include "run/references.h"
 
@@ -49,6 +50,26 @@ struct job_omit omission_job(const struct run_spec *spec, const struct model *m,
     o.turn = all_zero(s->base_acceleration, 3) && !(spec->keep & KEEP_TURN);
     o.bias = o.load && o.base && !(spec->keep & KEEP_BIAS);
     return o;
+}
+
+/* in_plane: whether a run that leaves the algebra open takes three components. */
+static bool in_plane(const struct run_spec *spec, const struct model *m, const struct state *s)
+{
+    struct err why;
+    err_clear(&why);
+    return !(spec->keep & KEEP_SPATIAL) && spec->kernel.operators == OPERATORS_STRUCTURED && m->nloop == 0 &&
+           planar_scene(m, s, spec->kernel.precision, &why);
+}
+
+const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m, const struct state *s,
+                                          struct err *e)
+{
+    const struct kernel_spec *k = &spec->kernel;
+    const struct kernel_type *kernel = kernel_find_precision(k->name, k->precision);
+    if (!kernel) err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", k->name);
+    if (!kernel || !m || k->algebra == ALGEBRA_SPATIAL) return kernel;
+    if (k->algebra == ALGEBRA_AUTO) return in_plane(spec, m, s) ? kernel_find_planar(k->name, k->precision) : kernel;
+    return planar_scene(m, s, k->precision, e) ? kernel_find_planar(k->name, k->precision) : NULL;
 }
 
 int omission_movable(const struct model *m)
@@ -124,8 +145,11 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
     if (m->is_chain && m->nloop == 0)
         add(l, k->operators == OPERATORS_DENSE ? 0 : KEEP_BRANCHES, bound, "branch and loop phases",
             "an open chain has neither");
+    if (kernel->planar)
+        add(l, k->algebra == ALGEBRA_AUTO ? KEEP_SPATIAL : 0, bound, "out-of-plane components",
+            "all joints move in one plane: three components of six");
     if (revolute) add(l, KEEP_GENERAL, 0, "general joints in the serial references", "all joints are revolute");
-    if (kernel->does_forward && m->nu > BASELINE_MOST)
+    if (kernel->does_forward && !kernel->planar && m->nu > BASELINE_MOST)
         add(l, KEEP_BASELINE, 0, "mass-matrix baseline", "more than 512 degrees of freedom: cubic, never fastest");
 }
 

@@ -198,6 +198,27 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     add_fastest(out, first);
 }
 
+/* The same in three components, for programs that compute in these: nothing else would be a fair match. Loops and dense
+ * operators have no serial code of that kind. */
+static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
+                       struct scene *scene, struct run_result *out)
+{
+    struct work inverse = {0};
+    if (job->model->nloop > 0 || job->spec->kernel.operators == OPERATORS_DENSE) return;
+    const int first = out->nbaseline;
+    if (kernel->does_inverse) {
+        inverse = scene_planar_inverse(scene)->work;
+        add_baseline(out, cost, "rnea", &inverse);
+    }
+    if (kernel->does_forward && scene_planar_forward(scene)->found) {
+        struct work w = scene_planar_forward(scene)->work;
+        repeat(&w, evaluations(&job->spec->kernel));
+        work_add(&w, &inverse);
+        add_baseline(out, cost, kernel->does_inverse ? "rnea+aba" : "aba", &w);
+    }
+    add_fastest(out, kernel->does_inverse && kernel->does_forward ? first + 1 : first);
+}
+
 static void add_parallel_work(const struct node_cost *cost, struct run_result *out)
 {
     struct work all = {0};
@@ -212,6 +233,7 @@ void references_baselines(const struct kernel_job *job, const struct kernel_type
     struct arena_mark mark = arena_mark(scratch);
     struct node_cost cost = node_cost_make(&job->spec->machine.node);
     add_parallel_work(&cost, out);
-    add_serial(job, kernel, &cost, scene, out);
+    if (kernel->planar) add_planar(job, kernel, &cost, scene, out);
+    else add_serial(job, kernel, &cost, scene, out);
     arena_release(scratch, mark);
 }

@@ -15,13 +15,6 @@
 #include "run/scene.h"
 #include "run/trust.h"
 
-static const struct kernel_type *find_kernel(const struct run_spec *spec, struct err *e)
-{
-    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
-    if (!k) err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", spec->kernel.name);
-    return k;
-}
-
 /* The arrays for the answers. */
 static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
                      struct scene *scene, struct arena *a, struct err *e)
@@ -114,13 +107,15 @@ bool run_sharing(const struct run_spec *spec, struct scene_shelf *shelf, struct 
 {
     memset(out, 0, sizeof *out);
     double begin = host_seconds();
-    const struct kernel_type *kernel = find_kernel(spec, e);
+    const struct kernel_type *kernel = omission_kernel(spec, NULL, NULL, e);
     if (!kernel) return false;
     if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
         return err_set(e, ERR_CONFIG,
                        "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
     struct scene *scene = kernel->needs_model ? scene_take(shelf, spec, e) : NULL;
     if (kernel->needs_model && !scene) return false;
+    if (scene) kernel = omission_kernel(spec, scene->model, scene->state, e);
+    if (!kernel) return false;
     struct arena *scratch = arena_create();
     struct kernel_job job;
     struct run_spec own = *spec;
@@ -150,7 +145,7 @@ enum { STACK_PAGES_BYTES = 2 * 4096 };
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
 {
     memset(out, 0, sizeof *out);
-    const struct kernel_type *kernel = find_kernel(spec, e);
+    const struct kernel_type *kernel = omission_kernel(spec, NULL, NULL, e);
     if (!kernel) return false;
     struct arena *scratch = arena_create();
     struct kernel_job job = {.spec = spec, .nrank = spec->nrank};
@@ -162,7 +157,9 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         job.model = m, job.state = s;
         job.omit = omission_job(spec, m, s);
         job.omit.fixed = fixed;
+        kernel = omission_kernel(spec, m, s, e);
     }
+    ok = ok && kernel;
     if (ok) ok = kernel->accepts(spec, job.model, e);
     if (ok) {
         struct kernel_estimate k = {0};

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "mech/planar_dynamics.h"
 #include "run/omission.h"
 
 /* Bodies: what may stay in memory beside the scene in use. */
@@ -105,6 +106,30 @@ const struct serial_answer *scene_forward(struct scene *s, enum forward_method m
     struct arena *scratch = arena_create();
     x->found = dynamics_type_of(PRECISION_DOUBLE)
                    ->forward(s->model, s->state, method, scratch, x->x, NULL, NULL, &x->work);
+    arena_destroy(scratch);
+    return x;
+}
+
+const struct serial_answer *scene_planar_inverse(struct scene *s)
+{
+    struct serial_answer *x = &s->planar_inverse;
+    if (x->asked) return x;
+    x->asked = x->found = true;
+    x->x = TAKE(s->arena, s->model->nu, double);
+    struct arena *scratch = arena_create();
+    planar_inverse(s->model, s->state, scratch, x->x, &x->work);
+    arena_destroy(scratch);
+    return x;
+}
+
+const struct serial_answer *scene_planar_forward(struct scene *s)
+{
+    struct serial_answer *x = &s->planar_forward;
+    if (x->asked) return x;
+    x->asked = true;
+    x->x = TAKE(s->arena, s->model->nu, double);
+    struct arena *scratch = arena_create();
+    x->found = planar_forward(s->model, s->state, scratch, x->x, &x->work);
     arena_destroy(scratch);
     return x;
 }

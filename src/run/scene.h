@@ -29,6 +29,7 @@ struct scene {
     int fixed;               /* the others, when they have become part of these; otherwise 0 */
     long used;               /* when it was last asked for */
     struct serial_answer inverse, forward[FORWARD_METHODS]; /* in double precision */
+    struct serial_answer planar_inverse, planar_forward;     /* the same in three components */
 };
 
 /* A few scenes, the least recently used making room for new ones. */
@@ -46,5 +47,10 @@ struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec,
  * `method`. Computed at the first call. */
 const struct serial_answer *scene_inverse(struct scene *s);
 const struct serial_answer *scene_forward(struct scene *s, enum forward_method method);
+
+/* scene_planar_inverse, scene_planar_forward: by recursive Newton-Euler and by articulated bodies of three components,
+ * for open scenes that are planar (mech/planar.h). */
+const struct serial_answer *scene_planar_inverse(struct scene *s);
+const struct serial_answer *scene_planar_forward(struct scene *s);
 
 #endif

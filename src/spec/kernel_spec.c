@@ -11,6 +11,7 @@ static const char *const formulations[] = {"paper", "direct", NULL};
 static const char *const solvers[] = {"pcr-symmetric", "pcr", "cr", "cr-pcr", "partition", "thomas", NULL};
 static const char *const part_solvers[] = {"pcr", "cr", NULL};
 static const char *const operators[] = {"structured", "dense", NULL};
+static const char *const algebras[] = {"auto", "spatial", "planar", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
@@ -143,6 +144,9 @@ static const struct field fields[] = {
      .idle = idle_unless_partition, .doc = "of the interfaces between the parts of solver 'partition'"},
     {.key = "operators", .kind = FIELD_CHOICE, AT(operators), .choice = operators, .fallback = "structured",
      .idle = idle_without_model, .doc = "6x6 operators in full, as the paper's code, or as rotation and offset"},
+    {.key = "algebra", .kind = FIELD_CHOICE, AT(algebra), .choice = algebras, .fallback = "auto",
+     .idle = idle_without_model,
+     .doc = "six components, or three in the plane of a planar scene; auto: three with structured operators"},
     {.key = "precision", .kind = FIELD_CHOICE, AT(precision), .choice = precisions, .fallback = "double",
      .idle = idle_without_model, .doc = "of the arithmetic"},
     {.key = "partition", .kind = FIELD_CHOICE, AT(partition), .choice = partitions, .fallback = "block",

@@ -19,7 +19,7 @@ struct record_spec {
 enum keep_bit { KEEP_START_EVENTS = 1, KEEP_SPANS = 2, KEEP_LINKS = 4, KEEP_BASELINE = 8, KEEP_CONTENTION = 16,
             KEEP_EXTERNAL = 32, KEEP_VELOCITY = 64, KEEP_BASE = 128, KEEP_BIAS = 256,
             KEEP_FIXED = 512, KEEP_GENERAL = 1024, KEEP_BRANCHES = 2048, KEEP_TURN = 4096,
-            KEEP_SCENES = 1 << 15, KEEP_ALL = 0xffff };
+            KEEP_SPATIAL = 8192, KEEP_SCENES = 1 << 15, KEEP_ALL = 0xffff };
 
 /* How level 'auto-tolerance' was settled: no setting, no part of a run's identity. */
 struct level_choice {

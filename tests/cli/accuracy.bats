@@ -56,6 +56,30 @@ scenario() {
     sql_is mimdsim.db "SELECT class FROM run_omission WHERE what = 'velocity terms'" exact
 }
 
+@test "a planar scene is computed in three components, against serial codes in three, unless told otherwise" {
+    scenario 'sweep: {kernel.algebra: [spatial, auto, planar]}'
+    works mimdsim run small.yaml --quiet --set model.axes=parallel
+    sql_is mimdsim.db "SELECT count(*), sum(status = 'ok') FROM run" '3|3'
+    sql_is mimdsim.db "SELECT s.sent_bytes > 3 * p.sent_bytes, s.makespan_ps > p.makespan_ps, p.makespan_ps = q.makespan_ps
+        FROM run s, run p, run q WHERE s.id = 1 AND p.id = 2 AND q.id = 3" '1|1|1'
+    sql_is mimdsim.db "SELECT s.time_ps > 2 * p.time_ps FROM baseline s, baseline p
+        WHERE s.run_id = 1 AND p.run_id = 2 AND s.name = 'rnea+aba' AND p.name = 'rnea+aba'" 1
+    sql_is mimdsim.db "SELECT group_concat(name, ', ') FROM (SELECT name FROM baseline WHERE run_id = 2 ORDER BY ordinal)" \
+        'parallel code on one processor, rnea, rnea+aba, fastest serial'
+    sql_is mimdsim.db "SELECT run_id, class, bound < 1e-7 FROM run_omission WHERE what = 'out-of-plane components'" \
+        "$(printf '%s\n' '2|bounded|1' '3|bounded|1')"
+    works mimdsim run small.yaml --quiet --force --keep-all --set model.axes=parallel --set kernel.algebra=auto
+    sql_is mimdsim.db "SELECT count(*) FROM run_omission WHERE what = 'out-of-plane components' AND run_id > 3" 0
+}
+
+@test "three components are refused where a body leaves the plane, and never chosen for dense operators" {
+    scenario
+    fails_with 78 mimdsim run small.yaml --quiet --set kernel.algebra=planar
+    stderr_says "the scene is not planar: the revolute joint of 'body 1' leaves the plane"
+    works mimdsim explain small.yaml --set model.axes=parallel --set kernel.operators=dense
+    [[ $output != *out-of-plane* ]]
+}
+
 @test "explain lists every kind that some run leaves out, and the settings that act nowhere" {
     scenario 'sweep: {level: [loggp, auto], model.rate: [0 rad/s, 1 rad/s]}'
     works mimdsim explain small.yaml

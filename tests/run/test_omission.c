@@ -102,6 +102,7 @@ static struct run_spec draw(int number)
     struct random r = random_make(20, (uint64_t)number, 1);
     struct run_spec s = {0};
     draw_model(&r, &s.model);
+    if (number % 3 == 0) s.model.axes = AXES_PARALLEL; /* planar, unless something else leaves the plane */
     draw_kernel(&r, &s.model, &s.kernel);
     s.nrank = 1 + any(&r, s.model.nbody);
     s.machine = trial_machine(s.nrank);
@@ -117,12 +118,12 @@ static struct run_spec draw(int number)
 static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v, struct omission *left_out, int *n)
 {
     struct err e = {0};
-    const struct kernel_type *k = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
     struct model *m = model_build(&spec->model, a, &e);
     if (!m) fail_msg("%s", e.text);
     struct state *s = state_make(m, &spec->model, a);
     struct kernel_job job = {.spec = spec, .model = m, .nrank = spec->nrank};
     const int fixed = omission_scene(spec, &m, &s, a);
+    const struct kernel_type *k = omission_kernel(spec, m, s, &e);
     job.model = m, job.state = s;
     job.omit = omission_job(spec, m, s);
     job.omit.fixed = fixed;
@@ -253,7 +254,7 @@ static void no_omission_changes_a_result_beyond_its_class(void **state)
     assert_true(scenes >= 200);
     static const unsigned rare[] = {KEEP_EXTERNAL, KEEP_VELOCITY, KEEP_BASE, KEEP_BIAS, KEEP_START_EVENTS,
                                     KEEP_CONTENTION, KEEP_FIXED, KEEP_GENERAL, KEEP_BRANCHES,
-                                    KEEP_TURN};
+                                    KEEP_TURN, KEEP_SPATIAL};
     for (size_t i = 0; i < sizeof rare / sizeof *rare; i++) {
         int found = 0;
         for (const struct tally *t = tally; t->scenes > 0; t++) found += t->keep == rare[i] ? t->scenes : 0;
