@@ -32,12 +32,12 @@ subline = "each symbol a rung of a ladder, each curve a method; further left is 
 array failures[3]; do for [i=1:3] { failures[i] = 0 }
 stats refused using (b = int(column("block")), n = int(column("line")), b > 0 ? (failures[b] = n > failures[b] ? n : failures[b]) : 0, 0) nooutput
 
-wide = 1150.0; left_edge = 74.0; gap = 16.0; panel_wide = (wide - left_edge - 14 - 2*gap)/3; panel_high = 168.0
+wide = 1150.0; left_edge = 82.0; gap = 16.0; panel_wide = (wide - left_edge - 14 - 2*gap)/3; panel_high = 168.0
 longest(b) = most[3*b-2] > most[3*b-1] ? (most[3*b-2] > most[3*b] ? most[3*b-2] : most[3*b]) : \
     (most[3*b-1] > most[3*b] ? most[3*b-1] : most[3*b])
 key_rows(b) = b == 1 ? 0 : b == 2 ? longest(b) : ceil(longest(b)/2.0)
 panels_high(b) = 60 + (b == 1 ? panel_high + 46 : 2*panel_high + 96)
-block_high(b) = header[b] eq "" ? 0 : panels_high(b) + 14*key_rows(b) + (failures[b] > 0 ? 16 + 15*failures[b] : 4) + 20
+block_high(b) = header[b] eq "" ? 0 : panels_high(b) + 16*key_rows(b) + (failures[b] > 0 ? 16 + 15*failures[b] : 4) + 20
 begins(b) = 66 + (b > 1 ? block_high(1) : 0) + (b > 2 ? block_high(2) : 0)
 total = begins(3) + block_high(3) + 24
 at_x(px) = px/wide; at_y(px) = 1.0 - px/total
@@ -54,6 +54,8 @@ short(s, n) = strlen(s) > n ? s[1:n-1]."…" : s
 
 do for [format in formats] {
     eval page(format, wide, total); tiny = format eq "png" ? ",16" : ",11"; strong = format eq "png" ? ",20" : ",13.5"
+    # svg draws symbols larger and sets labels of axes lower
+    symbol = format eq "png" ? 1.0 : 0.55; lift = format eq "png" ? 0.4 : 0.75
     set multiplot
     eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey; eval foot(format)
     do for [b=1:3] { if (header[b] ne "") {
@@ -83,13 +85,13 @@ do for [format in formats] {
                 raw = unit*(x1 - x0 + 2*pad)/4; ten = 10**floor(log10(raw))
                 set xrange [unit*(x0 - pad):unit*(x1 + pad)]
                 set xtics autofreq ten*(raw/ten < 1.5 ? 1 : raw/ten < 3.5 ? 2 : raw/ten < 7.5 ? 5 : 10); set format x "%g"
-                set xlabel "predicted makespan [".(unit == 1e6 ? "µs" : unit == 1e3 ? "ms" : "s")."]" offset 0,0.4
+                set xlabel "predicted makespan [".(unit == 1e6 ? "µs" : unit == 1e3 ? "ms" : "s")."]" offset 0,lift
             } else {
                 unit = 1.0
                 x0 = x0/1.5; x1 = x1*1.5
                 if (decade(x1) - decade(x0) < 2) { x0 = 0.8*10**decade(x0); x1 = 1.25*10**(decade(x1) + 1) }
                 set logscale x; set xrange [x0:x1]; set xtics autofreq; set format x "10^{%T}"
-                set xlabel (across == 1 ? "host time [s]" : "predicted machine time [s]") offset 0,0.4
+                set xlabel (across == 1 ? "host time [s]" : "predicted machine time [s]") offset 0,lift
             }
             if (side == 1 && b > 1) { set label 3 family[3*b-3+c] at graph 0,1.06 left noenhanced font tiny } else { unset label 3 }
             set arrow 1 from graph 0,first exact to graph 1,first exact nohead linewidth 1 dashtype 2 linecolor rgb pale
@@ -102,29 +104,29 @@ do for [format in formats] {
             p = b == 1 ? 1 : c
             if (b == 1) {
                 plot for [k=1:n] data using (good(1, 1, k) ? unit*column(cost) : NaN):(level(column("relative_error"))) with points \
-                    pointtype open_point[(k-1)%6+1] pointsize 1.9 linewidth 1.8 linecolor rgb colour[k]
+                    pointtype open_point[(k-1)%6+1] pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k]
             }
             if (b == 2) {
                 plot for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q ? column(cost) : NaN):(level(column("relative_error"))) \
                         with lines linewidth 1 linecolor rgb colour[k], \
                     for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") < 2 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype by_precision[q] pointsize 1.3 linewidth 1.5 linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype by_precision[q] pointsize 1.3*symbol linewidth 1.5 linecolor rgb colour[k], \
                     for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") == 2 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype by_precision[q] + 1 pointsize 1.3 linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype by_precision[q] + 1 pointsize 1.3*symbol linecolor rgb colour[k], \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8 linewidth 1.5 linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb colour[k], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with points pointtype 2 pointsize 1.2 linewidth 1.6 linecolor rgb colour[k], \
+                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[k], \
                     for [k=1:n] NaN with lines linewidth 3 linecolor rgb colour[k] title curve_name[10*(3*b-3+c) - 10 + k]
             }
             if (b == 3) {
                 plot for [k=1:n] data using (good(b, p, k) && column("refinement") == 0 ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1 linecolor rgb colour[(k-1)%8+1], \
+                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1], \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1 linecolor rgb colour[(k-1)%8+1], \
+                        with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with points pointtype 2 pointsize 1.2 linewidth 1.6 linecolor rgb colour[(k-1)%8+1], \
-                    for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1 linecolor rgb colour[(k-1)%8+1] \
+                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[(k-1)%8+1], \
+                    for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1] \
                         title curve_name[10*(3*b-3+c) - 10 + k]
             }
             unset label 1; unset label 2; unset label 3; unset label 97; unset label 98; unset label 99; unset arrow 1
@@ -136,7 +138,7 @@ do for [format in formats] {
             set label 1 "level" at 0.09,0 font tiny textcolor rgb "#505050"; set label 2 "error" at 0.52,0 right font tiny textcolor rgb "#505050"
             set label 3 "host" at 0.77,0 right font tiny textcolor rgb "#505050"; set label 4 "predicted" at 1.0,0 right font tiny textcolor rgb "#505050"
             plot for [k=1:most[1]] data using (good(1, 1, k) ? 0.03 : NaN):(-k) with points pointtype open_point[(k-1)%6+1] \
-                    pointsize 1.9 linewidth 1.8 linecolor rgb colour[k], \
+                    pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k], \
                 data using (0.09):(here(1, 1) ? -column("series") : NaN):(strcol("name")) with labels left noenhanced font tiny, \
                 data using (0.52):(here(1, 1) ? -column("series") : NaN):(number(column("relative_error"))) with labels right noenhanced font tiny, \
                 data using (0.77):(here(1, 1) ? -column("series") : NaN):(column("host_s") > 0 ? seconds(column("host_s")) : "–") with labels right noenhanced font tiny, \
@@ -146,7 +148,7 @@ do for [format in formats] {
             set grid linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
         }
         if (failures[b] > 0) {
-            lower = begins(b) + panels_high(b) + 14*key_rows(b) + 8
+            lower = begins(b) + panels_high(b) + 16*key_rows(b) + 8
             set lmargin at screen 0; set rmargin at screen 1; set tmargin at screen 1; set bmargin at screen 0
             unset border; unset tics; unset xlabel; unset ylabel; unset grid; unset logscale; unset key
             set xrange [0:1]; set yrange [0:1]

@@ -11,13 +11,13 @@ array algorithm[columns + 1]
 array grade_count[3]; do for [i=1:3] { grade_count[i] = 0 }
 stats data using (column("motion") == 1 ? (motions = column("y") > motions ? int(column("y")) : motions, \
         steppers = column("x") > steppers ? int(column("x")) : steppers, \
-        own = strcol("algorithm")[1:4] eq "own " && column("x") > own ? int(column("x")) : own, \
+        own = strcol("algorithm")[1:4] eq "own " && column("implicit") == 0 && column("x") > own ? int(column("x")) : own, \
         explicit = column("implicit") == 0 && column("x") > explicit ? int(column("x")) : explicit) : \
         (algorithm[int(column("x"))] = strcol("algorithm"), 0), \
     grade_count[int(column("grade")) + 1] = grade_count[int(column("grade")) + 1] + 1, \
     headline = strcol("suite") eq "suite" ? "Stability: stiff and extreme cases against algorithms" : "Stability: ".strcol("suite"), 0) nooutput
 array stepper[steppers + 1]
-if (motions > 0) { stats data using (column("motion") == 1 ? (stepper[int(column("x"))] = strcol("algorithm")[1:4] eq "own " ? strcol("algorithm")[5:*] : strcol("algorithm"), 0) : 0) nooutput }
+if (motions > 0) { stats data using (column("motion") == 1 ? (stepper[int(column("x"))] = strcol("algorithm")[1:4] eq "own " && column("implicit") == 0 ? strcol("algorithm")[5:*] : strcol("algorithm"), 0) : 0) nooutput }
 subline = sprintf("%d ok, %d degraded, %d failed", grade_count[1], grade_count[2], grade_count[3])
 array grade_name[3] = ["ok", "degraded", "failed"]
 array grade_colour[3] = ["#d5e8f3", "#f0c060", "#b0401a"]

@@ -5,7 +5,7 @@
 WITH mine AS (
     SELECT *, algorithm LIKE 'own %' OR algorithm IN ('rk2', 'rk4', 'rkf45', 'rkck', 'rk8pd', 'msadams', 'rk1imp', 'rk2imp',
            'rk4imp', 'bsimp', 'msbdf') AS motion,
-           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,
+           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf', 'own implicit') AS implicit,
            CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
                 WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
                 WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5
@@ -20,7 +20,8 @@ cases AS (
     FROM mine GROUP BY motion, subject),
 algorithms AS (
     SELECT motion, algorithm, precision, row_number() OVER (PARTITION BY motion
-           ORDER BY algorithm LIKE 'motion %', precision <> 'double', implicit, algorithm LIKE '%contraction', min(ordinal)) AS x
+           ORDER BY algorithm LIKE 'motion %', precision <> 'double', implicit, algorithm LIKE '%contraction',
+           algorithm NOT LIKE 'own %', min(ordinal)) AS x
     FROM mine GROUP BY motion, algorithm, precision)
 SELECT m.motion, m.implicit, a.x, iif(m.motion, c.r, c.r + c.g) AS y, m.subject,
        m.algorithm || iif(m.precision = 'double', '', ' (' || m.precision || ')') AS algorithm, m.status, m.relative_error,
@@ -41,7 +42,7 @@ ORDER BY m.motion, y, a.x;
 WITH mine AS (
     SELECT *, algorithm LIKE 'own %' OR algorithm IN ('rk2', 'rk4', 'rkf45', 'rkck', 'rk8pd', 'msadams', 'rk1imp', 'rk2imp',
            'rk4imp', 'bsimp', 'msbdf') AS motion,
-           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,
+           algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf', 'own implicit') AS implicit,
            CASE WHEN suite <> 'suite' THEN 1 WHEN subject LIKE 'mass %' THEN 1
                 WHEN subject LIKE 'length %' OR subject LIKE 'molecular %' THEN 2 WHEN subject LIKE 'pose %' THEN 3
                 WHEN subject LIKE 'n %' THEN 4 WHEN subject LIKE 'rates %' THEN 5

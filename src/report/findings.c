@@ -132,20 +132,22 @@ static const char worst_cases[] =
     "SELECT subject AS \"worst cases\", sum(status = 'failed') AS failed, sum(status = 'degraded') AS degraded,"
     " count(*) AS answers, iif(max(condition) IS NULL, '', format('%.0e', max(condition))) AS condition,"
     " iif(max(growth) IS NULL, '', format('%.0e', max(growth))) AS growth,"
-    " ifnull(group_concat(DISTINCT iif(status = 'failed', algorithm || iif(precision = 'double', '',"
-    "  ' (' || precision || ')'), NULL)), '') AS \"failed by\","
+    " ifnull(replace(group_concat(DISTINCT iif(status = 'failed', algorithm || iif(precision = 'double', '',"
+    "  ' (' || precision || ')'), NULL)), ',', ', '), '') AS \"failed by\","
     " ifnull(max(iif(status = 'failed', nullif(reason, ''), NULL)), '') AS reason"
     " FROM stability WHERE suite = ?1 GROUP BY subject HAVING sum(status <> 'ok') > 0"
     " ORDER BY failed DESC, degraded DESC, min(ordinal) LIMIT 16";
 
 /* Evaluations stand at the beginning of a motion's reason. */
 static const char stiff_motions[] =
-    "WITH motion AS (SELECT *, algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf') AS implicit,"
+    "WITH motion AS (SELECT *, algorithm IN ('rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf',"
+    " 'own implicit') AS implicit,"
     "  iif(status = 'ok' AND reason GLOB '[0-9]*evaluations*', CAST(reason AS REAL), NULL) AS evaluations"
     "  FROM stability WHERE suite = ?1 AND (algorithm LIKE 'own %' OR algorithm IN ('rkf45', 'rk8pd', 'msadams',"
     "  'rk1imp', 'rk2imp', 'rk4imp', 'bsimp', 'msbdf')))"
-    " SELECT subject AS \"stiff motion\", iif(max(iif(algorithm LIKE 'own %', step_s, NULL)) IS NULL, 'none',"
-    "  format('%.2e', max(iif(algorithm LIKE 'own %', step_s, NULL))))"
+    " SELECT subject AS \"stiff motion\","
+    "  iif(max(iif(algorithm LIKE 'own %' AND NOT implicit, step_s, NULL)) IS NULL, 'none',"
+    "  format('%.2e', max(iif(algorithm LIKE 'own %' AND NOT implicit, step_s, NULL))))"
     "  AS \"largest stable explicit step\", min(iif(implicit, NULL, evaluations)) AS \"explicit evaluations\","
     "  min(iif(implicit, evaluations, NULL)) AS \"implicit evaluations\","
     "  CASE WHEN min(iif(implicit, evaluations, NULL)) IS NULL THEN 'no implicit is ok'"

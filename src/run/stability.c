@@ -85,7 +85,9 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
         if (!kernel_spec_needs_model(&spec[i].kernel))
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
         char name[64];
-        snprintf(name, sizeof name, "%.40s point %d", spec[i].scenario, i + 1);
+        int length = snprintf(name, sizeof name, "%.32s point %d", spec[i].scenario, i + 1);
+        if (spec[i].model.nbody > 0)
+            snprintf(name + length, sizeof name - (size_t)length, ", n = %d", spec[i].model.nbody);
         struct scene c = {.name = name, .spec = spec[i].model, .complete = true};
         c.moves = c.spec.stiffness > 0 || c.spec.damping > 0;
         if (!measure_scene(r, &c, most_bodies, e)) return false;
