@@ -12,15 +12,15 @@ array open_point[6] = [6, 4, 8, 10, 12, 3]
 array full_point[6] = [7, 5, 9, 11, 13, 15]
 array by_precision[3] = [6, 4, 8]
 
-array header[3]; array rows[3]; array most[9]; array least[3]; array top[3]; array used[9]
+array header[3]; array allowed[3]; array rows[3]; array most[9]; array least[3]; array top[3]; array used[9]
 array low[6]; array high[6]; array curve_name[90]
-do for [i=1:3] { header[i] = ""; rows[i] = 0; least[i] = 1; top[i] = 1e-300 }
+do for [i=1:3] { header[i] = ""; allowed[i] = ""; rows[i] = 0; least[i] = 1; top[i] = 1e-300 }
 do for [i=1:6] { low[i] = 1e300; high[i] = 0 }
 do for [i=1:9] { most[i] = 0; used[i] = 0 }
 do for [i=1:90] { curve_name[i] = "" }
 stats data using (b = int(column("block")), c = 3*b - 3 + int(column("panel")), k = int(column("series")), \
     header[b] = ladder_name[b].": ".strcol("quantity")." against ".strcol("reference").", ".strcol("at"), \
-    curve_name[10*c - 10 + k] = strcol("name"), used[c] = 1, most[c] = k > most[c] ? k : most[c], \
+    allowed[b] = strcol("allowed"), curve_name[10*c - 10 + k] = strcol("name"), used[c] = 1, most[c] = k > most[c] ? k : most[c], \
     e = column("relative_error"), least[b] = e > 0 && e < least[b] ? e : least[b], top[b] = e > top[b] ? e : top[b], \
     h = column("host_s"), h = e >= 0 && h > 0 ? h : NaN, low[2*b-1] = h < low[2*b-1] ? h : low[2*b-1], \
     high[2*b-1] = h > high[2*b-1] ? h : high[2*b-1], \
@@ -63,7 +63,7 @@ do for [format in formats] {
         exact = 10**bottom; over = 10**(decade(top[b]) + 1)
         level(x) = x == 0 ? exact : x
         step = ceil((decade(over) - decade(least[b]))/7.0)
-        set label 1 header[b] at screen at_x(14),at_y(begins(b) + 12) left noenhanced font strong
+        set label 1 header[b].(allowed[b] eq "" ? "" : ";  ring: the cheapest within ".allowed[b]) at screen at_x(14),at_y(begins(b) + 12) left noenhanced font strong
         set label 2 notes[b] at screen at_x(14),at_y(begins(b) + 31) left noenhanced font tiny textcolor rgb "#505050"
         do for [side=1:(b == 1 ? 1 : 2)] { do for [c=1:(b == 1 ? 2 : 3)] { if (b == 1 || used[3*b-3+c]) {
             across = b == 1 ? c : side
@@ -104,7 +104,9 @@ do for [format in formats] {
             p = b == 1 ? 1 : c
             if (b == 1) {
                 plot for [k=1:n] data using (good(1, 1, k) ? unit*column(cost) : NaN):(level(column("relative_error"))) with points \
-                    pointtype open_point[(k-1)%6+1] pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k]
+                    pointtype open_point[(k-1)%6+1] pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k], \
+                    data using (column("block") == 1 && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
+                        with points pointtype 6 pointsize 3.2*symbol linewidth 1.6 linecolor rgb "#000000"
             }
             if (b == 2) {
                 plot for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q ? column(cost) : NaN):(level(column("relative_error"))) \
@@ -117,6 +119,8 @@ do for [format in formats] {
                         :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb colour[k], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
                         with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[k], \
+                    data using (column("block") == b && column("panel") == p && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
+                        with points pointtype 6 pointsize 2.7*symbol linewidth 1.6 linecolor rgb "#000000", \
                     for [k=1:n] NaN with lines linewidth 3 linecolor rgb colour[k] title curve_name[10*(3*b-3+c) - 10 + k]
             }
             if (b == 3) {
@@ -126,6 +130,8 @@ do for [format in formats] {
                         with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
                         with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[(k-1)%8+1], \
+                    data using (column("block") == b && column("panel") == p && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
+                        with points pointtype 6 pointsize 2.7*symbol linewidth 1.6 linecolor rgb "#000000", \
                     for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1] \
                         title curve_name[10*(3*b-3+c) - 10 + k]
             }

@@ -35,6 +35,10 @@ SELECT r.block, r.panel, c.series, r.precision, r.refinement, c.name, r.method, 
        r.relative_error, r.host_s, r.machine_ps / 1e12 AS machine_s, r.status, r.block = 3 OR m.first = c.first AS drawn,
        (SELECT f.relative_error FROM ladder f WHERE f.scenario = r.scenario AND f.at = r.at AND f.family = r.family AND f.ladder = r.ladder
                AND f.method = r.method AND f.rung = r.rung AND f.quantity = 'finish times') AS finish_error,
+       EXISTS (SELECT 1 FROM ladder_choice o WHERE o.scenario = r.scenario AND o.ladder = r.ladder AND o.at = r.at
+               AND o.quantity = r.quantity AND o.method = r.method AND o.rung = r.rung) AS chosen,
+       ifnull((SELECT group_concat(format('%g', tolerance), ' or ') FROM ladder_choice o WHERE o.scenario = r.scenario
+               AND o.ladder = r.ladder AND o.at = r.at AND o.quantity = r.quantity AND o.method IS NOT NULL), '') AS allowed,
        r.text, r.scenario
 FROM rung r JOIN method m ON m.block = r.block AND m.panel = r.panel AND m.method = r.method
      JOIN curve c ON c.block = m.block AND c.panel = m.panel AND c.same = m.same

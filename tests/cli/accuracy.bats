@@ -189,6 +189,9 @@ scenario() {
     grep -q '>exact<' one/accuracy-other.svg
     # what is exact has no other error in the numbers beside the picture
     sqlite3 :memory: ".import --csv one/accuracy-other.csv t" "SELECT count(*) FROM t WHERE method = 'flit' AND relative_error + 0 <> 0" | grep -qx 0
+    # the rung that a ring marks is the one that was chosen
+    chosen=$(sql mimdsim.db "SELECT method || rung FROM ladder_choice WHERE ladder = 'arithmetic'")
+    sqlite3 :memory: ".import --csv both/accuracy-small.csv t" "SELECT method || rung FROM t WHERE chosen = 1 AND block = 2" | grep -qxF "$chosen"
     fails_with 66 mimdsim plot mimdsim.db accuracy-nobody
 }
 
