@@ -43,8 +43,8 @@ bool report_folder(const char *dir, struct err *e);
  * (free each and the array). */
 int report_figures(const char *data_dir, char ***name);
 
-/* report_figure_about: what figure `name` shows, the first sentence of its description (*title), and the command that
- * fills a database for it (*needs); "" when it does not say. The caller frees both texts. */
+/* report_figure_about: what figure `name` shows, as much of the first sentence of its description as a line holds
+ * (*title), and the command that fills a database for it (*needs); "" when it does not say. The caller frees both. */
 void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs);
 
 /* report_query: print the rows of `sql` as an aligned table (or as JSON, one document with

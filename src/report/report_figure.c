@@ -52,6 +52,11 @@ static char *figure_stem(const char *plots, const char *file)
     return drawn ? strndup(file, n - 4) : NULL;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
 int report_figures(const char *data_dir, char ***name)
 {
     char *plots = joined(data_dir, "/plots", "");
@@ -66,6 +71,7 @@ int report_figures(const char *data_dir, char ***name)
     }
     free(entry);
     free(plots);
+    qsort(*name, (size_t)n, sizeof **name, compare_names); /* without their endings they sort otherwise */
     return n;
 }
 
@@ -102,13 +108,38 @@ static const char *marked_line(const char *sql, const char *mark, char *word, si
     return NULL;
 }
 
+enum { TITLE_LENGTH = 110 };
+
+/* Where a sentence ends in [line, end): at a full stop that is none of several; NULL when it does not. */
+static const char *sentence_end(const char *line, const char *end)
+{
+    for (const char *c = line; c < end; c++)
+        if (*c == '.' && (c + 1 == end || c[1] == ' ') && (c == line || c[-1] != '.')) return c;
+    return NULL;
+}
+
+/* A title too long for a line ends before a clause, where there is one. */
+static void shorten(struct text *title)
+{
+    static const char *const marks[] = {";:", ","};
+    if (title->length <= TITLE_LENGTH) return;
+    size_t at = TITLE_LENGTH;
+    for (int k = 0; k < 2 && at == TITLE_LENGTH; k++)
+        for (size_t i = TITLE_LENGTH - 1; i > TITLE_LENGTH / 4 && at == TITLE_LENGTH; i--)
+            if (title->s[i + 1] == ' ' && strchr(marks[k], title->s[i])) at = i;
+    bool clause = at < TITLE_LENGTH;
+    while (!clause && at > 0 && title->s[at] != ' ') at--;
+    title->s[at] = '\0';
+    title->length = at;
+    if (!clause) text_add(title, " ...");
+}
+
 /* The comment that `sql` begins with, up to the end of its first sentence or the line of what it needs. */
 static void first_sentence(const char *sql, struct text *out)
 {
     for (const char *line = sql; strncmp(line, "-- ", 3) == 0 && strncmp(line, "-- needs: ", 10) != 0 &&
                              strncmp(line, "-- each: ", 9) != 0;) {
-        const char *end = strchrnul(line, '\n'), *stop = strstr(line, ". ");
-        if (stop == NULL || stop > end) stop = end[-1] == '.' ? end - 1 : NULL;
+        const char *end = strchrnul(line, '\n'), *stop = sentence_end(line, end);
         text_add(out, "%s%.*s", out->length > 0 ? " " : "", (int)((stop ? stop : end) - line - 3), line + 3);
         if (stop || !*end) return;
         line = end + 1;
@@ -124,6 +155,7 @@ void report_figure_about(const char *data_dir, const char *name, struct text *ti
     text_add(&path, "%s/plots/%s.sql", data_dir, name);
     if (text_read_file(&sql, path.s, &ignored) && sql.s != NULL) {
         first_sentence(sql.s, title);
+        shorten(title);
         marked_line(sql.s, "-- needs: ", line, sizeof line);
     }
     text_add(title, "%s", "");

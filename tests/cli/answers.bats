@@ -135,6 +135,9 @@ END
     listed=$(grep -c '^[a-z]' <<<"$output")
     [ "$listed" -eq "$(find "$MIMDSIM_DATA/plots" -name '*.gp' ! -name style.gp | wc -l)" ]
     [ "$(grep -c ' needs: mimdsim ' <<<"$output")" -eq "$listed" ]
+    [ "$(awk '{ if (length($0) > n) n = length($0) } END { print n }' <<<"$output")" -le 130 ]
+    stdout_says "fig9           Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies a processor"
+    grep '^[a-z]' <<<"$output" | LC_ALL=C sort -C -k 1,1
     works mimdsim plot --json
     json_is '$[2].name' fig5
     json_is '$[2].needs' 'mimdsim paper fig5'
