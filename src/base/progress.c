@@ -69,8 +69,8 @@ void progress_show(struct progress *p, double done)
     char left[32], state[96];
     if (rate > 0) {
         span_text((p->total - done) / rate, left);
-        snprintf(state, sizeof state, "%.0f %% (%.10g of %.10g, %.3g/s), %s left", 100 * done / p->total, done, p->total,
-                 rate, left);
+        snprintf(state, sizeof state, "%.0f %% (%.10g of %.10g, %.3g/s), %s left", 100 * done / p->total, done,
+                 p->total, rate, left);
     } else snprintf(state, sizeof state, "0 of %.10g", p->total);
     fprintf(stderr, "%s%s: %s%s%s%s", p->tty ? "\r" : "", p->what, state, p->detail ? "; " : "",
             p->detail ? p->detail : "", p->tty ? "\033[K" : "\n");
