@@ -36,8 +36,8 @@ void transform_motion(bool dense, real *y, const real *T, const real *v, struct 
 #define transform_compose SPACE_NAME(transform_compose)
 void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w);
 
-/* transform_base: y = T^T v for the acceleration v of the base; `slides`: it has no angular part, which saves most of the
- * work but with dense operators. */
+/* transform_base: y = T^T v for the acceleration v of the base; `slides`: it has no angular part, which saves most of
+ * the work but with dense operators. */
 #define transform_base SPACE_NAME(transform_base)
 void transform_base(bool dense, bool slides, real *y, const real *T, const real *v, struct work *w);
 

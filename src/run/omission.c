@@ -149,6 +149,8 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
         add(l, k->algebra == ALGEBRA_AUTO ? KEEP_SPATIAL : 0, bound, "out-of-plane components",
             "all joints move in one plane: three components of six");
     if (revolute) add(l, KEEP_GENERAL, 0, "general joints in the serial references", "all joints are revolute");
+    if (kernel->does_forward && !kernel->planar && job->spec->record.baselines == BASELINES_NEEDED)
+        add(l, KEEP_BASELINE, 0, "serial codes that cannot be fastest", "record.baselines asks for the needed ones");
     if (kernel->does_forward && !kernel->planar && m->nu > BASELINE_MOST)
         add(l, KEEP_BASELINE, 0, "mass-matrix baseline", "more than 512 degrees of freedom: cubic, never fastest");
 }

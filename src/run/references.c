@@ -169,6 +169,30 @@ static void repeat(struct work *w, uint64_t times)
     w->flop *= times, w->div *= times, w->sqrt *= times, w->trig *= times, w->bytes *= times, w->call *= times;
 }
 
+/* What a method takes at least on a model, by formula: the factorisation of the mass matrix; of chains of constraint
+ * forces with revolute joints, a row's elimination with one neighbour and what the accelerations take twice, in the
+ * paper's form an inverse dynamics besides. Dense codes are tallied by formula alone. */
+static struct work least_work(const struct model *m, enum forward_method method, bool dense)
+{
+    enum { ROW = 415, ACCELERATIONS = 240, BIAS = 330 };
+    const uint64_t n = (uint64_t)m->nu;
+    struct work w = {0};
+    bool revolute = m->nloop == 0;
+    for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
+    if (m->nloop == 0 && dense) dense_tally_forward(m, method, &w);
+    else if (m->nloop == 0 && method == FORWARD_CRBA) w.flop = n * (n + 1) * (2 * n + 1) / 6;
+    else if (revolute && method == FORWARD_CFA_PAPER) w.flop = (n - 1) * (ROW + BIAS);
+    else if (revolute && method == FORWARD_CFA_DIRECT) w.flop = (n - 1) * (ROW + ACCELERATIONS);
+    return w;
+}
+
+bool references_never_fastest(const struct model *m, enum forward_method method, bool dense,
+                              const struct node_cost *cost, const struct work *aba)
+{
+    const struct work least = least_work(m, method, dense);
+    return method != FORWARD_ABA && aba && node_cost_ps(cost, &least) > node_cost_ps(cost, aba);
+}
+
 /* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
 static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
                        struct scene *scene, struct run_result *out)
@@ -181,14 +205,19 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
         if (dense) dense_tally_inverse(job->model, &inverse);
         add_baseline(out, cost, "rnea", &inverse);
     }
+    const bool keep = job->spec->keep & KEEP_BASELINE;
+    const bool choose = job->spec->record.baselines == BASELINES_NEEDED && !keep;
+    struct work aba_work;
+    const struct work *aba = NULL;
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
-        if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !(job->spec->keep & KEEP_BASELINE))
-            continue;
+        if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !keep) continue;
+        if (choose && references_never_fastest(job->model, methods[i], dense, cost, aba)) continue;
         const struct serial_answer *serial = scene_forward(scene, methods[i]);
         struct work w = serial->work;
         if (!serial->found) continue;
         if (dense) dense_tally_forward(job->model, methods[i], &w);
+        if (i == 0) aba_work = w, aba = &aba_work;
         repeat(&w, evaluations(&job->spec->kernel));
         work_add(&w, &inverse);
         char name[40];

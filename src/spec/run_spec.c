@@ -1,6 +1,8 @@
 /* run_spec.c - the settings of a run itself, and all tables together. */
 #include "spec/run_spec.h"
 
+#include <string.h>
+
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct run_spec, member)
@@ -16,6 +18,14 @@ bool run_spec_is_random(const struct run_spec *r)
 static const char *idle_unless_random(const struct run_spec *r)
 {
     return run_spec_is_random(r) ? NULL : "there is no noise, no background traffic and no random route";
+}
+
+static const char *const baseline_rules[] = {"all", "needed", NULL};
+
+static const char *idle_without_choice(const struct run_spec *r)
+{
+    if (!kernel_spec_needs_model(&r->kernel)) return "this kernel only sends messages and has no serial code";
+    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics has one serial code" : NULL;
 }
 
 static const struct field fields[] = {
@@ -38,6 +48,13 @@ static const struct field fields[] = {
      .fallback = "1",
      .idle = idle_unless_random,
      .doc = "of noise and random routes"},
+    {.key = "record.baselines",
+     .kind = FIELD_CHOICE,
+     AT(record.baselines),
+     .choice = baseline_rules,
+     .fallback = "all",
+     .idle = idle_without_choice,
+     .doc = "serial codes to hold the run against: all, or those that can be the fastest by their counts"},
     {.key = "record.links",
      .kind = FIELD_BOOL,
      AT(record.links),

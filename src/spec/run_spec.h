@@ -9,10 +9,14 @@
 #include "spec/machine_spec.h"
 #include "spec/model_spec.h"
 
+/* Serial codes that a run is held against: all, or those that can be the fastest. */
+enum baseline_rule { BASELINES_ALL, BASELINES_NEEDED };
+
 /* What to record beyond the totals. None of these changes a simulated time. */
 struct record_spec {
     bool spans;  /* who did what from when to when (timeline) */
     bool links;  /* per-link busy time and queueing */
+    enum baseline_rule baselines;
 };
 
 /* What is computed although nothing asks for it (run's --keep-all): to show that leaving it out changes no result. */

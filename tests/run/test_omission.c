@@ -301,12 +301,55 @@ static void a_wrong_omission_is_seen(void **state)
     }
 }
 
+static const struct baseline *baseline_of(const struct run_result *r, const char *name)
+{
+    for (int i = 0; i < r->nbaseline; i++)
+        if (strcmp(r->baseline[i].name, name) == 0) return &r->baseline[i];
+    return NULL;
+}
+
+/* record.baselines = needed: the fastest is the same, and what is missing was slower. */
+static void serial_codes_left_out_are_never_the_fastest(void **state)
+{
+    (void)state;
+    int left_out = 0;
+    for (int number = 0; number < 120; number++) {
+        struct arena *a = arena_create();
+        struct run_spec spec = draw(number);
+        struct run_result all, needed;
+        struct err e = {0};
+        snprintf(spec.kernel.name, sizeof spec.kernel.name, "forward");
+        spec.kernel.steps = 0;
+        spec.machine.network.level = LEVEL_LOGGP;
+        if (spec.model.generator < MODEL_RING) spec.model.nbody = 1 + number;
+        if (number % 2) spec.model.joint = JOINT_REVOLUTE;
+        if (run_one(&spec, a, &all, &e)) {
+            spec.record.baselines = BASELINES_NEEDED;
+            assert_true(run_one(&spec, a, &needed, &e));
+            const struct baseline *fastest = baseline_of(&needed, "fastest serial");
+            assert_non_null(fastest);
+            assert_int_equal(fastest->time_ps, baseline_of(&all, "fastest serial")->time_ps);
+            for (int i = 0; i < all.nbaseline; i++) {
+                const struct baseline *b = &all.baseline[i], *same = baseline_of(&needed, b->name);
+                assert_true(same ? same->time_ps == b->time_ps : b->time_ps > fastest->time_ps);
+                left_out += same == NULL;
+            }
+            spec.keep = KEEP_BASELINE;
+            assert_true(run_one(&spec, a, &needed, &e));
+            assert_int_equal(needed.nbaseline, all.nbaseline);
+        }
+        arena_destroy(a);
+    }
+    assert_true(left_out > 40);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_omission_changes_a_result_beyond_its_class),
         cmocka_unit_test(a_changed_digit_is_seen),
         cmocka_unit_test(a_wrong_omission_is_seen),
+        cmocka_unit_test(serial_codes_left_out_are_never_the_fastest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
