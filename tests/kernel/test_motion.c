@@ -169,6 +169,23 @@ static void implicit_springs_are_those_of_the_serial_integrator(void **state)
                 }
 }
 
+static void implicit_springs_in_a_plane(void **state)
+{
+    (void)state;
+    static const int generators[] = {MODEL_SERIAL_CHAIN, MODEL_COMB};
+    for (int g = 0; g < 2; g++)
+        for (int P = 1; P <= 9; P += 4) {
+            struct run_spec s = stiff(generators[g], JOINT_REVOLUTE, 9, P, 1e7);
+            s.model.axes = AXES_PARALLEL;
+            s.model.inertia = INERTIA_UNIFORM;
+            s.model.pose = POSE_STRAIGHT;
+            memcpy(s.model.gravity, (double[3]){0, -9.81, 0}, sizeof s.model.gravity);
+            s.kernel.algebra = ALGEBRA_PLANAR;
+            s.kernel.outer_refinements = 1;
+            assert_true(off_serial(&s) < 1e-9);
+        }
+}
+
 static void implicit_springs_of_trees_too(void **state)
 {
     (void)state;
@@ -212,6 +229,7 @@ int main(void)
         cmocka_unit_test(the_number_of_ranks_does_not_matter),
         cmocka_unit_test(implicit_springs_are_those_of_the_serial_integrator),
         cmocka_unit_test(implicit_springs_of_trees_too),
+        cmocka_unit_test(implicit_springs_in_a_plane),
         cmocka_unit_test(implicit_steps_are_refused_where_they_do_not_exist),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
