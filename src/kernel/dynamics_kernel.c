@@ -57,6 +57,8 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
         return err_set(e, ERR_CONFIG, "a body has no invertible inertia: the constraint force algorithm needs one");
     if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
+    if (k->residual == RESIDUAL_TWICE && (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
+        return err_set(e, ERR_CONFIG, "residual: twice exists for open chains in the direct formulation");
     return k->steps == 0 || k->step != STEP_LINEARLY_IMPLICIT || accepts_implicit(spec, model, e);
 }
 

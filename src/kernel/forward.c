@@ -6,6 +6,7 @@
 
 #include "kernel/assembly.h"
 #include "kernel/extremes.h"
+#include "kernel/forward_exact.h"
 #include "kernel/forward_rows.h"
 #include "kernel/tags.h"
 
@@ -24,6 +25,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->ud = CARVE(c, nu, real);
     motion_carve(&f->motion, c, job, chain_nq(s, ch->lo, ch->hi), nu);
     f->force = CARVE(c, SPACE * m, real);
+    f->exact = spec->residual == RESIDUAL_TWICE ? CARVE(c, SPACE * (m + 2), twice) : NULL;
     f->force_left = CARVE(c, SPACE, real);
     f->force_right = CARVE(c, SPACE, real);
     f->gain = CARVE(c, f->direct || refine ? SPACE * m : 0, real);
@@ -219,6 +221,10 @@ static void operator_form(struct forward *f, bool terms)
     const struct job_omit *omit = &ch->job->omit;
     const bool watch = f->watch;
     const bool gain = terms && !omit->load, bias = terms && !omit->velocity, base = terms && !omit->base;
+    if (f->exact) {
+        exact_operator_form(f, gain, bias, base);
+        return;
+    }
     if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, gain ? f->gain_left : NULL, before);
     else screw_copy(before, ch->shared->base);
     for (int i = lo; i < hi; i++) {
@@ -305,6 +311,7 @@ static void solve_operator_form(struct forward *f, bool terms, bool again)
 {
     struct chain *ch = &f->chain;
     const int inner = ch->job->spec->kernel.inner_refinements;
+    if (f->exact) exact_begin(f);
     operator_form(f, terms);
     for (int pass = 0; pass <= inner; pass++) {
         right_hand_side(f);

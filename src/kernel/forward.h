@@ -12,6 +12,13 @@
 #include "kernel/chain.h"
 #include "kernel/motion.h"
 
+/* About twice the digits of real (quad itself has no longer type). */
+#if REAL_BITS == 32
+typedef double twice;
+#else
+typedef __float128 twice;
+#endif
+
 struct forward {
     struct chain chain;
     struct blocks blocks;
@@ -23,6 +30,7 @@ struct forward {
     real *tau;                      /* own joints: given forces and springs */
     real *ud;                       /* own joints: the answer */
     real *force;                    /* own bodies (SPACE): F in the body's frame */
+    twice *exact;                   /* F of own joints, lo-1 and hi in twice the precision; NULL: not asked for */
     real *force_left, *force_right; /* F of bodies lo-1 and hi */
     real *gain;                     /* direct: Fext - P of own bodies (SPACE); unused when the job omits loads */
     real *gain_left;                /* of body lo-1 */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "kernel/assembly.h"
+#include "kernel/forward_exact.h"
 
 void forward_project(struct forward *f, int i, const real *M, int j, real *out)
 {
@@ -25,9 +26,12 @@ void forward_add_reaction(struct forward *f, int i, const real *x, real *force)
     const struct subspace *s = forward_subspace(f, i);
     const struct joint_cost *cost = body_cost(forward_body(f, i));
     const bool soft = forward_resistance(f, i) > 0;
-    if (soft) subspace_h(s, x, force);
-    subspace_w(s, x + (soft ? s->d : 0), force);
+    real more[SPACE] = {0};
+    if (soft) subspace_h(s, x, more);
+    subspace_w(s, x + (soft ? s->d : 0), more);
+    screw_add(force, more);
     f->chain.work.flop += (uint64_t)(cost->w + (soft ? cost->h : 0));
+    if (f->exact) exact_add(f, i, more);
 }
 
 void forward_violation(struct forward *f, int i, const real *z, real *out)

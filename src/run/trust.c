@@ -36,7 +36,9 @@ static const char *remedy(const struct kernel_spec *k)
     if (k->inner_refinements == 0) return "kernel.inner_refinements: 1";
     if (k->outer_refinements == 0) return "kernel.outer_refinements: 1";
     const bool unstable = k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
-    return unstable ? "kernel.solver: cr" : "a higher kernel.precision";
+    if (unstable) return "kernel.solver: cr";
+    if (k->residual == RESIDUAL_TWICE) return "more kernel.inner_refinements, or a higher kernel.precision";
+    return "kernel.residual: twice (open chains), or a higher kernel.precision";
 }
 
 /* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints

@@ -13,6 +13,7 @@ static const char *const part_solvers[] = {"pcr", "cr", NULL};
 static const char *const operators[] = {"structured", "dense", NULL};
 static const char *const algebras[] = {"auto", "spatial", "planar", NULL};
 static const char *const precisions[] = {"double", "float", "quad", NULL};
+static const char *const residuals[] = {"working", "twice", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
 static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", "linearly-implicit", NULL};
@@ -159,6 +160,9 @@ static const struct field fields[] = {
     {.key = "refinement", .kind = FIELD_CHOICE, AT(refinement), .choice = refinement_rules, .fallback = "as-needed",
      .idle = idle_without_forward,
      .doc = "whether more refinements than the given ones are switched on where the residual asks for them"},
+    {.key = "residual", .kind = FIELD_CHOICE, AT(residual), .choice = residuals, .fallback = "working",
+     .idle = idle_without_chain_solver,
+     .doc = "forces and residual of a refined solution in the arithmetic's precision, or in twice its digits"},
     {.key = "inner_refinements", .kind = FIELD_INT, AT(inner_refinements), .min = 0, .max = 100, .fallback = "0",
      .idle = idle_without_forward, .doc = "corrections of the solution by its residual"},
     {.key = "outer_refinements", .kind = FIELD_INT, AT(outer_refinements), .min = 0, .max = 100, .fallback = "0",

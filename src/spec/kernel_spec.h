@@ -11,6 +11,7 @@ enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
 enum algebra { ALGEBRA_AUTO, ALGEBRA_SPATIAL, ALGEBRA_PLANAR };
 enum precision { PRECISION_DOUBLE, PRECISION_FLOAT, PRECISION_QUAD };
 enum part_solver { PART_PCR, PART_CR };
+enum residual_rule { RESIDUAL_WORKING, RESIDUAL_TWICE };
 enum partition_rule { PARTITION_BLOCK, PARTITION_BALANCED };
 enum refinement_rule { REFINEMENT_AS_NEEDED, REFINEMENT_AS_GIVEN };
 enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4, STEP_LINEARLY_IMPLICIT };
@@ -28,6 +29,7 @@ struct kernel_spec {
                                     and closed chains always take incoming ones */
     int hybrid_levels;           /* cr-pcr: levels of CR before PCR */
     enum refinement_rule refinement; /* as needed: more than the numbers below where the residual asks for it */
+    enum residual_rule residual; /* precision of forces and residual of the direct form's refinement, chains */
     int inner_refinements;       /* residual corrections with stored factors */
     int outer_refinements;       /* corrections through inverse dynamics */
     int steps;                   /* time steps; 0: one evaluation */

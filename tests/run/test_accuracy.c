@@ -252,6 +252,32 @@ static void the_suite_knows_good_from_bad(void **state)
     arena_destroy(a);
 }
 
+/* What no refinement in working precision mends, twice the precision does. */
+static void twice_the_precision_mends_the_worst(void **state)
+{
+    (void)state;
+    static const char *const name[] = {"mass alternating 1e12", "nearly points"};
+    for (int k = 0; k < 2; k++) {
+        int n;
+        const struct scene *c = scene_list(&n);
+        while (n > 0 && strcmp(c->name, name[k]) != 0) c++, n--;
+        assert_true(n > 0);
+        struct arena *a = arena_create(), *rows = arena_create();
+        struct stability_report r = {.arena = rows};
+        struct model *m;
+        struct state *s;
+        struct err e;
+        err_clear(&e);
+        assert_true(scene_build(c, a, &m, &s, &e));
+        stability_accelerations(&r, c->name, m, s, a);
+        assert_true(row_of(&r, "robust cr")->error > 1e-5);
+        assert_true(row_of(&r, "twice cr")->error < 1e-13);
+        assert_int_equal(row_of(&r, "twice cr")->refinements, 20);
+        arena_destroy(rows);
+        arena_destroy(a);
+    }
+}
+
 /* Energy is kept by a conservative scene and lost by a damped one; corrections that are not needed are not counted. */
 static void the_suite_tells_what_moves_and_what_was_refined(void **state)
 {
@@ -289,6 +315,7 @@ int main(void)
         cmocka_unit_test(nothing_left_out_changes_a_result),
         cmocka_unit_test(untrustworthy_answers_are_told),
         cmocka_unit_test(the_suite_knows_good_from_bad),
+        cmocka_unit_test(twice_the_precision_mends_the_worst),
         cmocka_unit_test(the_suite_tells_what_moves_and_what_was_refined),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
