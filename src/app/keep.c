@@ -20,7 +20,7 @@ static bool store_choice(struct store *s, const char *scenario, const struct acc
 bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err *e)
 {
     if (!store_begin(s, e)) return false;
-    bool ok = store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
+    bool ok = store_note_build(s, e) && store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
               store_delete(s, "ladder_choice", "scenario", store_text(r->scenario), e) && ladder_store(s, r, e);
     for (int i = 0; ok && i < r->nchoice; i++) ok = store_choice(s, r->scenario, &r->choice[i], e);
     if (ok) return store_commit(s, e);
@@ -45,7 +45,7 @@ static bool store_row(struct store *s, const struct stability_report *r, int i, 
 bool keep_stability(struct store *s, const struct stability_report *r, struct err *e)
 {
     if (!store_begin(s, e)) return false;
-    bool ok = store_delete(s, "stability", "suite", store_text(r->suite), e);
+    bool ok = store_note_build(s, e) && store_delete(s, "stability", "suite", store_text(r->suite), e);
     for (int i = 0; ok && i < r->nrow; i++) ok = store_row(s, r, i, e);
     if (ok) return store_commit(s, e);
     store_rollback(s);

@@ -201,7 +201,7 @@ bool savings_store(struct store *s, const struct savings *all, struct err *e)
     static const char *const name[] = {"scenario", "what", "ordinal", "why", "class", "bound", "at", "host_s",
                                        "host_saved_s", "host_noise_s", "machine_ps", "machine_saved_ps"};
     if (!store_begin(s, e)) return false;
-    bool ok = store_delete(s, "omission", "scenario", store_text(all->scenario), e);
+    bool ok = store_note_build(s, e) && store_delete(s, "omission", "scenario", store_text(all->scenario), e);
     for (int i = 0; ok && i < all->n; i++) {
         const struct saving *x = &all->item[i];
         const bool bounded = x->omission.bound > 0;

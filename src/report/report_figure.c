@@ -227,10 +227,21 @@ static bool add_hash(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
+/* Of rows that belong to no run: "mimdsim 0.1.0 (commit)", the programs that wrote in this database. */
+static bool writers(struct figure *f, struct text *out, struct err *e)
+{
+    struct text sources = {0};
+    bool ok = store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM build ORDER BY 1", 0, NULL,
+                           add_source, &sources, e);
+    if (sources.length > 0) text_add(out, "mimdsim %s", sources.s);
+    text_free(&sources);
+    return ok;
+}
+
 /* "mimdsim 0.1.0 (commit), 28 runs, configurations 3f2a91c07b11": from the rows that are shown. */
 static bool provenance(struct figure *f, struct text *out, struct err *e)
 {
-    if (f->run_ids.length == 0) return true;
+    if (f->run_ids.length == 0) return writers(f, out, e);
     struct text sources = {0}, hashes = {0};
     char hash[65];
     text_add(&f->run_ids, "]");
@@ -466,11 +477,17 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
 bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
 {
     struct report_drawings d;
-    bool ok = report_drawings_find(s, data_dir, name, &d, e);
-    for (int i = 0; ok && i < d.n; i++)
-        ok = make_figure(s, data_dir, d.figure, *d.which[i] ? d.which[i] : NULL, d.as[i], dir, e);
+    struct err first;
+    err_clear(&first);
+    if (!report_drawings_find(s, data_dir, name, &d, e)) return false;
+    for (int i = 0; i < d.n && (first.kind == ERR_NONE || first.kind == ERR_UNAVAILABLE); i++) {
+        struct err mine; /* without gnuplot the numbers of the others are written all the same */
+        err_clear(&mine);
+        if (!make_figure(s, data_dir, d.figure, *d.which[i] ? d.which[i] : NULL, d.as[i], dir, &mine)) first = mine;
+    }
     report_drawings_free(&d);
-    return ok;
+    if (first.kind != ERR_NONE) *e = first;
+    return first.kind == ERR_NONE;
 }
 
 bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,

@@ -33,6 +33,9 @@ bool store_has(struct store *s, const struct run_spec *spec);
 /* store_put: the run with provenance, in one transaction; nothing is stored on failure. */
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e);
 
+/* store_note_build: this program in table build, for rows that belong to no run; store_put does it by itself. */
+bool store_note_build(struct store *s, struct err *e);
+
 /* One value of a row, as stored: non-finite reals become NULL. */
 struct store_value {
     enum store_kind { STORE_NULL, STORE_INT, STORE_REAL, STORE_TEXT } kind;

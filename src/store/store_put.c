@@ -474,6 +474,8 @@ static bool remove_old(struct store *s, const struct run_spec *spec, struct err 
     return store_step(s, b.statement, e);
 }
 
+bool store_note_build(struct store *s, struct err *e) { return find_build(s, e); }
+
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e)
 {
     bool alone = !s->in_transaction;

@@ -170,9 +170,16 @@ scenario() {
     grep -q "^$counts" mimdsim.md
     saved=$(sql mimdsim.db "SELECT format('%.4g us', machine_saved_ps / 1e6) FROM omission WHERE what = 'external forces'")
     grep -q "external forces .* $saved" mimdsim.md
+    grep -q "provenance = 'mimdsim " figures/stability-small.gp
     works mimdsim report --json
     json_is_valid
     json_is '$[0]' mimdsim.md
+    # without gnuplot the numbers of every drawing are there, and the report says so
+    sqlite3 mimdsim.db "UPDATE omission SET scenario = 'other' WHERE what = 'timeline'"
+    rm -r figures
+    MIMDSIM_GNUPLOT=/nonexistent works mimdsim report
+    [ -s figures/omissions-small.csv ] && [ -s figures/omissions-other.csv ] && [ ! -e figures/omissions-other.png ]
+    grep -q 'This figure was not drawn' mimdsim.md
     fails_with 66 mimdsim report none.db
 }
 
