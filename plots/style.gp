@@ -8,8 +8,8 @@ formats = "png svg"
 
 # A format begins as the first did: what the last panel of the one before was called is forgotten.
 page(format, w, h) = "unset title; unset xlabel; unset ylabel; ".(format eq "png" ? \
-    sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,%d' linewidth 2 enhanced; set output '%s.png'", 2*w, 2*h, 19, figure) : \
-    sprintf("set terminal svg size %d,%d font 'DejaVu Sans,%d' linewidth 1.2 enhanced; set output '%s.svg'", w, h, 13, figure))
+    sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,%d' linewidth 2 enhanced; set output figure.'.png'", 2*w, 2*h, 19) : \
+    sprintf("set terminal svg size %d,%d font 'DejaVu Sans,%d' linewidth 1.2 enhanced; set output figure.'.svg'", w, h, 13))
 
 array colour[8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f"]
 array point[8] = [7, 5, 9, 13, 11, 6, 4, 8]

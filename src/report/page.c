@@ -179,6 +179,14 @@ static void base64(FILE *out, const unsigned char *s, size_t n)
     }
 }
 
+/* A path as Markdown takes it for a link's target. */
+static void put_target(FILE *md, const char *path)
+{
+    for (; *path; path++)
+        if (strchr(" %()<>\"'", *path)) fprintf(md, "%%%02X", (unsigned)(unsigned char)*path);
+        else putc(*path, md);
+}
+
 void page_figure(struct page *p, const char *name, const char *caption)
 {
     struct text path = {0}, svg = {0};
@@ -187,7 +195,13 @@ void page_figure(struct page *p, const char *name, const char *caption)
     const char *slash = strrchr(p->figures, '/');
     text_add(&path, "%s/%s.svg", p->figures, name);
     if (text_read_file(&svg, path.s, &ignored)) {
-        fprintf(p->md, "![%s](%s/%s.svg)\n\n", name, slash && slash[1] ? slash + 1 : p->figures, name);
+        fputs("![", p->md);
+        escape_md(p->md, name, false);
+        fputs("](", p->md);
+        put_target(p->md, slash && slash[1] ? slash + 1 : p->figures);
+        putc('/', p->md);
+        put_target(p->md, name);
+        fputs(".svg)\n\n", p->md);
         fputs("<figure><img alt=\"", p->html);
         escape(p->html, name);
         fputs("\" src=\"data:image/svg+xml;base64,", p->html);

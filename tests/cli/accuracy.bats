@@ -211,3 +211,12 @@ scenario() {
     json_is '$.runs[0].level' loggp
     json_is '$.runs[0].machine' t3e-300
 }
+
+@test "a scenario may have a name that no program likes" {
+    scenario
+    mv small.yaml "o'neil 5%.yaml"
+    works mimdsim explain "o'neil 5%.yaml" --measure --quiet
+    [ -s "figures/omissions-o'neil 5%.png" ]
+    works mimdsim report
+    grep -qF "(figures/omissions-o%27neil%205%25.svg)" mimdsim.md
+}
