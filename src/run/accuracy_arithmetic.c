@@ -6,7 +6,9 @@
 #include "base/text.h"
 #include "machine/node_cost.h"
 #include "mech/dynamics_table.h"
+#include "mech/planar_dynamics.h"
 #include "run/accuracy_ladder.h"
+#include "run/omission.h"
 #include "run/trial.h"
 
 static const char reference_name[] = "quad aba";
@@ -17,7 +19,8 @@ enum { MOST_DENSE = 300 }; /* degrees of freedom beyond which the mass matrix ta
 /* What is worth using; above a tenth an answer is none. */
 static void grade(struct accuracy_rung *r, double error) { ladder_grade(r, error, 1e-2, 0.1); }
 
-/* Seconds of one evaluation, set-up included: the best of three batches of some milliseconds. */
+/* Seconds of one evaluation (t NULL: articulated bodies in three components), set-up included: the best of three
+ * batches of some milliseconds. */
 static double time_forward(struct ladder *l, const struct dynamics_type *t, enum forward_method method, double *qdd)
 {
     double best = INFINITY;
@@ -27,7 +30,8 @@ static double time_forward(struct ladder *l, const struct dynamics_type *t, enum
         do {
             struct work w = {0};
             struct arena_mark mark = arena_mark(l->arena);
-            t->forward(l->model, l->state, method, l->arena, qdd, NULL, NULL, &w);
+            if (t) t->forward(l->model, l->state, method, l->arena, qdd, NULL, NULL, &w);
+            else planar_forward(l->model, l->state, l->arena, qdd, &w);
             arena_release(l->arena, mark);
             spent = host_seconds() - begin;
         } while (++n < 1000 && spent < 2e-3);
@@ -61,6 +65,26 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
     r->host_s = time_forward(l, t, method, qdd);
 }
 
+/* The serial code that the parallel programs have to beat where they compute in three components, too. */
+static void planar_rung(struct ladder *l, const double *reference)
+{
+    struct err e;
+    err_clear(&e);
+    const struct kernel_type *kernel = omission_kernel(&l->spec, l->model, l->state, &e);
+    if (!kernel || !kernel->planar || l->model->nloop > 0) return;
+    double *qdd = TAKE(l->arena, l->model->nu, double);
+    struct accuracy_rung *r = ladder_add(l, "serial planar aba", "double", "qdd", reference_name);
+    struct work w = {0};
+    if (!planar_forward(l->model, l->state, l->arena, qdd, &w)) {
+        text_copy(r->text, sizeof r->text, "a pivot was not positive");
+        return;
+    }
+    struct node_cost cost = node_cost_make(&l->spec.machine.node);
+    grade(r, trial_error(qdd, reference, l->model->nu));
+    r->machine_ps = node_cost_ps(&cost, &w);
+    r->host_s = time_forward(l, NULL, FORWARD_ABA, qdd);
+}
+
 static void serial_rungs(struct ladder *l, const double *reference)
 {
     for (int m = 0; m < FORWARD_METHODS; m++)
@@ -69,6 +93,7 @@ static void serial_rungs(struct ladder *l, const double *reference)
             serial_rung(l, (enum forward_method)m, from_coarse[p], reference);
             arena_release(l->arena, mark);
         }
+    planar_rung(l, reference);
 }
 
 /* --- on the machine --------------------------------------------------------------------------------------------- */
@@ -119,6 +144,7 @@ static void solver_rungs(struct ladder *l, enum formulation f, int solver, const
         for (int k = 0; k < 3; k++) {
             struct kernel_spec kernel = {.name = "forward", .formulation = f, .solver = solver_table[solver].solver,
                                          .part_solver = solver_table[solver].part, .precision = from_coarse[p],
+                                         .algebra = l->spec.kernel.algebra,
                                          .composites_incoming = true, .hybrid_levels = 1,
                                          .inner_refinements = refinement_table[k].inner,
                                          .outer_refinements = refinement_table[k].outer};

@@ -69,11 +69,11 @@ static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, co
 /* Mean work of a rank, and each of its messages paid in full over the mean distance: nothing overlaps, nobody waits. */
 static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 {
-    const struct kernel_type *kernel = kernel_find(l->spec.kernel.name);
     const struct machine_spec *m = &l->spec.machine;
     struct kernel_estimate x = {0};
     struct err e;
     err_clear(&e);
+    const struct kernel_type *kernel = omission_kernel(&l->spec, l->model, l->state, &e);
     double begin = host_seconds();
     struct topology *t = topology_create(&m->topology, l->arena, &e);
     if (!t || !kernel || !kernel->estimate) return false;

@@ -146,7 +146,8 @@ static void parallel_row(const struct judge *j, const struct variant *v)
     spec.kernel = (struct kernel_spec){.name = "forward", .formulation = v->formulation, .solver = v->solver,
                                        .part_solver = PART_CR, .precision = v->precision, .composites_incoming = true,
                                        .residual = v->twice ? RESIDUAL_TWICE : RESIDUAL_WORKING,
-                                       .inner_refinements = v->inner, .outer_refinements = v->outer};
+                                       .inner_refinements = v->inner, .outer_refinements = v->outer,
+                                       .algebra = ALGEBRA_SPATIAL};
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
     struct trial t = trial_run(&spec, j->m, j->s, j->a);

@@ -65,7 +65,8 @@ static double machine_time(const struct model *m, const struct state *s, enum st
     struct arena_mark mark = arena_mark(a);
     struct run_spec spec = {.machine = trial_machine(m->nbody), .nrank = m->nbody};
     spec.kernel = (struct kernel_spec){.name = "forward", .formulation = FORMULATION_DIRECT, .solver = SOLVER_CR,
-                                       .composites_incoming = true, .steps = steps, .step = rule,
+                                       .algebra = ALGEBRA_SPATIAL, .composites_incoming = true, .steps = steps,
+                                       .step = rule,
                                        .step_size = h * m->second};
     struct trial t = trial_run(&spec, m, s, a);
     arena_release(a, mark);

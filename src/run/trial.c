@@ -75,12 +75,11 @@ static void answer(struct trial *t, const struct kernel_job *job, const struct r
 struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a)
 {
     struct trial t = {.residual = NAN};
-    const struct kernel_type *kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision);
     struct run_result *result = TAKE(a, 1, struct run_result);
     struct kernel_job job;
     struct err e;
     err_clear(&e);
-    if (!kernel) err_set(&e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
+    const struct kernel_type *kernel = omission_kernel(spec, m, s, &e);
     bool good = kernel && job_make(&job, kernel, spec, m, s, a, &e);
     good = good && launch_job(kernel, &job, &spec->machine, &spec->record, spec->seed,
                               launch_largest_message(kernel, &job), a, a, result, &e);
