@@ -39,8 +39,9 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 r->loop_rows - r->loop_rank, r->loop_rows);
     if (r->inner_added > 0 && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
-                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer), the residual was %.2g\n",
+                "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the residual was %.2g\n",
                 spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
+                r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
     return store_put(k->store, spec, r, k->error);
 }

@@ -88,6 +88,7 @@ struct run_result {
     double residual;           /* largest constraint residual that a rank saw, relative; NaN: no forward dynamics */
     double condition;          /* lower bound of the block-scaled system's condition, from its pivots; 0: not known */
     int inner_added, outer_added; /* refinements that the run switched on by itself */
+    bool twice_added;          /* with residuals in twice the digits */
     double residual_before;    /* of the answer that needed them; with none added without meaning */
     double measured_s;         /* what a micro-benchmark's kernel measured, largest over ranks; NaN: no such kernel */
     int loop_rows, loop_rank;  /* constraints of closed chains; the independent ones among them, -1: not asked for */

@@ -85,7 +85,7 @@ static bool refine(struct run_spec *spec, const struct kernel_type *kernel, stru
     struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
     const double before = out->residual;
-    while (job->qdd && out->status != RUN_DEADLOCK && trust_refine(&spec->kernel, job->model->nbody, out)) {
+    while (job->qdd && out->status != RUN_DEADLOCK && trust_refine(spec, job->model, out)) {
         arena_release(scratch, work);
         arena_release(a, results);
         if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
@@ -98,6 +98,7 @@ static bool refine(struct run_spec *spec, const struct kernel_type *kernel, stru
     }
     out->inner_added = spec->kernel.inner_refinements - given.inner_refinements;
     out->outer_added = spec->kernel.outer_refinements - given.outer_refinements;
+    out->twice_added = spec->kernel.residual != given.residual;
     out->residual_before = before;
     return true;
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "kernel/estimate.h"
 #include "run/references.h"
 
 static double worst(const double *x, int n)
@@ -50,17 +51,34 @@ double trust_needs(const struct kernel_spec *k, int n)
     return fmin(overstated(k) * references_tolerance(k, n), 1e-3);
 }
 
-bool trust_refine(struct kernel_spec *k, int n, const struct run_result *out)
+/* The next thing to try; false: nothing is left. */
+static bool refine_more(struct kernel_spec *k, bool twice)
 {
-    enum { MOST_OUTER = 4 };
-    const bool enough = out->residual <= trust_needs(k, n); /* false for what is no number */
-    const bool keeps_factors = k->solver != SOLVER_PCR;
-    if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
-    if (k->inner_refinements == 0) k->inner_refinements = 1;
-    else if (k->outer_refinements == 0) k->outer_refinements = 1;
-    else if (k->outer_refinements < MOST_OUTER) k->outer_refinements = MOST_OUTER;
-    else return false;
+    enum { MOST_OUTER = 4, FEW_INNER = 4, MOST_INNER = 20 };
+    if (k->inner_refinements == 0) {
+        k->inner_refinements = 1;
+    } else if (k->outer_refinements == 0 && k->residual != RESIDUAL_TWICE) {
+        k->outer_refinements = 1;
+    } else if (twice && k->residual != RESIDUAL_TWICE) {
+        k->residual = RESIDUAL_TWICE;
+        k->inner_refinements = k->inner_refinements > FEW_INNER ? k->inner_refinements : FEW_INNER;
+    } else if (twice && k->inner_refinements < MOST_INNER) {
+        k->inner_refinements = MOST_INNER;
+    } else if (!twice && k->outer_refinements < MOST_OUTER) {
+        k->outer_refinements = MOST_OUTER;
+    } else {
+        return false;
+    }
     return true;
+}
+
+bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out)
+{
+    struct kernel_spec *k = &spec->kernel;
+    const bool enough = out->residual <= trust_needs(k, m->nbody); /* false for what is no number */
+    const bool keeps_factors = k->solver != SOLVER_PCR || kernel_branches(spec, m);
+    if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
+    return refine_more(k, !kernel_branches(spec, m) && k->formulation == FORMULATION_DIRECT);
 }
 
 void trust_check(const struct kernel_job *job, struct run_result *out)

@@ -4,6 +4,7 @@
 
 #include "kernel/kernel.h"
 #include "measure/run_result.h"
+#include "mech/model.h"
 
 /* trust_check: out->residual and condition = the worst over the ranks. A residual that is no number or leaves fewer
  * than about four digits (one in single precision; both less one and a half in the paper's formulation), or a
@@ -16,8 +17,10 @@ void trust_check(const struct kernel_job *job, struct run_result *out);
  */
 double trust_needs(const struct kernel_spec *k, int n);
 
-/* trust_refine: more refinements for *k, which gave out->residual on `n` bodies, when that is too much: one inner, then
- * one outer, then up to four. False: none is needed, none is left, or the settings forbid it; *k is then unchanged. */
-bool trust_refine(struct kernel_spec *k, int n, const struct run_result *out);
+/* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, when that is too much: one inner,
+ * then one outer; then open chains in the direct formulation get their residual in twice the digits with four inner
+ * ones and with twenty, others up to four outer ones. False: none is needed, none is left, or the settings forbid it;
+ * *spec is then unchanged. */
+bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out);
 
 #endif

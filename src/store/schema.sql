@@ -72,6 +72,7 @@ CREATE TABLE run (
     level_error_at   TEXT,
     inner_added      INTEGER NOT NULL,  -- refinements that were switched on because the first answer needed them:
     outer_added      INTEGER NOT NULL,  -- `residual` and all times are those with them
+    twice_added      INTEGER NOT NULL,  -- 1: the residual in twice the digits was switched on, too
     residual_before  REAL,              -- of that first answer
     left_out         TEXT NOT NULL,     -- what it left out, with reasons: run_omission as text
     config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash

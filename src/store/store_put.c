@@ -218,6 +218,7 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     bind_level_choice(&b, spec, asked);
     bind_int(&b, r->inner_added);
     bind_int(&b, r->outer_added);
+    bind_int(&b, r->twice_added);
     bind_real(&b, r->inner_added + r->outer_added > 0 ? r->residual_before : NAN);
     bind_text(&b, left_out.s);
     bind_text(&b, spec->config_text ? spec->config_text : "");

@@ -224,6 +224,13 @@ static void nothing_is_refined_that_is_good_enough_or_keeps_no_factors(void **un
     assert_true(r.status == RUN_INVALID && r.residual > 1e-3);
     assert_non_null(strstr(r.text, "not to be trusted"));
     plan_free(&p);
+    /* the direct form has a further way: forces and residual in twice the digits */
+    spec = SPEC(&p, "level=loggp", "n=64", "kernel.name=forward", "model.inertia=random", "model.mass_ratio=1e12",
+                "kernel.formulation=direct");
+    r = run(&spec, a);
+    assert_true(r.status == RUN_OK && r.twice_added && r.inner_added == 4 && r.residual_before > 0.1);
+    assert_true(r.error[0].relative < 1e-9);
+    plan_free(&p);
     arena_destroy(a);
 }
 
