@@ -96,7 +96,7 @@ static struct block *block_map(struct arena *a, size_t size)
     if (a->next < LARGEST_BLOCK) a->next *= 2;
     struct block *b =
         mmap(NULL, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    CHECK(b != MAP_FAILED && "out of memory");
+    if (b == MAP_FAILED) check_memory(capacity);
     /* A block of many takes fills from below, so large pages only save faults; a single large array may stay sparse. */
     if (capacity >= HUGE_BLOCK && size <= capacity / 8) madvise(b, capacity, MADV_HUGEPAGE);
     ROOT_ADD(b, capacity);

@@ -1,7 +1,7 @@
 /* arena.h - all memory of one run, given back at once.
  *
  * Blocks grow from the heap as needed; nothing is freed singly. Scratch is taken after a mark and given back by
- * arena_release. Memory is zeroed. Running out of memory is a CHECK: limits are estimated and refused at plan time. */
+ * arena_release. Memory is zeroed. Where the system refuses more, the process ends (check_memory). */
 #ifndef BASE_ARENA_H
 #define BASE_ARENA_H
 

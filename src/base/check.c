@@ -3,6 +3,9 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#include "base/err.h"
 
 struct check_note {
     void (*describe)(void *context, char *buffer, int size);
@@ -15,6 +18,14 @@ static _Thread_local struct check_note check_note;
 void check_note_set(void (*describe)(void *context, char *buffer, int size), void *context)
 {
     check_note = (struct check_note){describe, context};
+}
+
+void check_memory(size_t bytes)
+{
+    fprintf(stderr,
+            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` tells what a run needs\n",
+            (double)bytes / (1 << 20));
+    _exit(err_exit_status(ERR_INTERNAL)); /* a worker's copy of the parent's output is not its own to flush */
 }
 
 void check_failed(const char *file, int line, const char *cond)

@@ -4,11 +4,17 @@
 #ifndef BASE_CHECK_H
 #define BASE_CHECK_H
 
+#include <stddef.h>
+
 /* CHECK: abort with file, line, the condition and the note of check_note_set when `cond` is false. */
 #define CHECK(cond) ((cond) ? (void)0 : check_failed(__FILE__, __LINE__, #cond))
 
 /* check_failed: print the failed condition and the current note to stderr and abort(); never returns. */
 _Noreturn void check_failed(const char *file, int line, const char *cond);
+
+/* check_memory: say that the system refuses `bytes` more of memory, which is nobody's mistake, and end the process with
+ * the status of ERR_INTERNAL; never returns. */
+_Noreturn void check_memory(size_t bytes);
 
 /* check_note_set: register a function that describes the run in progress (time, rank, seed) for check_failed.
  *
