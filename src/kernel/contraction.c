@@ -358,8 +358,6 @@ static void store(const struct contraction *k)
         for (int i = 0; i < b->d; i++)
             job->qdd[b->u_at + i] = k->broken ? __builtin_nan("") : (double)k->answer[t->u_at[l] + i];
     }
-    if (job->residual) job->residual[rank] = (double)k->residual;
-    if (job->residual_scale) job->residual_scale[rank] = (double)k->residual_scale;
     if (rank != 0) return;
     if (job->refined) *job->refined = k->refined;
     for (int j = 0; j + 1 < k->room && job->lambda; j++)
@@ -373,6 +371,7 @@ static void evaluate_once(void *program)
     struct contraction *k = program;
     evaluate(k);
     if (!k->stored) store(k);
+    motion_watch(k->tree.job, comm_rank(k->tree.comm), k->residual, k->residual_scale, 0);
     k->stored = true;
 }
 

@@ -460,17 +460,14 @@ static void evaluate(struct forward *f)
     refine_outside(f);
 }
 
-/* store: the answer, residual and condition into the job's arrays. */
+/* store: the answer into the job's arrays. */
 static void store(const struct forward *f)
 {
     const struct chain *ch = &f->chain;
     const struct kernel_job *job = ch->job;
     const int k = comm_rank(ch->comm), first = forward_body(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
     for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
-    if (job->residual) job->residual[k] = (double)f->residual;
-    if (job->residual_scale) job->residual_scale[k] = (double)f->residual_scale;
     if (job->refined && k == 0) *job->refined = f->refined;
-    if (job->condition) job->condition[k] = (double)f->blocks.reduction.condition;
 }
 
 /* evaluate_once: for the time steps; only the first answer is kept. */
@@ -479,6 +476,7 @@ static void evaluate_once(void *program)
     struct forward *f = program;
     evaluate(f);
     if (!f->stored) store(f);
+    motion_watch(f->chain.job, comm_rank(f->chain.comm), f->residual, f->residual_scale, f->blocks.reduction.condition);
     f->stored = true;
 }
 

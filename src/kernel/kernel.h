@@ -41,7 +41,8 @@ struct kernel_job {
     double *q_end, *qd_end; /* out: state after the last time step; NULL when steps = 0 */
     double *lambda;         /* out: loop forces; NULL without loops */
     double *measured;       /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
-    double *residual;       /* out (nrank): largest constraint residual seen by each rank, relative; may be NULL */
+    double *residual;       /* out (nrank): largest constraint residual seen by each rank in all evaluations, relative;
+                               may be NULL */
     double *residual_scale; /* out (nrank): what each rank's residual is relative to; may be NULL */
     double *condition;      /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
                                condition of the block-scaled system; 0: not seen by the solver; may be NULL */

@@ -1,6 +1,7 @@
 /* motion.c - time steps of one rank's joints (motion.h). */
 #include "kernel/motion.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "mech/model.h"
@@ -129,4 +130,23 @@ void motion_run(struct motion *m)
     }
     store(m, true, m->q, m->job->q_end);
     store(m, false, m->u, m->job->qd_end);
+}
+
+void motion_watch(const struct kernel_job *job, int rank, real residual, real scale, real condition)
+{
+    double *x = job->residual, *of = job->residual_scale, *most = job->condition;
+    const double size = (double)scale, violation = (double)residual * size;
+    if (most && !((double)condition <= most[rank])) most[rank] = (double)condition;
+    if (!x || isnan(x[rank])) return;
+    if (!of) {
+        if (!((double)residual <= x[rank])) x[rank] = (double)residual;
+        return;
+    }
+    if (x[rank] == 0 && of[rank] == 0) { /* the first */
+        x[rank] = (double)residual, of[rank] = size;
+        return;
+    }
+    const double worst = violation <= x[rank] * of[rank] ? x[rank] * of[rank] : violation;
+    of[rank] = fmax(of[rank], size);
+    x[rank] = of[rank] > 0 ? worst / of[rank] : (double)residual;
 }

@@ -31,4 +31,9 @@ void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *jo
 #define motion_run SPACE_NAME(motion_run)
 void motion_run(struct motion *m);
 
+/* motion_watch: what this rank saw in one more evaluation, a residual relative to `scale` and a condition, into the
+ * job's arrays: the largest of all evaluations so far. */
+#define motion_watch SPACE_NAME(motion_watch)
+void motion_watch(const struct kernel_job *job, int rank, real residual, real scale, real condition);
+
 #endif

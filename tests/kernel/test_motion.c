@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "evaluation.h"
+#include "kernel/motion.h"
 #include "mech/dynamics_table.h"
 #include "mech/trajectory.h"
 
@@ -220,6 +221,23 @@ static void implicit_steps_are_refused_where_they_do_not_exist(void **state)
     arena_destroy(a);
 }
 
+/* The worst of all evaluations is what a run hears of, also when it is no number, and small terms have no say. */
+static void the_worst_evaluation_is_kept(void **state)
+{
+    (void)state;
+    double residual[2] = {0}, scale[2] = {0}, condition[2] = {0};
+    const struct kernel_job job = {.residual = residual, .residual_scale = scale, .condition = condition};
+    motion_watch(&job, 1, 1e-9, 4, 10);
+    assert_true(residual[1] == 1e-9 && scale[1] == 4 && condition[1] == 10);
+    motion_watch(&job, 1, 1e-6, 2, 5);
+    assert_true(fabs(residual[1] / 5e-7 - 1) < 1e-12 && scale[1] == 4 && condition[1] == 10);
+    motion_watch(&job, 1, 1, 1e-12, 20); /* nothing but rounding beside the others */
+    assert_true(fabs(residual[1] / 5e-7 - 1) < 1e-12 && condition[1] == 20);
+    motion_watch(&job, 1, NAN, 4, 1);
+    motion_watch(&job, 1, 1e-12, 4, 1);
+    assert_true(isnan(residual[1]) && residual[0] == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +249,7 @@ int main(void)
         cmocka_unit_test(implicit_springs_of_trees_too),
         cmocka_unit_test(implicit_springs_in_a_plane),
         cmocka_unit_test(implicit_steps_are_refused_where_they_do_not_exist),
+        cmocka_unit_test(the_worst_evaluation_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
