@@ -80,6 +80,28 @@ scenario() {
     [[ $output != *out-of-plane* ]]
 }
 
+@test "bodies on fixed joints are merged where that leaves enough, and counted all the same" {
+    scenario
+    works mimdsim run small.yaml --quiet --set n=48 --set ranks=8 --set model.joint=mixed
+    sql_is mimdsim.db "SELECT n, status, class, bound < 1e-7 FROM run JOIN run_omission ON run_id = id WHERE what = 'fixed joints'" '48|ok|bounded|1'
+    works mimdsim run small.yaml --quiet --set n=48 --set ranks=8 --set model.joint=mixed --keep-all
+    sql_is mimdsim.db "SELECT n, status, (SELECT count(*) FROM run_omission) FROM run" '48|ok|0'
+    works mimdsim run small.yaml --quiet --set n=48 --set ranks=48 --set model.joint=mixed
+    sql_is mimdsim.db "SELECT count(*) FROM run_omission JOIN run ON run_id = id WHERE P = 48 AND what = 'fixed joints'" 0
+}
+
+@test "the serial codes that are needed are those that can be the fastest" {
+    scenario
+    works mimdsim run small.yaml --quiet --set n=128
+    all=$(sql mimdsim.db "SELECT time_ps FROM baseline WHERE name = 'fastest serial'")
+    sql_is mimdsim.db "SELECT count(*) FROM baseline WHERE name = 'rnea+crba'" 1
+    works mimdsim run small.yaml --quiet --set n=128 --set record.baselines=needed --force
+    sql_is mimdsim.db "SELECT count(*) FROM run_omission WHERE what = 'serial codes that cannot be fastest'" 1
+    sql_is mimdsim.db "SELECT group_concat(b.name, ',') FROM baseline b JOIN run_omission o ON o.run_id = b.run_id
+        WHERE o.what = 'serial codes that cannot be fastest' AND b.name LIKE '%crba'" ''
+    sql_is mimdsim.db "SELECT DISTINCT time_ps FROM baseline WHERE name = 'fastest serial'" "$all"
+}
+
 @test "explain lists every kind that some run leaves out, and the settings that act nowhere" {
     scenario 'sweep: {level: [loggp, auto], model.rate: [0 rad/s, 1 rad/s]}'
     works mimdsim explain small.yaml
