@@ -112,7 +112,9 @@ enum { SOLVERS = sizeof solver_table / sizeof *solver_table };
 static const struct {
     const char *name;
     int inner, outer;
-} refinement_table[] = {{"", 0, 0}, {" inner", 1, 0}, {" robust", 1, 1}};
+    enum residual_rule residual; /* twice: the direct form of open chains */
+} refinement_table[] = {{"", 0, 0, RESIDUAL_WORKING}, {" inner", 1, 0, RESIDUAL_WORKING},
+                        {" robust", 1, 1, RESIDUAL_WORKING}, {" twice", 4, 0, RESIDUAL_TWICE}};
 
 static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, const char *method, const char *rung,
                           const double *reference)
@@ -140,12 +142,14 @@ static void solver_rungs(struct ladder *l, enum formulation f, int solver, const
 {
     char method[48], rung[32];
     snprintf(method, sizeof method, "%s %s", f == FORMULATION_PAPER ? "paper" : "direct", solver_name);
+    const bool has_twice = f == FORMULATION_DIRECT && l->model->is_chain && l->model->nloop == 0;
     for (int p = 0; p < 2; p++)
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < (has_twice ? 4 : 3); k++) {
             struct kernel_spec kernel = {.name = "forward", .formulation = f, .solver = solver_table[solver].solver,
                                          .part_solver = solver_table[solver].part, .precision = from_coarse[p],
                                          .algebra = l->spec.kernel.algebra,
                                          .composites_incoming = true, .hybrid_levels = 1,
+                                         .residual = refinement_table[k].residual,
                                          .inner_refinements = refinement_table[k].inner,
                                          .outer_refinements = refinement_table[k].outer};
             snprintf(rung, sizeof rung, "%s%s", precision_name[from_coarse[p]], refinement_table[k].name);
