@@ -22,7 +22,8 @@ static const char doc[] =
     "and write paper.md and paper.html beside the folder of figures.\n\n"
     "Example: mimdsim paper\n"
     "         mimdsim paper fig7         one figure with its runs\n\v"
-    "What is stored already is not run again unless --force. --paper-only: without the five scenes, in less than half the time.";
+    "What is stored already is not run again unless --force.\n"
+    "--paper-only: without the five scenes, in less than half the time.";
 
 enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
 
