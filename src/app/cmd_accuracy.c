@@ -12,10 +12,11 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that take seconds: network levels,\n"
-    "precisions and algorithms, steppers and step sizes. Rows go to table `ladder` of the database, work-precision\n"
-    "diagrams to accuracy-SCENARIO.png and .svg; failed methods are listed. Ends with the cheapest rung of each "
-    "ladder.\n\n"
+    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that\n"
+    "take seconds: network levels, precisions and algorithms, steppers and step\n"
+    "sizes. Rows go to table `ladder` of the database, work-precision diagrams to\n"
+    "accuracy-SCENARIO.png and .svg; failed methods are listed. Ends with the\n"
+    "cheapest rung of each ladder.\n\n"
     "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n\v"
     "--within X: the relative error that may be, 2% or 1e-6; without it 2% of simulated times, 1e-10 of accelerations "
     "and 1e-6 of states.";

@@ -17,9 +17,10 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Reproduce the evaluation of the paper: run its scenarios into paper.db, sample the uncertain machine parameters,\n"
-    "measure error against run time, stability and omissions on five scenes, draw the figures, judge the claims,\n"
-    "and write paper.md and paper.html beside the folder of figures.\n\n"
+    "Reproduce the evaluation of the paper: run its scenarios into paper.db, sample\n"
+    "the uncertain machine parameters, measure error against run time, stability\n"
+    "and omissions on five scenes, draw the figures, judge the claims, and write\n"
+    "paper.md and paper.html beside the folder of figures.\n\n"
     "Example: mimdsim paper\n"
     "         mimdsim paper fig7         one figure with its runs\n\v"
     "What is stored already is not run again unless --force.\n"

@@ -13,10 +13,12 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Draw every figure that the database DB (default mimdsim.db) has rows for, and write DB.md and DB.html beside the\n"
-    "folder of figures: claims, figures, error against run time, stability, what was left out and what that saves.\n\n"
+    "Draw every figure that the database DB (default mimdsim.db) has rows for, and\n"
+    "write DB.md and DB.html beside the folder of figures: claims, figures, error\n"
+    "against run time, stability, what was left out and what that saves.\n\n"
     "Example: mimdsim report mimdsim.db\n\v"
-    "From the database alone: nothing is run. `mimdsim accuracy`, `stability` and `explain --measure` fill it.";
+    "From the database alone: nothing is run. `mimdsim accuracy`, `stability` and\n"
+    "`explain --measure` fill it.";
 
 enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
 

@@ -10,9 +10,10 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, by every algorithm and stepper, and grade\n"
-    "each answer: ok, degraded or failed. Rows go to table `stability` of the database, a table of marks to\n"
-    "stability.png and .svg, that of a scenario to stability-SCENARIO.png and .svg.\n\n"
+    "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, by every\n"
+    "algorithm and stepper, and grade each answer: ok, degraded or failed. Rows go\n"
+    "to table `stability` of the database, a table of marks to stability.png and\n"
+    ".svg, that of a scenario to stability-SCENARIO.png and .svg.\n\n"
     "Example: mimdsim stability\n";
 
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
