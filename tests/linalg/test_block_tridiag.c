@@ -74,11 +74,8 @@ static void thomas_solves_all_orders_of_blocks(void **state)
 
 enum { BEAM = 60 };
 
-        for (int i = 0; i < BEAM; i++) {
-            scale[i] = pow(10, random_uniform(&g, -8, 8));
-            z[i] = random_uniform(&g, -1, 1);
-        }
- * against `z`. `jacobi`: scale the system to a diagonal of ones first. */
+/* Solve S K S x = r for x, K = the second difference (condition about BEAM^2), S = diag(scale); the largest error of
+ * S x against `z`. `jacobi`: scale the system to a diagonal of ones first. */
 static double beam_error(const double *scale, const double *z, bool jacobi, struct arena *a)
 {
     static const unsigned char size[BEAM] = {[0 ... BEAM - 1] = 1};
