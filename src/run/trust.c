@@ -89,6 +89,7 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     bool single = k->precision == PRECISION_FLOAT;
     double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
+    if (k->residual == RESIDUAL_TWICE) resolved = INFINITY; /* what the factors lack, the residual would show */
     out->residual = worst_residual(job);
     out->condition = worst(job->condition, job->nrank);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */

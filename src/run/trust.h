@@ -8,8 +8,8 @@
 
 /* trust_check: out->residual and condition = the worst over the ranks. A residual that is no number or leaves fewer
  * than about four digits (one in single precision; both less one and a half in the paper's formulation), or a
- * condition that reaches what the precision resolves, makes the run RUN_INVALID; its text says which setting would
- * mend it. Kernels without forward dynamics: NaN, no verdict. */
+ * condition that reaches what the precision resolves (but with residuals in twice the digits), makes the run
+ * RUN_INVALID; its text says which setting would mend it. Kernels without forward dynamics: NaN, no verdict. */
 void trust_check(const struct kernel_job *job, struct run_result *out);
 
 /* trust_needs: the largest residual that an answer of `n` bodies may have without refinement: what a correct program
