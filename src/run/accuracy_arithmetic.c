@@ -71,7 +71,7 @@ static void planar_rung(struct ladder *l, const double *reference)
     struct err e;
     err_clear(&e);
     const struct kernel_type *kernel = omission_kernel(&l->spec, l->model, l->state, &e);
-    if (!kernel || !kernel->planar || l->model->nloop > 0) return;
+    if (!kernel || !kernel->planar) return;
     double *qdd = TAKE(l->arena, l->model->nu, double);
     struct accuracy_rung *r = ladder_add(l, "serial planar aba", "double", "qdd", reference_name);
     struct work w = {0};

@@ -23,7 +23,7 @@ int omission_movable(const struct model *m);
 int omission_mergeable(const struct run_spec *spec, int nbody, int movable);
 
 /* omission_kernel: the kernel that spec->kernel names, in the algebra that it asks for; auto: in three components where
- * an open scene is planar and the operators are not dense, spec->keep obeyed. m, s NULL: kernels without a model. NULL
+ * the scene is planar and the operators are not dense, spec->keep obeyed. m, s NULL: kernels without a model. NULL
  * with *e set when there is no such kernel, or the scene is not planar as asked. */
 const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m, const struct state *s,
                                           struct err *e);

@@ -227,13 +227,13 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     add_fastest(out, first);
 }
 
-/* The same in three components, for programs that compute in these: nothing else would be a fair match. Loops and dense
- * operators have no serial code of that kind. */
+/* The same in three components, for programs that compute in these: nothing else would be a fair match. Dense operators
+ * have no serial code of that kind. */
 static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
                        struct scene *scene, struct run_result *out)
 {
     struct work inverse = {0};
-    if (job->model->nloop > 0 || job->spec->kernel.operators == OPERATORS_DENSE) return;
+    if (job->spec->kernel.operators == OPERATORS_DENSE) return;
     const int first = out->nbaseline;
     if (kernel->does_inverse) {
         inverse = scene_planar_inverse(scene)->work;

@@ -49,7 +49,7 @@ const struct serial_answer *scene_inverse(struct scene *s);
 const struct serial_answer *scene_forward(struct scene *s, enum forward_method method);
 
 /* scene_planar_inverse, scene_planar_forward: by recursive Newton-Euler and by articulated bodies of three components,
- * for open scenes that are planar (mech/planar.h). */
+ * for scenes that are planar (mech/planar.h). */
 const struct serial_answer *scene_planar_inverse(struct scene *s);
 const struct serial_answer *scene_planar_forward(struct scene *s);
 

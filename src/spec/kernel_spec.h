@@ -22,7 +22,7 @@ struct kernel_spec {
     enum solver solver;
     enum part_solver part_solver; /* what solver partition uses on the interfaces */
     enum operators operators;    /* dense: general 6x6 operators as the paper's code, structured: (r, p) pairs */
-    enum algebra algebra;        /* auto: planar where an open scene is, unless the operators are dense */
+    enum algebra algebra;        /* auto: planar where the scene is, unless the operators are dense */
     enum precision precision;
     enum partition_rule partition;
     bool composites_incoming;    /* true: physics 3.1; false: the paper's outgoing form 3.2; trees

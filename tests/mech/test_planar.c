@@ -55,6 +55,39 @@ static void serial_codes_agree_with_the_spatial_ones(void **state)
     assert_true(tau_error < 1e-12 && qdd_error < 1e-10);
 }
 
+/* Where the loops' constraints are independent of each other. */
+static void closed_chains_agree_too(void **state)
+{
+    (void)state;
+    double error = 0;
+    int compared = 0;
+    for (int k = 0; k < 48; k++) {
+        struct arena *a = arena_create();
+        const struct planar_options o = {.n = 9,
+                                         .tree = k & 1,
+                                         .joint = JOINT_MIXED,
+                                         .springs = k & 2,
+                                         .loads = k & 4,
+                                         .twins = k & 8,
+                                         .loops = 1 + k % 3,
+                                         .seed = (uint64_t)(k + 1)};
+        const struct model *m = planar_model(&o, a);
+        const struct state *s = planar_state(&o, m, a);
+        double *x = TAKE(a, m->nu, double), *y = TAKE(a, m->nu, double);
+        struct work w = {0};
+        struct forward_report report = {0};
+        assert_true(planar_forward(m, s, a, x, &w));
+        assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
+        if (report.rank == 2 * (o.twins ? (o.loops + 1) / 2 : o.loops)) {
+            error = fmax(error, relative_error(m->nu, x, y));
+            compared++;
+        }
+        arena_destroy(a);
+    }
+    print_message("%d scenes, largest error %.1e\n", compared, error);
+    assert_true(compared > 20 && error < 1e-9);
+}
+
 /* Operations of one body more in a chain of revolute joints, as counted by hand in planar_dynamics.c. */
 static void each_body_costs_what_was_counted(void **state)
 {
@@ -171,6 +204,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(serial_codes_agree_with_the_spatial_ones),
+        cmocka_unit_test(closed_chains_agree_too),
         cmocka_unit_test(each_body_costs_what_was_counted),
         cmocka_unit_test(planar_scenes_are_found),
         cmocka_unit_test(a_tilted_axis_leaves_the_plane),
