@@ -242,3 +242,13 @@ scenario() {
     works mimdsim report
     grep -qF "(figures/omissions-o%27neil%205%25.svg)" mimdsim.md
 }
+
+@test "the report counts what the suite's formulations answer" {
+    scenario
+    works mimdsim stability small.yaml --quiet
+    sqlite3 mimdsim.db "UPDATE stability SET suite = 'suite';
+                        UPDATE stability SET status = 'failed' WHERE algorithm = 'paper pcr'"
+    works mimdsim report
+    grep -q "the paper's formulation gives 2 of 3 answers ok, 0 degraded and 1 failed; the direct formulation 3 of 3, 0 and 0" mimdsim.md
+    [ -s figures/stability.png ]
+}
