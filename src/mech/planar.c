@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "linalg/vec3.h"
+#include "mech/planar_frame.h"
 
 /* Angles by which rounding of a file's numbers may tilt axes. */
 static quad tolerance_of(enum precision p) { return p == PRECISION_QUAD ? 1e-30Q : 1e-12Q; }

@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "linalg/angle.h"
-#include "mech/planar.h"
+#include "mech/planar_frame.h"
 
 static void make_frames(const struct model *m, int i, const quad *normal, struct body *b)
 {

@@ -2,7 +2,7 @@
 #include "mech/planar_loop.h"
 
 #include "base/check.h"
-#include "mech/planar.h"
+#include "mech/planar_frame.h"
 
 /* A constraint in the axes of its loop frame, [angular; linear]: a row of the file's or one of the joint's. */
 static void spatial_row(const struct loop_def *def, int k, quad *row)

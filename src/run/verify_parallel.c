@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "kernel/kernel.h"
+#include "mech/planar.h"
 #include "run/verify_rows.h"
 #include "run/launch.h"
 #include "run/omission.h"
@@ -39,6 +40,9 @@ static const struct variant variant_table[] = {
             .operators = OPERATORS_DENSE),
     FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR,
             .partition = PARTITION_BALANCED),
+    {"parallel inverse planar", {.name = "inverse", .composites_incoming = true, .algebra = ALGEBRA_PLANAR}},
+    FORWARD("paper planar", .formulation = FORMULATION_PAPER, .algebra = ALGEBRA_PLANAR),
+    FORWARD("direct planar", .formulation = FORMULATION_DIRECT, .algebra = ALGEBRA_PLANAR),
 };
 enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
 
@@ -99,7 +103,9 @@ static struct machine_spec machine_make(const struct verify_options *o, int nran
 static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_spec, int nrank, struct outcome *out,
                        struct err *e)
 {
-    const struct kernel_type *kernel = kernel_find_precision(kernel_spec->name, kernel_spec->precision);
+    const struct kernel_type *kernel = kernel_spec->algebra == ALGEBRA_PLANAR
+                                           ? kernel_find_planar(kernel_spec->name, kernel_spec->precision)
+                                           : kernel_find_precision(kernel_spec->name, kernel_spec->precision);
     struct run_spec *spec = TAKE(v->arena, 1, struct run_spec);
     struct run_result *result = TAKE(v->arena, 1, struct run_result);
     struct kernel_job job;
@@ -262,14 +268,24 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     return lambda_row(v, variant->name, &kernel, &s, row->verdict == VERIFY_ROUNDING, e);
 }
 
+/* Whether three components describe the case, to the rounding of its numbers. */
+static bool in_plane(const struct verify_case *v)
+{
+    struct err why;
+    err_clear(&why);
+    return planar_scene(v->model, v->state, PRECISION_DOUBLE, &why);
+}
+
 bool verify_parallel(struct verify_case *v, struct err *e)
 {
+    const bool planar = in_plane(v);
     char unfit[96];
     bool has_unfit = verify_unfit_body(v->lumped, unfit, sizeof unfit);
     for (int i = 0; i < VARIANTS; i++) {
         const struct variant *variant = &variant_table[i];
         bool inverse = strcmp(variant->kernel.name, "inverse") == 0;
         if (!(inverse ? v->vector->tau_id : v->vector->qdd_fd)) continue;
+        if (variant->kernel.algebra == ALGEBRA_PLANAR && !planar) continue;
         if (!inverse && has_unfit)
             verify_row_skip(v, variant->name, "qdd_fd", unfit);
         else if (!variant_row(v, variant, e))

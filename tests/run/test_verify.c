@@ -72,6 +72,25 @@ static void parallel_kernels_agree_with_small_vectors(void **state)
     all_vectors_pass(DATA("fext_serial*.json"), &o);
 }
 
+/* Three components, where they describe the case: by joints or by rows, at a change point, too. */
+static void planar_kernels_agree_with_planar_vectors(void **state)
+{
+    (void)state;
+    static const char *const name[] = {DATA("x_straight_n0016.json"), DATA("closed_fourbar.json"),
+                                       DATA("closed_slidercrank.json"), DATA("x_fourbar_changepoint.json")};
+    const struct verify_options o = {.parallel = true};
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+        struct arena *a = arena_create();
+        struct verify_report r = report_of(name[i], &o, a);
+        assert_true(r.passed);
+        assert_int_equal(row_of(&r, "parallel inverse planar", "tau_id")->verdict, VERIFY_PASS);
+        assert_int_equal(row_of(&r, "parallel forward paper planar", "qdd_fd")->verdict, VERIFY_PASS);
+        assert_int_equal(row_of(&r, "parallel forward direct planar", "qdd_fd")->verdict, VERIFY_PASS);
+        if (i > 0) assert_int_equal(row_of(&r, "parallel forward direct planar", "lambda")->verdict, VERIFY_PASS);
+        arena_destroy(a);
+    }
+}
+
 static void trajectories_are_followed(void **state)
 {
     (void)state;
@@ -225,6 +244,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(serial_algorithms_agree_with_the_vectors),
         cmocka_unit_test(parallel_kernels_agree_with_small_vectors),
+        cmocka_unit_test(planar_kernels_agree_with_planar_vectors),
         cmocka_unit_test(trajectories_are_followed),
         cmocka_unit_test(a_wrong_answer_fails),
         cmocka_unit_test(what_no_double_attains_fails_without_being_wrong),
