@@ -7,6 +7,7 @@
 #include "mech/dynamics_table.h"
 #include "run/stability_scene.h"
 #include "run/trial.h"
+#include "run/trust.h"
 
 enum {
     MOST_RANKS = 64,
@@ -123,20 +124,24 @@ static const struct variant {
     enum solver solver;
     int inner, outer;
     bool twice; /* forces and residuals in twice the precision, and as many passes as the hardest scene takes */
+    bool as_needed; /* what a run would switch on by itself */
 } variant_table[] = {
-    {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false},
-    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false},
-    {"direct cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false},
-    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false},
-    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 0, false},
-    {"robust cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false},
-    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false},
-    {"twice cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, MOST_INNER, 0, true},
-    {"twice pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, MOST_INNER, 0, true},
-    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false},
-    {"paper contraction", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false},
-    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false},
-    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false},
+    {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
+    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
+    {"direct cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
+    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
+    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 0, false, false},
+    {"robust cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
+    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
+    {"twice cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, MOST_INNER, 0, true, false},
+    {"twice pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, MOST_INNER, 0, true, false},
+    {"paper pcr as needed", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
+    {"direct pcr as needed", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
+    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
+    {"paper contraction", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
+    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
+    {"paper contraction as needed", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, true},
+    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
 };
 
 static void parallel_row(const struct judge *j, const struct variant *v)
@@ -150,7 +155,10 @@ static void parallel_row(const struct judge *j, const struct variant *v)
                                        .algebra = ALGEBRA_SPATIAL};
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
+    spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
     struct trial t = trial_run(&spec, j->m, j->s, j->a);
+    while (trust_refine(&spec, j->m, &(struct run_result){.residual = t.residual}))
+        t = trial_run(&spec, j->m, j->s, j->a);
     if (!t.answered) {
         text_copy(x->reason, sizeof x->reason, t.text);
         return;

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "kernel/kernel.h"
 #include "run/launch.h"
+#include "run/trust.h"
 #include "run/omission.h"
 
 double trial_error(const double *x, const double *reference, int n)
@@ -38,6 +39,7 @@ static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, c
     *job = (struct kernel_job){.spec = spec, .model = m, .state = s, .nrank = spec->nrank};
     job->omit = omission_job(spec, m, s);
     job->residual = TAKE(a, spec->nrank, double);
+    job->residual_scale = TAKE(a, spec->nrank, double);
     job->condition = TAKE(a, spec->nrank, double);
     job->loop_rank = TAKE(a, 1, int);
     job->refined = TAKE(a, 1, int);
@@ -64,7 +66,7 @@ static void answer(struct trial *t, const struct kernel_job *job, const struct r
     text_copy(t->text, sizeof t->text, r->text);
     t->tau = job->tau;
     t->qdd = job->qdd;
-    t->residual = worst(job->residual, job->nrank);
+    t->residual = trust_residual(job);
     t->condition = worst(job->condition, job->nrank);
     t->refined = *job->refined;
     t->makespan_ps = r->makespan_ps;

@@ -17,8 +17,7 @@ static double worst(const double *x, int n)
     return largest;
 }
 
-/* Of all ranks: a rank whose terms are nothing but rounding beside those of others has no say. */
-static double worst_residual(const struct kernel_job *job)
+double trust_residual(const struct kernel_job *job)
 {
     double residual = 0, scale = 0;
     if (!job->residual_scale) return worst(job->residual, job->nrank);
@@ -90,7 +89,7 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
     if (k->residual == RESIDUAL_TWICE) resolved = INFINITY; /* what the factors lack, the residual would show */
-    out->residual = worst_residual(job);
+    out->residual = trust_residual(job);
     out->condition = worst(job->condition, job->nrank);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
     out->status = RUN_INVALID;

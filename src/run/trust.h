@@ -12,6 +12,10 @@
  * RUN_INVALID; its text says which setting would mend it. Kernels without forward dynamics: NaN, no verdict. */
 void trust_check(const struct kernel_job *job, struct run_result *out);
 
+/* trust_residual: the worst of all ranks in proportion to the largest term that any has: a rank whose terms are nothing
+ * but rounding beside those of others has no say. NaN when a rank's is no number. */
+double trust_residual(const struct kernel_job *job);
+
 /* trust_needs: the largest residual that an answer of `n` bodies may have without refinement: what a correct program
  * may be wrong by (references_tolerance); the paper's formulation 30 times that, for its residual overstates its error.
  */
