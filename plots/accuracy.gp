@@ -6,7 +6,7 @@ array ladder_name[3] = ["Network", "Arithmetic", "Integration"]
 array family[9] = ["", "", "", "serial methods", "paper formulation, by solver", "direct formulation, by solver", \
     "explicit steppers", "implicit steppers", "own parallel steppers"]
 array notes[3] = ["the same program on every level; a level's answer against that of the finest", \
-    "○ float   □ double   △ quad (no machine time);   open: plain,  with +: solver refined,  filled: whole solve refined,  ×: error above 0.1", \
+    "○ float   □ double   △ quad (no machine time);   open: plain,  with +: solver refined,  filled: whole solve refined,  filled with +: and forces in twice the digits;   ×: error above 0.1", \
     "the motion's end against a tight reference; ●, solid: by tolerance;  ○, dashed: by fixed steps;  machine time on the number of processors that is fastest for one evaluation"]
 array open_point[6] = [6, 4, 8, 10, 12, 3]
 array full_point[6] = [7, 5, 9, 11, 13, 15]
@@ -113,8 +113,10 @@ do for [format in formats] {
                         with lines linewidth 1 linecolor rgb colour[k], \
                     for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") < 2 ? column(cost) : NaN) \
                         :(level(column("relative_error"))) with points pointtype by_precision[q] pointsize 1.3*symbol linewidth 1.5 linecolor rgb colour[k], \
-                    for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") == 2 ? column(cost) : NaN) \
+                    for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") >= 2 ? column(cost) : NaN) \
                         :(level(column("relative_error"))) with points pointtype by_precision[q] + 1 pointsize 1.3*symbol linecolor rgb colour[k], \
+                    for [k=1:n] data using (good(b, p, k) && column("refinement") == 3 ? column(cost) : NaN) \
+                        :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb "#ffffff", \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN) \
                         :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb colour[k], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \

@@ -16,7 +16,7 @@ rung AS (
            CASE WHEN ladder <> 'arithmetic' THEN 0 WHEN rung LIKE 'float%' THEN 1 WHEN rung LIKE 'double%' THEN 2
                 ELSE 3 END AS precision,
            CASE WHEN ladder = 'integration' THEN method LIKE '% fixed' OR method LIKE 'own %' WHEN ladder <> 'arithmetic' THEN 0
-                WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
+                WHEN rung LIKE '% twice' THEN 3 WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
                 ELSE 0 END AS refinement
     FROM ladder l JOIN place USING (ladder, at, family)
     WHERE scenario = ?1 AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd'
@@ -62,7 +62,7 @@ failed AS (
           AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd' ELSE 'state' END),
 grouped AS (
     SELECT block, panel, min(ordinal) AS first, method || ': ' || group_concat(rung, '; ') AS which, reason
-    FROM (SELECT * FROM failed ORDER BY ordinal) GROUP BY block, panel, method, reason),
+    FROM (SELECT * FROM failed ORDER BY ordinal) GROUP BY block, panel, method, reason, iif(block = 2, substr(rung, 1, 5), '')),
 line AS (
     SELECT block, panel, first, 1 AS part, which || iif(reason LIKE 'error%', ' – ' || reason, '') AS text FROM grouped
     UNION ALL SELECT block, panel, first, 2, '    ' || iif(length(reason) > 55, substr(reason, 1, instr(reason || ':', ':') - 1), reason) FROM grouped WHERE reason NOT LIKE 'error%')
