@@ -73,6 +73,26 @@ static double machine_time(const struct model *m, const struct state *s, enum st
     return t.answered ? (double)t.makespan_ps * 1e-12 : NAN;
 }
 
+/* Largest difference of x from reference (n) over the largest number of the reference at the end or the beginning: what
+ * has come to rest would have no scale of its own. */
+static double change_error(const double *x, const double *reference, const double *begin, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+static double motion_error(const struct model *m, const struct state *begin, const struct state *end,
+                           const struct state *reference)
+{
+    return fmax(change_error(end->q, reference->q, begin->q, m->nq),
+                change_error(end->qd, reference->qd, begin->qd, m->nu));
+}
+
 /* Error of `steps` steps; their end in *end. INFINITY: broke down. */
 static double error_of(const struct model *m, const struct state *s, enum step_rule rule, double duration,
                        double steps, const struct state *reference, struct state *end, struct arena *a)
@@ -81,7 +101,7 @@ static double error_of(const struct model *m, const struct state *s, enum step_r
     *end = copy_of(m, s, a);
     bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, end, rule, duration / steps, (int)steps, a, &w);
     if (!good) return INFINITY;
-    return fmax(trial_error(end->q, reference->q, m->nq), trial_error(end->qd, reference->qd, m->nu));
+    return motion_error(m, s, end, reference);
 }
 
 /* The largest stable step, then as many steps, from half of that on, as an error of 1% takes. */
@@ -129,7 +149,7 @@ static void library_row(struct stability_report *r, const char *subject, const s
         text_copy(x->reason, sizeof x->reason, e.text);
         return;
     }
-    double error = fmax(trial_error(end.q, reference->q, m->nq), trial_error(end.qd, reference->qd, m->nu));
+    double error = motion_error(m, s, &end, reference);
     x->error = isfinite(error) ? error : NAN;
     x->status = error <= 1e-3 ? STABILITY_OK : error <= 0.1 ? STABILITY_DEGRADED : STABILITY_FAILED;
     x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
@@ -184,7 +204,7 @@ static void judge_motion(struct stability_row *x, const struct model *m, const s
     double scale = fmax(fmax(t[0].kinetic, t[1].kinetic), fabs(t[1].potential - t[0].potential));
     double change = t[1].kinetic - t[0].kinetic + (t[1].potential - t[0].potential);
     x->energy_drift = scale > 0 ? fabs(change) / scale : fabs(change);
-    double error = fmax(trial_error(end->q, reference->q, m->nq), trial_error(end->qd, reference->qd, m->nu));
+    double error = motion_error(m, begin, end, reference);
     row_grade(x, error, false);
     if (x->status == STABILITY_OK && !(x->energy_drift <= 1e-6)) x->status = STABILITY_DEGRADED;
 }

@@ -252,3 +252,9 @@ scenario() {
     grep -q "the paper's formulation gives 2 of 3 answers ok, 0 degraded and 1 failed; the direct formulation 3 of 3, 0 and 0" mimdsim.md
     [ -s figures/stability.png ]
 }
+
+@test "stability carries a stiff polymer to rest by implicit steppers alone" {
+    works mimdsim stability stiff-polymer --quiet
+    sql_is mimdsim.db "SELECT group_concat(DISTINCT status) FROM stability WHERE algorithm IN ('own implicit', 'bsimp', 'msbdf')" ok
+    sql_is mimdsim.db "SELECT count(*) FROM stability WHERE algorithm IN ('own rk4', 'rkf45') AND status = 'ok'" 0
+}
