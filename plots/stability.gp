@@ -24,15 +24,16 @@ array grade_colour[3] = ["#d5e8f3", "#f0c060", "#b0401a"]
 array grade_ink[3] = ["#000000", "#000000", "#ffffff"]
 is(m, grade) = column("motion") == m && column("grade") == grade
 
-wide = 1100.0; left_edge = 190.0; right_edge = 70.0; # of the cells; names stand left of them
+left_edge = 190.0; right_edge = 70.0; # of the cells; names stand left of them
+info = 4.0                                # columns of numbers beside the accelerations
+wide = left_edge + right_edge + 30.0*(columns + 0.4 + 1.35*info); wide = wide > 1100.0 ? wide : 1100.0
  cell_high = 17.0; stiff_high = 62.0
-upper = 218.0
+upper = 236.0
 upper_end = upper + cell_high*(high_rows + 0.5)
 lower = upper_end + 112
 lower_end = lower + stiff_high*motions
 total = (motions > 0 ? lower_end : upper_end) + 30
 at_x(px) = px/wide; at_y(px) = 1.0 - px/total
-info = 4.0                                # columns of numbers beside the accelerations
 place(x) = x > explicit ? x + 0.25 : x    # explicit and implicit steppers stand apart
 
 do for [format in formats] {
