@@ -1,4 +1,6 @@
 /* main.c - choose the verb. */
+#include "config.h"
+
 #include <argp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +25,13 @@ static void print_help(FILE *out)
 static void print_version(void)
 {
     struct build b = store_build();
-    printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s\n", b.version, b.git, b.compiler, b.flags, run_fibers());
+#ifdef SANITIZERS
+    static const char sanitizers[] = "; with sanitizers";
+#else
+    static const char sanitizers[] = "";
+#endif
+    printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s%s\n", b.version, b.git, b.compiler, b.flags, run_fibers(),
+           sanitizers);
 }
 
 static int unknown_verb(int argc, char **argv)
