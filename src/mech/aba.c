@@ -57,12 +57,12 @@ static void from_joint_axes(const struct subspace *s, const real *schur, struct 
     }
 }
 
-/* Eliminate the joint: factors and e stay in b; ia, pa are what the parent gets (body axes). */
+/* Eliminate the joint: factors and e stay in b; ia, pa are what the parent gets (body axes). bias NULL: none. */
 static bool eliminate(const struct subspace *s, const real *bias, const real *tau, struct articulated *b,
                       struct sym6 *ia, real *pa)
 {
     int d = s->d, c = s->c;
-    real m[36], p[6], y[36], schur[36], along_w[6], t[6];
+    real m[36], p[6], y[36], schur[36], along_w[6];
     struct work uncounted = {0};
     to_joint_axes(s, b, m, p);
     for (int i = 0; i < d; i++) {
@@ -88,8 +88,11 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     screw_zero(pa);
     subspace_h(s, tau, pa);
     subspace_w(s, along_w, pa);
-    sym6_mul(t, ia, bias);
-    screw_add(pa, t);
+    if (bias) {
+        real t[6];
+        sym6_mul(t, ia, bias);
+        screw_add(pa, t);
+    }
     return true;
 }
 
@@ -98,7 +101,7 @@ static void start(const struct dynamics *d, int i, bool moving, struct articulat
 {
     sym6_from_inertia(&b->inertia, &d->body[i].inertia);
     screw_zero(b->p);
-    if (moving) body_gyro(&d->body[i], d->v + 6 * i, b->p);
+    if (moving && !d->at_rest) body_gyro(&d->body[i], d->v + 6 * i, b->p);
     if (d->load) screw_sub(b->p, d->load + 6 * i);
 }
 
@@ -111,7 +114,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
     real *a = d->a + 6 * i, h[6], w[6], z[6];
     struct work uncounted = {0};
     xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : moving ? d->base : still);
-    if (moving) screw_add(a, d->bias + 6 * i);
+    if (moving && !d->at_rest) screw_add(a, d->bias + 6 * i);
     subspace_h_transposed(s, a, h);
     subspace_w_transposed(s, a, w);
     for (int k = 0; k < s->d; k++) {
@@ -132,7 +135,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
 /* The three sweeps at d's poses and, if moving, velocities. */
 static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
 {
-    static const real still[6] = {0};
+    const bool biased = moving && !d->at_rest;
     struct arena_mark mark = arena_mark(d->arena);
     struct articulated *b = TAKE(d->arena, d->nbody, struct articulated);
     bool good = true;
@@ -141,7 +144,7 @@ static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;
         real pa[6];
-        good = eliminate(&d->pose[i].s, moving ? d->bias + 6 * i : still, tau + body->u_at, &b[i], &ia, pa);
+        good = eliminate(&d->pose[i].s, biased ? d->bias + 6 * i : NULL, tau + body->u_at, &b[i], &ia, pa);
         if (!good || body->parent < 0) continue;
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);

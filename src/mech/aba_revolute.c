@@ -63,8 +63,9 @@ static inline void rigid(const struct revolute *b, struct link *l)
     l->c[1] = l->c[2] = l->c[4] = 0;
 }
 
-/* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n (x, y), f. */
-static inline bool eliminate(struct link *l, real tau)
+/* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n (x, y), f. At rest b
+ * is zero. */
+static inline bool eliminate(struct link *l, bool at_rest, real tau)
 {
     real *a = l->a, *b = l->b, *c = l->c, d = a[5];
     if (!(d > 0)) return false;
@@ -76,6 +77,11 @@ static inline bool eliminate(struct link *l, real tau)
     for (int j = 0; j < 3; j++) b[j] -= kx * b[6 + j], b[3 + j] -= ky * b[6 + j];
     c[0] -= k0 * b[6], c[1] -= k0 * b[7], c[2] -= k0 * b[8];
     c[3] -= k1 * b[7], c[4] -= k1 * b[8], c[5] -= k2 * b[8];
+    if (at_rest) {
+        l->n[0] += kx * e, l->n[1] += ky * e, l->n[2] = tau;
+        l->f[0] += k0 * e, l->f[1] += k1 * e, l->f[2] += k2 * e;
+        return true;
+    }
     const real *bl = l->bl;
     real bx = l->bx, by = l->by;
     l->n[0] += kx * e + (a[0] * bx + a[1] * by + b[0] * bl[0] + b[1] * bl[1] + b[2] * bl[2]);
@@ -138,7 +144,7 @@ static inline void hand_down(const struct revolute *body, const struct link *l, 
 }
 
 /* u' of one body and its acceleration from its parent's. */
-static inline real accelerate(const struct revolute *body, const struct link *l, const struct motion *p,
+static inline real accelerate(const struct revolute *body, const struct link *l, bool at_rest, const struct motion *p,
                               struct motion *m)
 {
     real al[3], v[3];
@@ -146,15 +152,18 @@ static inline real accelerate(const struct revolute *body, const struct link *l,
     vec3_cross_add(v, p->w, body->t);
     mat3_mul_vec_transposed(al, l->r, p->w);
     mat3_mul_vec_transposed(v, l->r, v);
-    vec3_add(v, l->bl);
-    al[0] += l->bx, al[1] += l->by;
+    if (!at_rest) {
+        vec3_add(v, l->bl);
+        al[0] += l->bx, al[1] += l->by;
+    }
     real z = l->ez - (l->kx * al[0] + l->ky * al[1] + (l->kl[0] * v[0] + l->kl[1] * v[1] + l->kl[2] * v[2]));
     vec3_set(m->w, al[0], al[1], z);
     vec3_copy(m->v, v);
     return z - al[2];
 }
 
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud)
+/* The three sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
+static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const real *u, const real *tau, real *ud)
 {
     int n = d->nbody;
     real *sine = d->scratch, *cosine = sine + n;
@@ -165,7 +174,8 @@ bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *
         const struct revolute *b = &d->revolute[i];
         struct link *l = &link[i];
         turn(l->r, b->e, sine[i], cosine[i]);
-        start(b, u[i], b->parent < 0 ? base.w : motion[b->parent].w, motion[i].w, l);
+        if (at_rest) vec3_set(l->n, 0, 0, 0), vec3_set(l->f, 0, 0, 0);
+        else start(b, u[i], b->parent < 0 ? base.w : motion[b->parent].w, motion[i].w, l);
         rigid(b, l);
         if (d->load) {
             vec3_sub(l->n, d->load + 6 * i);
@@ -174,14 +184,19 @@ bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *
     }
     for (int i = n - 1; i >= 0; i--) {
         const struct revolute *b = &d->revolute[i];
-        if (!eliminate(&link[i], tau[i])) return false;
+        if (!eliminate(&link[i], at_rest, tau[i])) return false;
         if (b->parent >= 0) hand_down(b, &link[i], &link[b->parent]);
     }
     vec3_copy(base.w, d->base);
     vec3_copy(base.v, d->base + 3);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
-        ud[i] = accelerate(b, &link[i], b->parent < 0 ? &base : &motion[b->parent], &motion[i]);
+        ud[i] = accelerate(b, &link[i], at_rest, b->parent < 0 ? &base : &motion[b->parent], &motion[i]);
     }
     return true;
+}
+
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud)
+{
+    return d->at_rest ? sweep(d, true, q, u, tau, ud) : sweep(d, false, q, u, tau, ud);
 }

@@ -217,10 +217,10 @@ static void velocity_terms(struct cfa_run *r, const real *u)
     dynamics_velocities(d, u);
     work_count_velocities(d, &r->work);
     for (int i = 0; i < d->nbody; i++) {
-        body_gyro(&d->body[i], d->v + 6 * i, r->gyro + 6 * i);
+        if (!d->at_rest) body_gyro(&d->body[i], d->v + 6 * i, r->gyro + 6 * i);
         if (d->load) screw_sub(r->gyro + 6 * i, d->load + 6 * i);
     }
-    r->work.flop += (uint64_t)d->nbody * (BODY_GYRO_FLOP + (d->load ? 6 : 0));
+    r->work.flop += (uint64_t)d->nbody * ((d->at_rest ? 0 : BODY_GYRO_FLOP) + (d->load ? 6 : 0));
 }
 
 /* Memory, poses, velocities, factors. The paper's scheme has its velocity terms from inverse dynamics: bias forces in

@@ -53,7 +53,7 @@ void dynamics_place(struct dynamics *d, const real *q)
 
 void dynamics_velocities(struct dynamics *d, const real *u)
 {
-    for (int i = 0; i < d->nbody; i++) {
+    for (int i = 0; i < d->nbody && !d->at_rest; i++) {
         const struct body *b = &d->body[i];
         real h[6], *v = d->v + 6 * i;
         body_rate(&d->pose[i], u + b->u_at, h);

@@ -1,10 +1,9 @@
 /* dynamics.h - serial rigid-body dynamics of trees and closed chains, in the build's precision.
  *
  * A `struct dynamics` holds one model's constants and work arrays; functions take coordinates in model order (model.h).
- * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Each function
- * returns what it did as work, by formula from the number of bodies of each joint type.
- * Sources: Featherstone, Rigid Body Dynamics Algorithms, chapters 5-7; the constraint force algorithm after Fijany,
- * Sharf and D'Eleuterio (1995). */
+ * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Work is counted by
+ * formula from the number of bodies of each joint type. Sources: Featherstone, Rigid Body Dynamics Algorithms, chapters
+ * 5-7; the constraint force algorithm after Fijany, Sharf and D'Eleuterio (1995). */
 #ifndef MECH_DYNAMICS_H
 #define MECH_DYNAMICS_H
 
@@ -29,6 +28,7 @@ struct dynamics {
     real *v, *a, *f;          /* (nbody x 6) velocity, acceleration, joint force on the body by its parent */
     real *bias;               /* (nbody x 6) b of physics (1.9) */
     real *load;               /* (nbody x 6) external wrenches of the last dynamics_load, internal axes; or NULL */
+    bool at_rest;             /* velocities are zero: v and bias are never written, their terms left out */
     real base[6];             /* acceleration of the base minus gravity, [angular; linear] */
     real *zero;               /* (nu) zeros */
     real *scratch;            /* (nbody x DYNAMICS_SCRATCH) of the fast paths */
@@ -65,8 +65,8 @@ void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud,
 #define aba REAL_NAME(aba)
 bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 
-/* aba_full: as aba, by the general code whatever the joints; leaves accelerations in d->a.
- * aba_response: the same at d's present poses without velocity terms and base acceleration: M^-1 (tau + loads). */
+/* aba_full: as aba, by the general code whatever the joints; leaves accelerations in d->a. aba_response: the same at
+ * d's present poses without velocity terms and base acceleration: M^-1 (tau + loads). */
 #define aba_full REAL_NAME(aba_full)
 bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 #define aba_response REAL_NAME(aba_response)

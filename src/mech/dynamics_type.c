@@ -37,6 +37,7 @@ static void inverse(const struct model *m, const struct state *s, struct arena *
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch);
     real *out = TAKE(scratch, m->nu, real);
+    p.d->at_rest = s->at_rest;
     rnea(p.d, p.q, p.u, p.ud, out, w);
     to_double(tau, out, m->nu);
     arena_release(scratch, mark);
@@ -64,6 +65,7 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     struct cfa_report full = {0};
     real *ud = TAKE(scratch, m->nu, real), *force = TAKE(scratch, m->nrow, real);
     springs_add(p.d, p.q, p.u, p.tau);
+    p.d->at_rest = s->at_rest;
     bool good = solve(&p, method, ud, force, &full, w);
     if (good) to_double(qdd, ud, m->nu);
     if (good && lambda) to_double(lambda, force, m->nrow);

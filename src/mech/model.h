@@ -91,6 +91,7 @@ struct state {
     double *tau;             /* (nu) given joint forces, for forward dynamics; springs come on top */
     double *fext;            /* (nbody x 6) [force; moment about the origin] on each body, user's body axes; or NULL */
     double base_acceleration[6]; /* prescribed motion of the base: [angular; linear], without gravity */
+    bool at_rest;            /* all rates are zero, and serial forward and inverse dynamics may leave their terms out */
 };
 
 /* model_begin: an empty model in `a`; gravity 0, units SI. `file` (may be NULL) is quoted in messages. */

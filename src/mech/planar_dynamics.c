@@ -90,15 +90,17 @@ static void start(const struct scene *x, int i, struct work *w)
     real q[3] = {0}, h[SPACE];
     for (int k = 0; k < b->nq; k++) q[k] = (real)x->state->q[b->q_at + k];
     body_place(b, q, &m->pose);
-    joint_motion(b, x->state->qd + b->u_at, h);
-    m->w = turning + h[0];
-    const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
-    m->bias[0] = 0;
-    m->bias[1] = t->c * px + t->s * py;
-    m->bias[2] = t->c * py - t->s * px;
+    screw_zero(m->bias);
     w->flop += (uint64_t)joint_cost_of(b->joint)->place;
     w->trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
     w->call++;
+    m->w = 0;
+    if (x->state->at_rest) return;
+    joint_motion(b, x->state->qd + b->u_at, h);
+    m->w = turning + h[0];
+    const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
+    m->bias[1] = t->c * px + t->s * py;
+    m->bias[2] = t->c * py - t->s * px;
     if (b->parent >= 0) w->flop += 1 + 1 + 2 + 6;
     if (!slides(b)) return;
     const real twice = turning + m->w;
@@ -119,10 +121,12 @@ static void pull(const struct scene *x, int i, struct work *w)
         w->flop += SCREW_ADD_FLOP;
     }
     if (!x->terms) return;
-    real centripetal[SPACE];
-    body_gyro(b, &m->w, centripetal);
-    screw_add(m->f, centripetal);
-    w->flop += BODY_GYRO_FLOP;
+    if (!x->state->at_rest) {
+        real centripetal[SPACE];
+        body_gyro(b, &m->w, centripetal);
+        screw_add(m->f, centripetal);
+        w->flop += BODY_GYRO_FLOP;
+    }
     if (!x->state->fext) return;
     real load[SPACE];
     body_load(b, x->state->fext + 6 * i, load);

@@ -3,6 +3,22 @@
 #include "mech/revolute.h"
 #include "mech/work_count.h"
 
+/* Outward at rest: A_i = X^T A_p + H u', F_i = I A - load. */
+static void outward_at_rest(struct dynamics *d, const real *ud)
+{
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *b = &d->body[i];
+        const struct body_pose *pose = &d->pose[i];
+        real carried[6], *a = d->a + 6 * i, *f = d->f + 6 * i;
+        screw_zero(a);
+        subspace_h(&pose->s, ud + b->u_at, a);
+        xform_motion(carried, &pose->x, b->parent >= 0 ? d->a + 6 * b->parent : d->base);
+        screw_add(a, carried);
+        body_force(b, a, f);
+        if (d->load) screw_sub(f, d->load + 6 * i);
+    }
+}
+
 /* Outward: V_i = X^T V_p + H u, A_i = X^T A_p + H u' + b, F_i = I A + P - load. */
 static void outward(struct dynamics *d, const real *u, const real *ud)
 {
@@ -44,7 +60,8 @@ static void inward(struct dynamics *d, real *tau)
 void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
     dynamics_place(d, q);
-    outward(d, u, ud);
+    if (d->at_rest) outward_at_rest(d, ud);
+    else outward(d, u, ud);
     inward(d, tau);
     work_count_rnea(d, w);
 }

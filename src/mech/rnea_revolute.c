@@ -63,6 +63,31 @@ static inline void newton_euler(const struct revolute *b, const struct motion *c
     vec3_cross_add(n, s, f);
 }
 
+/* carry and newton_euler at rest: al and a alone, with al~ for K. */
+static inline void carry_at_rest(const struct revolute *b, const real *r, real ud, const struct motion *p,
+                                 struct motion *c)
+{
+    real g[3];
+    mat3_mul_vec_transposed(c->al, r, p->al);
+    c->al[2] += ud;
+    vec3_copy(g, p->a);
+    vec3_cross_add(g, p->al, b->t);
+    mat3_mul_vec_transposed(c->a, r, g);
+}
+
+static inline void newton_euler_at_rest(const struct revolute *b, const struct motion *c, real *f, real *n)
+{
+    const real *s = b->s, *S = b->second, *al = c->al;
+    real g[3];
+    vec3_copy(g, c->a);
+    vec3_cross_add(g, al, s);
+    vec3_scale(f, b->m, g);
+    n[0] = (al[0] * S[3] - al[1] * S[1]) - (al[2] * S[2] - al[0] * S[5]);
+    n[1] = (al[1] * S[5] - al[2] * S[4]) - (al[0] * S[1] - al[1] * S[0]);
+    n[2] = (al[2] * S[0] - al[0] * S[2]) - (al[1] * S[4] - al[2] * S[3]);
+    vec3_cross_add(n, s, f);
+}
+
 /* f, n of the parent += r f, r n + t x r f. */
 static inline void hand_down(const struct revolute *b, const struct load *c, struct load *p)
 {
@@ -74,7 +99,8 @@ static inline void hand_down(const struct revolute *b, const struct load *c, str
     vec3_add(p->n, n);
 }
 
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau)
+/* Both sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
+static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const real *u, const real *ud, real *tau)
 {
     int n = d->nbody;
     /* a chain needs only the last body's motion: two slots */
@@ -85,15 +111,20 @@ void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real 
     struct motion *motion = (struct motion *)(load + n);
     vec3_copy(base.al, d->base);
     vec3_copy(base.a, d->base + 3);
-    spin_matrix(&base);
+    if (!at_rest) spin_matrix(&base);
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
         const struct motion *p = b->parent < 0 ? &base : &motion[(unsigned)b->parent & slots];
         struct motion *c = &motion[(unsigned)i & slots];
         turn(load[i].r, b->e, sine[i], cosine[i]);
-        carry(b, load[i].r, u[i], ud[i], p, c);
-        newton_euler(b, c, load[i].f, load[i].n);
+        if (at_rest) {
+            carry_at_rest(b, load[i].r, ud[i], p, c);
+            newton_euler_at_rest(b, c, load[i].f, load[i].n);
+        } else {
+            carry(b, load[i].r, u[i], ud[i], p, c);
+            newton_euler(b, c, load[i].f, load[i].n);
+        }
         if (d->load) {
             vec3_sub(load[i].n, d->load + 6 * i);
             vec3_sub(load[i].f, d->load + 6 * i + 3);
@@ -104,4 +135,10 @@ void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real 
         tau[i] = load[i].n[2];
         if (b->parent >= 0) hand_down(b, &load[i], &load[b->parent]);
     }
+}
+
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau)
+{
+    if (d->at_rest) sweep(d, true, q, u, ud, tau);
+    else sweep(d, false, q, u, ud, tau);
 }

@@ -14,7 +14,7 @@ void work_count_place(const struct dynamics *d, struct work *w)
 
 void work_count_velocities(const struct dynamics *d, struct work *w)
 {
-    if (!w) return;
+    if (!w || d->at_rest) return;
     for (int i = 0; i < d->nbody; i++) {
         const struct joint_cost *c = joint_cost_of(d->body[i].joint);
         w->flop += (uint64_t)(c->rate + c->bias + (d->body[i].parent >= 0 ? XFORM_MOTION_FLOP + SCREW_ADD_FLOP : 0));
@@ -24,6 +24,8 @@ void work_count_velocities(const struct dynamics *d, struct work *w)
 /* rnea_revolute, per body: carry 15 + 15 + 18 + 15 + 6 (H, b), K 15, force 21 + 3, moment 33 + 12; tau and hand_down
  * 15 + 15 + 12 + 6; E Rz 18. */
 enum { RNEA_REVOLUTE_OUT = 18 + 69 + 15 + 24 + 45, RNEA_REVOLUTE_IN = 48 };
+/* At rest: E Rz 18, carry 15 + 12 + 15 + 1, force 15, moment 21 + 12. */
+enum { RNEA_REVOLUTE_AT_REST = 18 + 43 + 15 + 33 };
 
 void work_count_rnea(const struct dynamics *d, struct work *w)
 {
@@ -35,13 +37,15 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
         bool child = b->parent >= 0;
         w->call += 1;
         if (d->revolute) {
-            w->flop += (uint64_t)(RNEA_REVOLUTE_OUT + (child ? RNEA_REVOLUTE_IN : 0) + load);
+            const int out = d->at_rest ? RNEA_REVOLUTE_AT_REST : RNEA_REVOLUTE_OUT;
+            w->flop += (uint64_t)(out + (child ? RNEA_REVOLUTE_IN : 0) + load);
             w->trig += 2;
             continue;
         }
-        w->flop += (uint64_t)(c->place + c->rate + c->bias + c->h + c->h_transposed + (child ? MAT3_VEC_FLOP + 3 : 0) +
-                              XFORM_MOTION_FLOP + SCREW_ADD_FLOP + BODY_FORCE_FLOP + BODY_GYRO_FLOP + load +
-                              (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
+        w->flop += (uint64_t)(c->place + c->h + c->h_transposed + XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
+                              BODY_FORCE_FLOP + load + (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
+        if (!d->at_rest)
+            w->flop += (uint64_t)(c->rate + c->bias + (child ? MAT3_VEC_FLOP + 3 : 0) + BODY_GYRO_FLOP);
         w->trig += (uint64_t)c->place_trig;
         w->div += (uint64_t)c->place_div;
     }
@@ -50,6 +54,8 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
 /* aba_revolute, per body: E Rz 18; start 15 + 3 + 18 + 15 + 18 + 3 + 15 + 9 + 12; rigid 21; eliminate 5 + 1 + 1 + 30 +
  * 55; hand_down: rotate 18 + 18 + 27 + 45 + 75, shift 36 + 48 + 9 + 15 + 6, force 48; accelerate 12 + 30 + 5 + 11. */
 enum { ABA_REVOLUTE_OUT = 18 + 108 + 21 + 92 + 58, ABA_REVOLUTE_IN = 183 + 114 + 48 };
+/* At rest: no start; eliminate without I^a b: 5 * 9 fewer; accelerate without b: 5 fewer. */
+enum { ABA_REVOLUTE_AT_REST = 18 + 21 + 47 + 53 };
 
 /* aba_general: eliminate in joint axes: factor d, solve, Schur complement on c, forces. */
 static void count_eliminate(const struct body *b, const struct joint_cost *cost, struct work *w)
@@ -77,12 +83,14 @@ void work_count_aba(const struct dynamics *d, struct work *w)
         w->call += 1;
         if (d->load) w->flop += SCREW_ADD_FLOP;
         if (d->revolute) {
-            w->flop += (uint64_t)(ABA_REVOLUTE_OUT + (child ? ABA_REVOLUTE_IN : 0));
+            const int out = d->at_rest ? ABA_REVOLUTE_AT_REST : ABA_REVOLUTE_OUT;
+            w->flop += (uint64_t)(out + (child ? ABA_REVOLUTE_IN : 0));
             w->trig += 2;
             w->div += 1;
             continue;
         }
-        w->flop += (uint64_t)(BODY_GYRO_FLOP + SYM6_MUL_FLOP + 6 + XFORM_MOTION_FLOP + 6);
+        w->flop += XFORM_MOTION_FLOP;
+        if (!d->at_rest) w->flop += (uint64_t)(BODY_GYRO_FLOP + SYM6_MUL_FLOP + 6 + 6);
         if (child) w->flop += (uint64_t)(SYM6_MOVE_FLOP + 21 + XFORM_FORCE_FLOP + 6);
         count_eliminate(b, joint_cost_of(b->joint), w);
     }

@@ -39,12 +39,14 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
     s->arena = a;
     s->spec = spec->model;
     s->keep = spec->keep;
+    s->still = spec->kernel.steps == 0;
     s->model = model_build(&spec->model, a, e);
     if (s->model) s->state = state_make(s->model, &spec->model, a);
     if (s->state) {
         s->nbody = s->model->nbody;
         s->movable = omission_movable(s->model);
         s->fixed = omission_scene(spec, &s->model, &s->state, a);
+        s->state->at_rest = omission_job(spec, s->model, s->state).velocity;
         return s;
     }
     if (s->model) err_set(e, ERR_NO_INPUT, "%s can no longer be read", spec->model.path);
@@ -74,6 +76,7 @@ struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec,
     for (int i = 0; i < shelf->nscene && !(spec->keep & KEEP_SCENES); i++) {
         struct scene *s = shelf->scene[i];
         if (s->fixed != omission_mergeable(spec, s->nbody, s->movable)) continue;
+        if (s->still != (spec->kernel.steps == 0)) continue;
         if (s->keep != spec->keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
         s->used = shelf->clock;
         return s;

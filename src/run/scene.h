@@ -25,6 +25,7 @@ struct scene {
     struct arena *arena;     /* owned */
     struct model_spec spec;  /* what it was made from */
     unsigned keep;
+    bool still;              /* made for one evaluation: what is at rest stays so */
     int nbody, movable;      /* bodies as described; those on joints that move */
     int fixed;               /* the others, when they have become part of these; otherwise 0 */
     long used;               /* when it was last asked for */
