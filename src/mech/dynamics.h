@@ -1,9 +1,9 @@
 /* dynamics.h - serial rigid-body dynamics of trees and closed chains, in the build's precision.
  *
  * A `struct dynamics` holds one model's constants and work arrays; functions take coordinates in model order (model.h).
- * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Work is counted by
- * formula from the number of bodies of each joint type. Sources: Featherstone, Rigid Body Dynamics Algorithms, chapters
- * 5-7; the constraint force algorithm after Fijany, Sharf and D'Eleuterio (1995). */
+ * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Work is
+ * counted by formula from the number of bodies of each joint type. Sources: Featherstone, Rigid Body Dynamics
+ * Algorithms, chapters 5-7; the constraint force algorithm after Fijany, Sharf and D'Eleuterio (1995). */
 #ifndef MECH_DYNAMICS_H
 #define MECH_DYNAMICS_H
 
