@@ -110,25 +110,12 @@ static void implicit_evaluation(struct climb *c)
     c->implicit_ps = ps[0] >= 0 && ps[1] >= 0 ? ps[1] - ps[0] : -1;
 }
 
-/* Largest difference of x and reference over the largest number that the reference has at the begin or the end: what
- * has come to rest would have no scale of its own. */
-static double change_error(const double *x, const double *reference, const double *begin, int n)
-{
-    double difference = 0, scale = 0;
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return INFINITY;
-        difference = fmax(difference, fabs(x[i] - reference[i]));
-        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
-    }
-    return scale > 0 ? difference / scale : difference;
-}
-
 /* The larger error of coordinates and of velocities. */
 static double state_error(const struct climb *c, const struct state *x)
 {
     const struct model *m = c->l->model;
     const struct state *r = c->reference.s, *b = c->begin.s;
-    return fmax(change_error(x->q, r->q, b->q, m->nq), change_error(x->qd, r->qd, b->qd, m->nu));
+    return fmax(trial_change_error(x->q, r->q, b->q, m->nq), trial_change_error(x->qd, r->qd, b->qd, m->nu));
 }
 
 /* Of the energy: over the largest of kinetic energy and what the motion exchanged. */
@@ -142,8 +129,8 @@ static double energy_error(const struct climb *c, const struct ending *x)
 static double momentum_error(const struct climb *c, const struct ending *x)
 {
     const struct dynamics_totals *r = &c->reference.totals, *b = &c->begin.totals;
-    return fmax(change_error(x->totals.linear, r->linear, b->linear, 3),
-                change_error(x->totals.angular, r->angular, b->angular, 3));
+    return fmax(trial_change_error(x->totals.linear, r->linear, b->linear, 3),
+                trial_change_error(x->totals.angular, r->angular, b->angular, 3));
 }
 
 /* The rows of one rung: state first, then what should be kept. */

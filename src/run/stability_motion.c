@@ -73,24 +73,11 @@ static double machine_time(const struct model *m, const struct state *s, enum st
     return t.answered ? (double)t.makespan_ps * 1e-12 : NAN;
 }
 
-/* Largest difference of x from reference (n) over the largest number of the reference at the end or the beginning: what
- * has come to rest would have no scale of its own. */
-static double change_error(const double *x, const double *reference, const double *begin, int n)
-{
-    double difference = 0, scale = 0;
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return INFINITY;
-        difference = fmax(difference, fabs(x[i] - reference[i]));
-        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
-    }
-    return scale > 0 ? difference / scale : difference;
-}
-
 static double motion_error(const struct model *m, const struct state *begin, const struct state *end,
                            const struct state *reference)
 {
-    return fmax(change_error(end->q, reference->q, begin->q, m->nq),
-                change_error(end->qd, reference->qd, begin->qd, m->nu));
+    return fmax(trial_change_error(end->q, reference->q, begin->q, m->nq),
+                trial_change_error(end->qd, reference->qd, begin->qd, m->nu));
 }
 
 /* Error of `steps` steps; their end in *end. INFINITY: broke down. */

@@ -20,6 +20,17 @@ double trial_error(const double *x, const double *reference, int n)
     return scale > 0 ? difference / scale : difference;
 }
 
+double trial_change_error(const double *x, const double *reference, const double *begin, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
 struct machine_spec trial_machine(int nrank)
 {
     return (struct machine_spec){

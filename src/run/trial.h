@@ -35,4 +35,8 @@ struct machine_spec trial_machine(int nrank);
 /* trial_error: max |x - reference| / max |reference| over n numbers; INFINITY when x has no numbers, 0 for equal. */
 double trial_error(const double *x, const double *reference, int n);
 
+/* trial_change_error: max |x - reference| over the largest number (of n) that the reference has at the end of a motion
+ * or `begin` at its beginning: what has come to rest would have no scale of its own. INFINITY when x has no numbers. */
+double trial_change_error(const double *x, const double *reference, const double *begin, int n);
+
 #endif
