@@ -155,14 +155,14 @@ static bool begin(struct accuracy_report *r, const struct run_spec *spec, int ns
 bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a, struct accuracy_report *r,
                       struct err *e)
 {
-    struct run_estimate *size;
+    struct run_estimate *size = NULL;
     return begin(r, spec, nspec, a, &size, e) && climb(r, spec, size, nspec, NETWORK, e);
 }
 
 bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
                       struct accuracy_report *r, struct err *e)
 {
-    struct run_estimate *size;
+    struct run_estimate *size = NULL;
     if (!begin(r, spec, nspec, a, &size, e)) return false;
     struct progress p = progress_make("ladders", LADDERS, quiet);
     for (int k = 0; k < LADDERS; k++) {
