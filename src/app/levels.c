@@ -78,23 +78,31 @@ static bool measure(struct store *s, const struct run_spec *run, int nrun, const
     return ok;
 }
 
-/* The level of one family for one tolerance. */
-static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, const char *family, bool quiet,
-                   struct level_error *taken, struct err *e)
+/* What one family takes for one tolerance. */
+struct settled {
+    char family[HEX];
+    double tolerance;
+    struct level_error taken;
+};
+
+/* Settle that of run[which]; x->family is known. */
+static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, bool quiet, struct settled *x,
+                   struct err *e)
 {
-    const double tolerance = run[which].machine.network.tolerance;
+    const double tolerance = x->tolerance = run[which].machine.network.tolerance;
     struct known k;
     bool stored = true;
-    if (!find_known(s, family, &k, e)) return false;
+    if (!find_known(s, x->family, &k, e)) return false;
     if (k.n == 0) {
         stored = false;
-        if (!measure(s, run, nrun, family, e) || !find_known(s, family, &k, e)) return false;
+        if (!measure(s, run, nrun, x->family, e) || !find_known(s, x->family, &k, e)) return false;
     }
     int best = level_cheapest(k.level, k.n, tolerance);
     if (best < 0)
         return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be within %.3g %%",
                        run[which].kernel.name, run[which].machine.name, 100 * tolerance);
-    *taken = k.level[best];
+    const struct level_error *taken = &x->taken;
+    x->taken = k.level[best];
     if (!quiet)
         fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; up to %.3g %% may be)\n",
                 run[which].kernel.name, run[which].machine.name, taken->level, taken->at, 100 * taken->error,
@@ -104,17 +112,20 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
 
 bool levels_settle(struct store *s, struct run_spec *run, int nrun, const bool *skip, bool quiet, struct err *e)
 {
-    char family[HEX], last[HEX] = "";
-    double tolerance = -1;
-    struct level_error taken;
-    for (int i = 0; i < nrun; i++) {
+    struct settled *known = calloc((size_t)nrun + 1, sizeof *known);
+    CHECK(known);
+    int n = 0;
+    bool ok = true;
+    for (int i = 0; i < nrun && ok; i++) {
         if (run[i].machine.network.level != LEVEL_AUTO_TOLERANCE || (skip && skip[i])) continue;
-        level_family(&run[i], family);
-        bool again = strcmp(family, last) == 0 && tolerance == run[i].machine.network.tolerance;
-        if (!again && !settle(s, run, nrun, i, family, quiet, &taken, e)) return false;
-        memcpy(last, family, sizeof last);
-        tolerance = run[i].machine.network.tolerance;
-        level_take(&run[i], &taken);
+        level_family(&run[i], known[n].family);
+        int at = 0;
+        while (strcmp(known[at].family, known[n].family) != 0 ||
+               (at < n && known[at].tolerance != run[i].machine.network.tolerance))
+            at++;
+        if (at == n) ok = settle(s, run, nrun, i, quiet, &known[n++], e);
+        if (ok) level_take(&run[i], &known[at].taken);
     }
-    return true;
+    free(known);
+    return ok;
 }
