@@ -37,7 +37,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
-    if (r->inner_added > 0 && k->refined++ == 0 && !k->quiet)
+    if (run_result_refined(r) && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
                 "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the residual was %.2g\n",
                 spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,

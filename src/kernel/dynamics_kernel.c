@@ -59,7 +59,7 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
         return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
     if (k->residual == RESIDUAL_TWICE && (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
         return err_set(e, ERR_CONFIG, "residual: twice exists for open chains in the direct formulation");
-    return k->steps == 0 || k->step != STEP_LINEARLY_IMPLICIT || accepts_implicit(spec, model, e);
+    return !kernel_spec_implicit(k) || accepts_implicit(spec, model, e);
 }
 
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)

@@ -29,7 +29,7 @@ static struct outline outline_of(const struct run_spec *spec, const struct model
     o.d = model->u_at[last + 1] - model->u_at[last];
     o.nq = model->q_at[last + 1] - model->q_at[last];
     const struct body_def *b = &model->body[last];
-    const bool soft = spec->kernel.steps > 0 && spec->kernel.step == STEP_LINEARLY_IMPLICIT;
+    const bool soft = kernel_spec_implicit(&spec->kernel);
     o.c = soft && (b->stiffness > 0 || b->damping > 0) ? SPACE : SPACE - o.d;
     const struct joint_cost *cost = joint_cost_of(model->body[last].joint);
     o.place = cost->place;

@@ -21,12 +21,19 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, co
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 
+/* kernel_fits_trees: whether the programs for trees have what is asked for: not dense operators, nor residuals in twice
+ * the digits, nor inner refinements of linearly implicit steps. */
+static inline bool kernel_fits_trees(const struct kernel_spec *k)
+{
+    const bool inner = kernel_spec_implicit(k) && k->inner_refinements > 0;
+    return k->operators != OPERATORS_DENSE && k->residual != RESIDUAL_TWICE && !inner;
+}
+
 /* kernel_branches: the programs for trees run it: the model is not a plain open chain, or the run keeps branch and loop
- * phases all the same (dense operators have no such program). */
+ * phases all the same, where that can be. */
 static inline bool kernel_branches(const struct run_spec *spec, const struct model *m)
 {
-    const bool keep = (spec->keep & KEEP_BRANCHES) && spec->kernel.operators != OPERATORS_DENSE;
-    return !m->is_chain || m->nloop > 0 || keep;
+    return !m->is_chain || m->nloop > 0 || ((spec->keep & KEEP_BRANCHES) && kernel_fits_trees(&spec->kernel));
 }
 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes

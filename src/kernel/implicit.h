@@ -13,7 +13,7 @@
 /* steps_implicitly: whether the job's time steps are linearly implicit. */
 static inline bool steps_implicitly(const struct kernel_job *job)
 {
-    return job->spec->kernel.steps > 0 && job->spec->kernel.step == STEP_LINEARLY_IMPLICIT;
+    return kernel_spec_implicit(&job->spec->kernel);
 }
 
 /* implicit_step: h in the model's time; 0 when steps are explicit. */

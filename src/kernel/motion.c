@@ -136,7 +136,7 @@ void motion_watch(const struct kernel_job *job, int rank, real residual, real sc
 {
     double *x = job->residual, *of = job->residual_scale, *most = job->condition;
     const double size = (double)scale, violation = (double)residual * size;
-    if (most && !((double)condition <= most[rank])) most[rank] = (double)condition;
+    if (most && !isnan(most[rank]) && !((double)condition <= most[rank])) most[rank] = (double)condition;
     if (!x || isnan(x[rank])) return;
     if (!of) {
         if (!((double)residual <= x[rank])) x[rank] = (double)residual;

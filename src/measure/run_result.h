@@ -110,4 +110,10 @@ struct run_result {
     int64_t host_peak_bytes;
 };
 
+/* run_result_refined: whether the run switched on refinements by itself. */
+static inline bool run_result_refined(const struct run_result *r)
+{
+    return r->inner_added + r->outer_added > 0 || r->twice_added;
+}
+
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "kernel/estimate.h"
 #include "mech/lump.h"
 #include "mech/planar.h"
 #include "run/launch.h"
@@ -145,8 +146,7 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
     if (job->omit.fixed > 0)
         add(l, KEEP_FIXED, bound, "fixed joints", "a body on a fixed joint is part of the one that carries it");
     if (m->is_chain && m->nloop == 0)
-        add(l, k->operators == OPERATORS_DENSE ? 0 : KEEP_BRANCHES, bound, "branch and loop phases",
-            "an open chain has neither");
+        add(l, kernel_fits_trees(k) ? KEEP_BRANCHES : 0, bound, "branch and loop phases", "an open chain has neither");
     if (kernel->planar)
         add(l, k->algebra == ALGEBRA_AUTO ? KEEP_SPATIAL : 0, bound, "out-of-plane components",
             "all joints move in one plane: three components of six");

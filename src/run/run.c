@@ -90,7 +90,9 @@ static bool refine(struct run_spec *spec, const struct kernel_type *kernel, stru
         arena_release(a, results);
         if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
     }
-    if (out->residual >= before && spec->kernel.inner_refinements > given.inner_refinements) {
+    const bool worse = out->residual >= before || isnan(out->residual);
+    if (worse && (spec->kernel.inner_refinements > given.inner_refinements ||
+                  spec->kernel.outer_refinements > given.outer_refinements)) {
         spec->kernel = given;
         arena_release(scratch, work);
         arena_release(a, results);

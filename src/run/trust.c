@@ -29,16 +29,21 @@ double trust_residual(const struct kernel_job *job)
     return scale > 0 ? residual / scale : residual;
 }
 
-/* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. */
-static const char *remedy(const struct kernel_spec *k)
+/* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. What the run has
+ * tried by itself is not named again. */
+static const char *remedy(const struct kernel_job *job)
 {
-    if (k->formulation == FORMULATION_PAPER) return "kernel.formulation: direct";
-    if (k->inner_refinements == 0) return "kernel.inner_refinements: 1";
-    if (k->outer_refinements == 0) return "kernel.outer_refinements: 1";
+    const struct kernel_spec *k = &job->spec->kernel;
+    const bool tree = kernel_branches(job->spec, job->model);
+    const bool refines = k->refinement == REFINEMENT_AS_GIVEN && (tree || k->solver != SOLVER_PCR);
     const bool unstable = k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
-    if (unstable) return "kernel.solver: cr";
+    if (k->formulation == FORMULATION_PAPER) return "kernel.formulation: direct";
+    if (refines && k->inner_refinements == 0 && !(tree && kernel_spec_implicit(k)))
+        return "kernel.inner_refinements: 1";
+    if (refines && k->outer_refinements == 0) return "kernel.outer_refinements: 1";
+    if (unstable && !tree) return "kernel.solver: cr";
     if (k->residual == RESIDUAL_TWICE) return "more kernel.inner_refinements, or a higher kernel.precision";
-    return "kernel.residual: twice (open chains), or a higher kernel.precision";
+    return refines && !tree ? "kernel.residual: twice, or a higher kernel.precision" : "a higher kernel.precision";
 }
 
 /* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints
@@ -50,11 +55,12 @@ double trust_needs(const struct kernel_spec *k, int n)
     return fmin(overstated(k) * references_tolerance(k, n), 1e-3);
 }
 
-/* The next thing to try; false: nothing is left. */
-static bool refine_more(struct kernel_spec *k, bool twice)
+/* The next thing to try, where the program has inner refinements and residuals in twice the digits; false: nothing is
+ * left. */
+static bool refine_more(struct kernel_spec *k, bool inner, bool twice)
 {
     enum { MOST_OUTER = 4, FEW_INNER = 4, MOST_INNER = 20 };
-    if (k->inner_refinements == 0) {
+    if (inner && k->inner_refinements == 0) {
         k->inner_refinements = 1;
     } else if (k->outer_refinements == 0 && k->residual != RESIDUAL_TWICE) {
         k->outer_refinements = 1;
@@ -77,7 +83,8 @@ bool trust_refine(struct run_spec *spec, const struct model *m, const struct run
     const bool enough = out->residual <= trust_needs(k, m->nbody); /* false for what is no number */
     const bool keeps_factors = k->solver != SOLVER_PCR || kernel_branches(spec, m);
     if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
-    return refine_more(k, !kernel_branches(spec, m) && k->formulation == FORMULATION_DIRECT);
+    const bool chain = !kernel_branches(spec, m);
+    return refine_more(k, chain || !kernel_spec_implicit(k), chain && k->formulation == FORMULATION_DIRECT);
 }
 
 void trust_check(const struct kernel_job *job, struct run_result *out)
@@ -93,7 +100,9 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     out->condition = worst(job->condition, job->nrank);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
     out->status = RUN_INVALID;
+    char residual[32] = "no number"; /* whose sign would differ from host to host */
+    if (!isnan(out->residual)) snprintf(residual, sizeof residual, "%.2g", out->residual);
     snprintf(out->text, sizeof out->text,
-             "the answer is not to be trusted: the constraints' residual is %.2g, the condition at least %.2g; try %s",
-             out->residual, out->condition, remedy(k));
+             "the answer is not to be trusted: the constraints' residual is %s, the condition at least %.2g; try %s",
+             residual, out->condition, remedy(job));
 }

@@ -23,8 +23,8 @@ double trust_needs(const struct kernel_spec *k, int n);
 
 /* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, when that is too much: one inner,
  * then one outer; then open chains in the direct formulation get their residual in twice the digits with four inner
- * ones and with twenty, others up to four outer ones. False: none is needed, none is left, or the settings forbid it;
- * *spec is then unchanged. */
+ * ones and with twenty, others up to four outer ones. Linearly implicit steps of trees have no inner ones. False: none
+ * is needed, none is left, or the settings forbid it; *spec is then unchanged. */
 bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out);
 
 #endif

@@ -43,4 +43,10 @@ struct kernel_spec {
 /* kernel_spec_needs_model: false for the message benchmarks. */
 bool kernel_spec_needs_model(const struct kernel_spec *k);
 
+/* kernel_spec_implicit: whether its time steps treat springs linearly implicitly; false without steps. */
+static inline bool kernel_spec_implicit(const struct kernel_spec *k)
+{
+    return k->steps > 0 && k->step == STEP_LINEARLY_IMPLICIT;
+}
+
 #endif

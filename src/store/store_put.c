@@ -219,7 +219,7 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     bind_int(&b, r->inner_added);
     bind_int(&b, r->outer_added);
     bind_int(&b, r->twice_added);
-    bind_real(&b, r->inner_added + r->outer_added > 0 ? r->residual_before : NAN);
+    bind_real(&b, run_result_refined(r) ? r->residual_before : NAN);
     bind_text(&b, left_out.s);
     bind_text(&b, spec->config_text ? spec->config_text : "");
     bind_int(&b, s->build_id);

@@ -16,7 +16,7 @@
 #include "run/references.h"
 #include "run/run.h"
 
-enum { MOST_SETTINGS = 8 };
+enum { MOST_SETTINGS = 12 };
 
 /* The only run of the benchmark scenario with these settings, "key=value", ended by NULL. */
 static struct run_spec spec_with(struct plan *p, const char *const *setting)
@@ -234,6 +234,29 @@ static void nothing_is_refined_that_is_good_enough_or_keeps_no_factors(void **un
     arena_destroy(a);
 }
 
+/* What a tree's linearly implicit steps cannot have is neither tried nor named as a way out; what is refined in vain is
+ * told as it was given. */
+static void implicit_steps_of_trees_are_refined_from_outside(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct arena *a = arena_create();
+    struct run_spec spec = SPEC(&p, "level=link", "n=16", "ranks=4", "model.generator=random-tree",
+                                "model.inertia=random", "model.mass_ratio=1e12", "model.stiffness=1e6 N m/rad",
+                                "kernel.name=forward", "kernel.formulation=direct", "kernel.steps=2",
+                                "kernel.step=linearly-implicit");
+    struct run_result r = run(&spec, a);
+    assert_int_equal(r.status, RUN_OK);
+    assert_true(run_result_refined(&r) && r.inner_added == 0 && r.residual < r.residual_before);
+    spec.model.seed = 5;
+    r = run(&spec, a);
+    assert_int_equal(r.status, RUN_INVALID);
+    assert_true(!run_result_refined(&r) && r.residual == r.residual_before);
+    assert_null(strstr(r.text, "refinements"));
+    arena_destroy(a);
+    plan_free(&p);
+}
+
 /* The residual of either formulation tells the error of its answer to within two decades and never hides it. */
 static void the_residual_tells_the_error(void **unused)
 {
@@ -354,6 +377,7 @@ int main(void)
         cmocka_unit_test(rounding_beyond_the_tolerance_makes_a_real_run_invalid),
         cmocka_unit_test(refinement_is_switched_on_where_the_residual_asks_for_it),
         cmocka_unit_test(nothing_is_refined_that_is_good_enough_or_keeps_no_factors),
+        cmocka_unit_test(implicit_steps_of_trees_are_refined_from_outside),
         cmocka_unit_test(the_residual_tells_the_error),
         cmocka_unit_test(baselines_are_all_the_work_and_the_fastest_of_the_serial_codes),
         cmocka_unit_test(estimates_are_within_a_fifth_of_what_is_counted),
