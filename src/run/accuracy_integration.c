@@ -193,7 +193,9 @@ static void own_rung(struct climb *c, enum step_rule rule, int steps)
     long count = (long)steps * evaluations[rule] + (rule == STEP_KDK);
     const int64_t explicit_ps = c->evaluation_ps;
     if (rule == STEP_LINEARLY_IMPLICIT) c->evaluation_ps = c->implicit_ps;
-    add_rows(c, name[rule], rung, good ? &x : NULL, count, host_seconds() - begin, "the dynamics broke down");
+    const bool refused = rule == STEP_LINEARLY_IMPLICIT && l->model->nloop > 0;
+    add_rows(c, name[rule], rung, good ? &x : NULL, count, host_seconds() - begin,
+             refused ? "closed chains have no linearly implicit step" : "the dynamics broke down");
     c->evaluation_ps = explicit_ps;
     arena_release(l->arena, mark);
 }
