@@ -189,8 +189,11 @@ static void untrustworthy_answers_are_told(void **state)
     (void)state;
     double residual[2] = {1e-12, 1e-9}, condition[2] = {10, 20}, qdd[1] = {0};
     struct run_spec spec = chain_spec(2, 2);
-    struct kernel_job job = {.spec = &spec, .nrank = 2, .qdd = qdd, .residual = residual, .condition = condition};
+    const struct model chain = {.nbody = 2, .is_chain = true};
+    struct kernel_job job = {.spec = &spec, .model = &chain, .nrank = 2, .qdd = qdd, .residual = residual,
+                             .condition = condition};
     struct run_result r = {.status = RUN_OK};
+    spec.kernel.refinement = REFINEMENT_AS_GIVEN;
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_OK);
     assert_true(r.residual == 1e-9 && r.condition == 20);
@@ -198,9 +201,14 @@ static void untrustworthy_answers_are_told(void **state)
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_INVALID);
     assert_non_null(strstr(r.text, "inner_refinements"));
+    spec.kernel.refinement = REFINEMENT_AS_NEEDED; /* the run has tried that */
+    r.status = RUN_OK;
+    trust_check(&job, &r);
+    assert_null(strstr(r.text, "inner_refinements"));
     r.status = RUN_OK, residual[0] = NAN;
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_INVALID);
+    assert_non_null(strstr(r.text, "residual is no number"));
     double scale[2] = {1e-20, 1}; /* the first rank has nothing but rounding */
     r.status = RUN_OK, residual[0] = 1, job.residual_scale = scale;
     trust_check(&job, &r);
