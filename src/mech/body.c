@@ -42,13 +42,6 @@ static void make_frames(const struct model *m, int i, struct body *b)
     b->damping = (real)def->damping;
 }
 
-void body_make(const struct model *m, int i, struct body *b)
-{
-    memset(b, 0, sizeof *b);
-    make_inertia(m, i, b);
-    make_frames(m, i, b);
-}
-
 /* Where body i hangs; these differ between otherwise equal bodies. */
 static void place_in_model(const struct model *m, int i, struct body *b)
 {

@@ -51,10 +51,8 @@ struct joint_cost {
     int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
 };
 
-/* body_make: the constants of body i of m, in *b. bodies_make: of all, (nbody): in double the model's own, made by
- * model_finish; otherwise made in `a`. Bodies equal to their predecessor cost nothing. */
-#define body_make REAL_NAME(body_make)
-void body_make(const struct model *m, int i, struct body *b);
+/* bodies_make: the constants of m's bodies (nbody): in double the model's own, made by model_finish; otherwise made in
+ * `a`. Bodies equal to their predecessor cost nothing. */
 #define bodies_make REAL_NAME(bodies_make)
 const struct body *bodies_make(const struct model *m, struct arena *a);
 

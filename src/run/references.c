@@ -186,8 +186,10 @@ static struct work least_work(const struct model *m, enum forward_method method,
     return w;
 }
 
-bool references_never_fastest(const struct model *m, enum forward_method method, bool dense,
-                              const struct node_cost *cost, const struct work *aba)
+/* Whether `method` takes more than the articulated-body algorithm's work `aba`, known from that bound; false when it is
+ * not known, or aba is NULL. */
+static bool never_fastest(const struct model *m, enum forward_method method, bool dense, const struct node_cost *cost,
+                          const struct work *aba)
 {
     const struct work least = least_work(m, method, dense);
     return method != FORWARD_ABA && aba && node_cost_ps(cost, &least) > node_cost_ps(cost, aba);
@@ -212,7 +214,7 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
         if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !keep) continue;
-        if (choose && references_never_fastest(job->model, methods[i], dense, cost, aba)) continue;
+        if (choose && never_fastest(job->model, methods[i], dense, cost, aba)) continue;
         const struct serial_answer *serial = scene_forward(scene, methods[i]);
         struct work w = serial->work;
         if (!serial->found) continue;

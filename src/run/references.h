@@ -29,11 +29,6 @@ double references_tolerance(const struct kernel_spec *k, int n);
 /* references_tolerance_inverse: the same of the joint forces. */
 double references_tolerance_inverse(const struct kernel_spec *k, int n);
 
-/* references_never_fastest: whether the serial `method` takes more than the articulated-body algorithm's work `aba` on
- * these processors, known from a lower bound of its own work; false when that is not known, or aba is NULL. */
-bool references_never_fastest(const struct model *m, enum forward_method method, bool dense,
-                              const struct node_cost *cost, const struct work *aba);
-
 /* references_baselines: predicted times of the serial codes on one node, and of the whole parallel work on one
  * processor (out->stage must be filled). CRBA's O(n^3) factorisation is left out above 512 degrees of freedom. */
 void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,

@@ -88,14 +88,22 @@ struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec,
     return shelf->scene[shelf->nscene++] = s;
 }
 
+/* Room for an answer, and an arena to compute it with; NULL when it has been asked for before. */
+static struct arena *ask(struct scene *s, struct serial_answer *x)
+{
+    if (x->asked) return NULL;
+    x->asked = true;
+    x->x = TAKE(s->arena, s->model->nu, double);
+    return arena_create();
+}
+
 const struct serial_answer *scene_inverse(struct scene *s)
 {
     struct serial_answer *x = &s->inverse;
-    if (x->asked) return x;
-    x->asked = x->found = true;
-    x->x = TAKE(s->arena, s->model->nu, double);
-    struct arena *scratch = arena_create();
+    struct arena *scratch = ask(s, x);
+    if (!scratch) return x;
     dynamics_type_of(PRECISION_DOUBLE)->inverse(s->model, s->state, scratch, x->x, &x->work);
+    x->found = true;
     arena_destroy(scratch);
     return x;
 }
@@ -103,10 +111,8 @@ const struct serial_answer *scene_inverse(struct scene *s)
 const struct serial_answer *scene_forward(struct scene *s, enum forward_method method)
 {
     struct serial_answer *x = &s->forward[method];
-    if (x->asked) return x;
-    x->asked = true;
-    x->x = TAKE(s->arena, s->model->nu, double);
-    struct arena *scratch = arena_create();
+    struct arena *scratch = ask(s, x);
+    if (!scratch) return x;
     x->found = dynamics_type_of(PRECISION_DOUBLE)
                    ->forward(s->model, s->state, method, scratch, x->x, NULL, NULL, &x->work);
     arena_destroy(scratch);
@@ -116,11 +122,10 @@ const struct serial_answer *scene_forward(struct scene *s, enum forward_method m
 const struct serial_answer *scene_planar_inverse(struct scene *s)
 {
     struct serial_answer *x = &s->planar_inverse;
-    if (x->asked) return x;
-    x->asked = x->found = true;
-    x->x = TAKE(s->arena, s->model->nu, double);
-    struct arena *scratch = arena_create();
+    struct arena *scratch = ask(s, x);
+    if (!scratch) return x;
     planar_inverse(s->model, s->state, scratch, x->x, &x->work);
+    x->found = true;
     arena_destroy(scratch);
     return x;
 }
@@ -128,10 +133,8 @@ const struct serial_answer *scene_planar_inverse(struct scene *s)
 const struct serial_answer *scene_planar_forward(struct scene *s)
 {
     struct serial_answer *x = &s->planar_forward;
-    if (x->asked) return x;
-    x->asked = true;
-    x->x = TAKE(s->arena, s->model->nu, double);
-    struct arena *scratch = arena_create();
+    struct arena *scratch = ask(s, x);
+    if (!scratch) return x;
     x->found = planar_forward(s->model, s->state, scratch, x->x, &x->work);
     arena_destroy(scratch);
     return x;

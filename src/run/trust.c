@@ -50,7 +50,9 @@ static const char *remedy(const struct kernel_job *job)
  * take up again. */
 static double overstated(const struct kernel_spec *k) { return k->formulation == FORMULATION_PAPER ? 30 : 1; }
 
-double trust_needs(const struct kernel_spec *k, int n)
+/* The largest residual that an answer of `n` bodies may have without refinement: what a correct program may be wrong
+ * by. */
+static double may_be(const struct kernel_spec *k, int n)
 {
     return fmin(overstated(k) * references_tolerance(k, n), 1e-3);
 }
@@ -80,7 +82,7 @@ static bool refine_more(struct kernel_spec *k, bool inner, bool twice)
 bool trust_refine(struct run_spec *spec, const struct model *m, const struct run_result *out)
 {
     struct kernel_spec *k = &spec->kernel;
-    const bool enough = out->residual <= trust_needs(k, m->nbody); /* false for what is no number */
+    const bool enough = out->residual <= may_be(k, m->nbody); /* false for what is no number */
     const bool keeps_factors = k->solver != SOLVER_PCR || kernel_branches(spec, m);
     if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
     const bool chain = !kernel_branches(spec, m);

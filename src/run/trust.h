@@ -16,11 +16,6 @@ void trust_check(const struct kernel_job *job, struct run_result *out);
  * but rounding beside those of others has no say. NaN when a rank's is no number. */
 double trust_residual(const struct kernel_job *job);
 
-/* trust_needs: the largest residual that an answer of `n` bodies may have without refinement: what a correct program
- * may be wrong by (references_tolerance); the paper's formulation 30 times that, for its residual overstates its error.
- */
-double trust_needs(const struct kernel_spec *k, int n);
-
 /* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, when that is too much: one inner,
  * then one outer; then open chains in the direct formulation get their residual in twice the digits with four inner
  * ones and with twenty, others up to four outer ones. Linearly implicit steps of trees have no inner ones. False: none
