@@ -18,5 +18,5 @@ chosen AS (
 SELECT panel, dense_rank() OVER (ORDER BY baseline <> 'fastest serial', baseline_ordinal, baseline) AS series,
        replace(baseline, ',', ' –') AS baseline, P, makespan_ps, baseline_ps, speedup, parallel_fraction, machine, level,
        formulation, solver, operators, run_id
-FROM chosen WHERE choice = 1
+FROM chosen WHERE choice = 1 AND (SELECT count(DISTINCT panel) FROM point) > 1 -- one machine alone is not a comparison
 ORDER BY panel, series, P;

@@ -17,5 +17,5 @@ chosen AS (
     FROM point WHERE panel IS NOT NULL AND n / P IN (1, 2, 4, 8, 16))
 SELECT panel, dense_rank() OVER (ORDER BY n / P) AS series, n / P AS bodies_per_processor, n, P, makespan_ps, baseline_ps, speedup,
        parallel_fraction, machine, level, formulation, solver, operators, run_id
-FROM chosen WHERE choice = 1
+FROM chosen WHERE choice = 1 AND (SELECT count(DISTINCT panel) FROM point) > 1 -- one machine alone is not a comparison
 ORDER BY panel, series, P;

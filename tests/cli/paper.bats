@@ -197,6 +197,16 @@ golden() {
     diff "$MIMDSIM_SRCDIR/tests/golden/$1.csv" "$1.csv"
 }
 
+@test "machines side by side are two at least" {
+    template
+    plant "n = 2, P = 2" "$(fastest 100) rnea+aba=1000000"
+    plant "n = 16, P = 16" "$(fastest 200) rnea+aba=2000000"
+    fails_with 66 mimdsim plot planted.db fig6-machines
+    plant "machine = 'paragon', n = 4, P = 4" "$(fastest 100) rnea+aba=1000000"
+    works mimdsim plot planted.db fig6-machines
+    sql_is planted.db "SELECT count(DISTINCT machine) FROM run" 2
+}
+
 @test "figure 5 equals its golden values, and is not run twice" {
     golden fig5 'P, name, round(compute_us, 2) AS compute_us, round(send_us, 2) AS send_us, round(total_us, 2) AS total_us'
     sql_is paper.db "SELECT count(*) FROM run WHERE status = 'ok'" 4
