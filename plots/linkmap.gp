@@ -29,14 +29,14 @@ do for [format in formats] {
     do for [p=1:panels] {
         column_of = int((p - 1) % 2)
         row_of = int((p - 1)/2)
-        set lmargin at screen (column_of == 0 ? 0.08 : 0.51); set rmargin at screen (column_of == 0 ? 0.44 : 0.87)
+        set lmargin at screen (column_of == 0 ? 0.08 : 0.49); set rmargin at screen (column_of == 0 ? 0.43 : 0.84)
         set tmargin at screen 1.0 - (78.0 + 190*row_of + 12)/tall
         set bmargin at screen 1.0 - (78.0 + 190*row_of + 150)/tall
         set title direction[p] offset 0,-0.8
         set xlabel (row_of == rows - 1 ? "x" : "") offset 0,0.4
         set ylabel (column_of == 0 ? (high > wide ? "other coordinates" : "y") : "") offset 0.6,0
         if (p == 2) {
-            set colorbox user origin screen 0.895,(0.2) size screen 0.022,0.6
+            set colorbox user origin screen 0.86,(0.2) size screen 0.022,0.6
             set cblabel "share of the run in use" offset 0.4,0
             set format cb "%.2g"
         } else { unset colorbox }
