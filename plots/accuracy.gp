@@ -63,7 +63,7 @@ do for [format in formats] {
         exact = 10**bottom; over = 10**(decade(top[b]) + 1)
         level(x) = x == 0 ? exact : x
         step = ceil((decade(over) - decade(least[b]))/7.0)
-        set label 1 header[b].(allowed[b] eq "" ? "" : ";  ring: the cheapest within ".allowed[b]) at screen at_x(14),at_y(begins(b) + 12) left noenhanced font strong
+        set label 1 header[b].(allowed[b] eq "" ? "" : ";  ring: the cheapest ".(b == 1 ? "on this computer" : "on the machine")." within ".allowed[b]) at screen at_x(14),at_y(begins(b) + 12) left noenhanced font strong
         set label 2 notes[b] at screen at_x(14),at_y(begins(b) + 31) left noenhanced font tiny textcolor rgb "#505050"
         do for [side=1:(b == 1 ? 1 : 2)] { do for [c=1:(b == 1 ? 2 : 3)] { if (b == 1 || used[3*b-3+c]) {
             across = b == 1 ? c : side

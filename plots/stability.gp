@@ -69,7 +69,7 @@ do for [format in formats] {
     unset label 97; unset label 98; unset label 99
     if (motions > 0) {
         set label 1 "Motions of stiff cases" at screen at_x(14),at_y(lower - 82) left font strong
-        set label 2 "own steppers: the largest stable step by bisection (in the model's time), then, from half of it on, as many as 1% takes;  others: tolerance 1e-6 and the mean step they took" \
+        set label 2 "own steppers: the largest stable step by bisection (in the model's time), then, from half of it on, as many as 1% takes;  others: tolerance 1e-6, mean step;  not run: evaluations it would take" \
             at screen at_x(14),at_y(lower - 62) left noenhanced font tiny textcolor rgb "#505050"
         set tmargin at screen at_y(lower); set bmargin at screen at_y(lower_end)
         unit = (wide - left_edge - 90 - 14)/(steppers + 1.75)

@@ -59,7 +59,9 @@ cases AS (
            min(iif(implicit, NULL, evaluations)) AS explicit_evaluations,
            min(iif(implicit, evaluations, NULL)) AS implicit_evaluations
     FROM mine GROUP BY motion, subject)
-SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, subject AS name, condition, growth, residual, energy,
+-- a comma would end the name in gnuplot; a scene that is the only one needs no n
+SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, iif((SELECT count(DISTINCT subject) FROM mine) > 1,
+       replace(subject, ', ', ': '), substr(subject, 1, instr(subject || ',', ',') - 1)) AS name, condition, growth, residual, energy,
        CASE WHEN NOT motion THEN '' WHEN implicit_evaluations IS NULL AND explicit_evaluations IS NULL THEN 'neither is ok'
             WHEN implicit_evaluations IS NULL THEN 'no implicit is ok' WHEN explicit_evaluations IS NULL THEN 'no explicit is ok'
             ELSE format('%.3g', explicit_evaluations / implicit_evaluations) END AS ratio

@@ -50,21 +50,23 @@ static bool sentences(struct section *c, const char *sql, const char *param)
 static const char choice_sentences[] =
     "SELECT format('%s (%s, %s within %g): ', c.ladder, c.at, c.quantity, c.tolerance) ||"
     " iif(c.method IS NULL, 'no rung is good enough.',"
-    " format('cheapest is %s %s%s%s; the finest costs %.3g times as much.',"
+    " format('cheapest is %s %s%s%s; %s.',"
     "  c.method || iif(c.rung = c.method, '', ', ' || c.rung),"
     "  iif(c.relative_error = 0, 'and exact', format('with an error of %.1e', c.relative_error)),"
     "  iif(c.ladder = 'network' OR l.machine_ps IS NULL, '', format(', %.4g us of the machine', l.machine_ps / 1e6)),"
-    "  iif(c.ladder = 'integration', ' (' || l.text || ')', ''), c.cost_ratio))"
+    "  iif(c.ladder = 'integration', ' (' || l.text || ')', ''),"
+    "  iif(c.cost_ratio = 1, 'no rung with a time is finer',"
+    "   format('the finest costs %.3g times as much', c.cost_ratio))))"
     " FROM ladder_choice c LEFT JOIN ladder l ON l.scenario = c.scenario AND l.ladder = c.ladder AND l.at = c.at"
     "  AND l.method = c.method AND l.rung = c.rung AND l.quantity = c.quantity"
     " WHERE c.scenario = ?1 GROUP BY c.ladder, c.at, c.quantity, c.tolerance"
     " ORDER BY CASE c.ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END, c.tolerance";
 
 static const char failed_rungs[] =
-    "SELECT ladder, at, method, group_concat(rung, ', ') AS rungs, text AS reason FROM"
-    " (SELECT *, iif(relative_error IS NULL, text, format('error %.1e', relative_error)) AS text FROM ladder"
+    "SELECT ladder, at, method, group_concat(rung, ', ') AS rungs, reason FROM"
+    " (SELECT *, iif(relative_error IS NULL, text, format('error %.1e', relative_error)) AS reason FROM ladder"
     "  WHERE scenario = ?1 AND status = 'failed' AND quantity IN ('makespan', 'qdd', 'state') ORDER BY ordinal)"
-    " GROUP BY ladder, at, method, text ORDER BY min(ordinal)";
+    " GROUP BY ladder, at, method, reason ORDER BY min(ordinal)";
 
 static bool tell_ladders(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -185,7 +187,7 @@ static bool tell_suite(void *context, int ncolumn, const char *const *name, cons
     page_paragraph(c->page, value[2]);
     page_figure(c->page, figure.s,
                 "Cases against algorithms; in a cell the power of ten of the relative error. Of stiff motions: error, "
-                "step, evaluations and energy drift.");
+                "step, evaluations (of one not run: those it would take) and energy drift.");
     bool ok = (!built_in || sentences(c, spd_sentence, value[0])) && table(c, by_algorithm, value[0], "No row.") &&
               table(c, worst_cases, value[0], "Nothing failed and nothing degraded.") &&
               table(c, stiff_motions, value[0], "None of these scenes has springs or dampers whose motion was tried.");
@@ -233,7 +235,8 @@ static bool tell_savings(void *context, int ncolumn, const char *const *name, co
     page_heading(c->page, 3, value[0]);
     text_add(&figure, "omissions-%s", value[0]);
     page_figure(c->page, figure.s,
-                "Time that each omission saves: the same run with it put back, less the run without it.");
+                "Time that each omission saves: that of the same run with the part put back, less that of the run "
+                "that leaves it out.");
     text_free(&figure);
     return table(c, saving_rows, value[0], "Nothing.");
 }

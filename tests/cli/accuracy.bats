@@ -40,6 +40,9 @@ scenario() {
     [ -s figures/stability-small.png ]
     works mimdsim stability small.yaml --json
     json_is_valid
+    # scenes are told apart by their n, which a comma would cut off in the figure
+    works mimdsim stability small.yaml --set n=2,3 -o two.db --dir two
+    grep -q 'small point 2: n = 3' two/stability-small.cases.csv
 }
 
 @test "what is left out is stored with the row, and keeping it answers the same" {
@@ -172,6 +175,7 @@ scenario() {
     # a rung and a case that failed are planted; nothing may hide them
     sqlite3 mimdsim.db "UPDATE ladder SET status = 'failed', relative_error = NULL, text = 'planted, on purpose'
                             WHERE method = 'rkck' AND rung = 'tolerance 1e-05';
+                        UPDATE ladder SET status = 'failed', relative_error = 0.25 WHERE method = 'rkck' AND rung = 'tolerance 1e-07';
                         UPDATE stability SET status = 'failed', relative_error = 1234 WHERE algorithm = 'crba'"
     rm -r figures small.yaml
     works mimdsim report
@@ -184,6 +188,7 @@ scenario() {
         grep -q "(figures/$figure-small.svg)" mimdsim.md
     done
     grep -q 'rkck | tolerance 1e-05 | planted, on purpose' mimdsim.md
+    grep -q 'rkck | tolerance 1e-07 | error 2.5e-01 |' mimdsim.md
     grep -q 'rkck: 1e-05' figures/accuracy-small.failed.csv
     grep -q '| crba | double | 0 | 0 | 1 | 1.2e+03 |' mimdsim.md
     cheapest=$(sql mimdsim.db "SELECT method FROM ladder_choice WHERE ladder = 'network'")
