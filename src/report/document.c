@@ -34,10 +34,14 @@ static bool tell_claim(void *context, int ncolumn, const char *const *name, cons
     text_add(&t, "%s: %s", value[0], value[1]);
     page_heading(c->page, 3, t.s);
     text_free(&t);
-    text_add(&t, "Test: %s. The model gives %s (%s)", value[2], value[3] ? value[3] : "no value", value[4]);
-    if (value[6]) text_add(&t, "; over the samples of the machine parameters %s", value[6]);
-    if (value[7]) text_add(&t, "; it holds in %s of them", value[7]);
-    text_add(&t, ". %s.", value[5]);
+    text_add(&t, "Test: %s.", value[2]);
+    if (value[3])
+        text_add(&t, " The model gives %s (%s)", value[3], value[4]);
+    else
+        text_add(&t, " The model gives no value");
+    if (value[6]) text_add(&t, ", over the samples of the machine parameters %s", value[6]);
+    if (value[7]) text_add(&t, "; the claim holds in %s of the samples", value[7]);
+    text_add(&t, ". In detail: %s.", value[5]);
     page_paragraph(c->page, t.s);
     text_free(&t);
     return true;
@@ -81,7 +85,8 @@ static bool claims(struct chapter *c)
     page_heading(c->page, 2, "The claims");
     page_paragraph(c->page,
                    "Share: the part of the samples in which a claim holds. Each sample draws every machine parameter "
-                   "that has a published range anew, log-uniformly, and runs the simulator again.");
+                   "that has a published range anew, log-uniformly, and runs the simulator again, at fewer points "
+                   "than the study: a value over many points may lie outside of its range.");
     return table(
         c,
         "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
@@ -213,8 +218,8 @@ static bool left_out_of_runs(struct chapter *c)
                  "'') AS which"
                  "  FROM run WHERE status <> 'ok'"
                  " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
-                 "  ifnull(format('n from %d to %d', min(n), max(n)), '') FROM run r WHERE status = 'ok' AND kernel = "
-                 "'dynamics'"
+                 "  iif(count(*) = 0, '', format('n from %d to %d', min(n), max(n))) FROM run r"
+                 "  WHERE status = 'ok' AND kernel = 'dynamics'"
                  "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
                  " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
                  "  WHERE level = 'loggp' GROUP BY level"
