@@ -1,12 +1,71 @@
 /* cmd_lists.c - mimdsim scenarios and kernels: what there is. */
+#include "app/flag.h"
 #include "app/verb.h"
+#include "base/arena.h"
+#include "base/text.h"
 #include "run/catalogue.h"
+#include "spec/field.h"
+
+static const char scenarios_help[] =
+    "List the scenarios, each with its question.\n\nExample: mimdsim scenarios\n\v"
+    "--keys: instead, every key that a scenario, a machine file or --set may give, with its meaning, unit and default, "
+    "as Markdown.";
+
+/* What only files have, and how their keys are shortened; the settings themselves have their tables. */
+static const char keys_of_files[] =
+    "## A scenario\n\n"
+    "- `schema_version`: 1.\n"
+    "- `question`: one line of text.\n"
+    "- `machine`, `kernel`, `level`, `n`: short for `machine.name` (or a file), `kernel.name`, "
+    "`machine.network.level`, "
+    "`model.n`.\n"
+    "- `ranks`: a number, or `n`: as many as bodies.\n"
+    "- `n_over_p`: bodies a processor, in place of `n`.\n"
+    "- `sweep`: keys with lists of values, each with every other: `{n: [8, 64], kernel.solver: [cr, pcr]}`; a list in "
+    "place of a value does the same.\n"
+    "- `only`: leave out other points: `n >= ranks`, `ranks <= processors`.\n"
+    "- `repetitions`: runs of each point that has noise, with other seeds.\n"
+    "- `figures`: what `mimdsim paper` draws of it.\n\n"
+    "Settings below follow as `kernel: {solver: cr}` or `kernel.solver: cr`, and with `--set kernel.solver=cr`; a "
+    "machine "
+    "file has those of `machine` without that word, `schema_version` and `base`, another machine to start from.\n\n";
+
+/* Every key with its meaning, in the order of the manual. */
+static void print_keys(const struct common *c)
+{
+    if (!c->json) {
+        fputs(keys_of_files, stdout);
+        fields_document(stdout);
+        return;
+    }
+    struct arena *a = arena_create();
+    int ntable, n = 0, most = 0;
+    const struct field_table *const *table = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++) most += table[i]->nfield;
+    const char **key = TAKE(a, most, const char *);
+    const char **meaning = TAKE(a, most, const char *);
+    for (int i = 0; i < ntable; i++) {
+        for (int j = 0; j < table[i]->nfield; j++, n++) {
+            struct text t = {0};
+            text_add(&t, "%s%s%s", table[i]->prefix, table[i]->prefix[0] != '\0' ? "." : "", table[i]->field[j].key);
+            key[n] = arena_text(a, t.s);
+            text_free(&t);
+            meaning[n] = table[i]->field[j].doc;
+        }
+    }
+    common_print_pairs(c, n, key, meaning);
+    arena_destroy(a);
+}
 
 int cmd_scenarios(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, 0, "", "List the scenarios, each with its question.\n\nExample: mimdsim scenarios\n",
-                 0, 0);
+    bool keys = take_flag(&argc, argv, "--keys");
+    common_parse(&c, argc, argv, 0, "", scenarios_help, 0, 0);
+    if (keys) {
+        print_keys(&c);
+        return 0;
+    }
     struct err e;
     err_clear(&e);
     struct arena *a = arena_create();

@@ -82,6 +82,23 @@ verbs() { "$MIMDSIM" --help | awk '/^  [a-z]+ / && $1 != "mimdsim" { print $1 }'
     nothing_left_behind
 }
 
+@test "every key of a scenario is told, with its values and its default" {
+    works mimdsim scenarios --keys
+    for word in '`kernel.solver`' 'of the block tridiagonal system' 'default pcr-symmetric' '`sweep`' '`record.spans`' \
+        auto-tolerance; do
+        stdout_says "$word"
+    done
+    works mimdsim scenarios --keys --json
+    json_is_valid
+    stdout_says '"kernel.solver"'
+    # what it says of lists, short names and dots holds
+    printf '%s\n' 'schema_version: 1' 'question: One?' 'machine: t3e-300' 'model: {generator: serial-chain}' \
+        'kernel.formulation: direct' 'n: [4, 8]' 'ranks: [2, 8]' 'only: n >= ranks' 'level: loggp' 'kernel: dynamics' \
+        'sweep: {kernel.solver: [cr, pcr]}' >own.yaml
+    works mimdsim run own.yaml -o own.db --quiet
+    sql_is own.db "SELECT count(*), count(DISTINCT solver), sum(formulation = 'direct') FROM run" '6|2|6'
+}
+
 @test "the lists of machines, scenarios and kernels are not empty, for people and as JSON" {
     for verb in machines scenarios kernels; do
         works mimdsim "$verb"
