@@ -170,22 +170,31 @@ static void remember_run(void *context, int64_t id)
     text_add(ids, "%s%lld", ids->length == 0 ? "[" : ",", (long long)id);
 }
 
-/* One table of the figure into its file. */
+static bool write_file(const char *path, const char *data, size_t size, struct err *e)
+{
+    FILE *out = fopen(path, "w");
+    if (out == NULL) return err_set(e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
+    bool ok = fwrite(data, 1, size, out) == size;
+    if (fclose(out) != 0 || !ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path, strerror(errno));
+    if (!ok) unlink(path);
+    return ok;
+}
+
+/* One table of the figure into its file; a main table without rows leaves what an earlier drawing wrote. */
 static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow, struct err *e)
 {
     struct text path = {0};
-    text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
-    FILE *out = fopen(path.s, "w");
-    if (out == NULL) {
-        err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
-        text_free(&path);
-        return false;
-    }
+    char *data = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&data, &size);
+    CHECK(out != NULL);
     bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run, &f->run_ids, nrow, e);
     if (!ok) err_in(e, f->name);
-    if (fclose(out) != 0 && ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
-    if (!ok) unlink(path.s);
+    CHECK(fclose(out) == 0);
+    text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
+    if (ok && (*table || *nrow > 0)) ok = write_file(path.s, data, size, e);
     text_free(&path);
+    free(data);
     return ok;
 }
 
@@ -294,12 +303,7 @@ static bool write_script(struct figure *f, struct err *e)
     add_assignment(&script, "provenance", source.s ? source.s : "");
     ok = ok && add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
     text_add(&path, "%s/%s.gp", f->dir, f->as);
-    FILE *out = ok ? fopen(path.s, "w") : NULL;
-    if (ok && out == NULL) ok = err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
-    if (out != NULL) {
-        bool written = fwrite(script.s, 1, script.length, out) == script.length;
-        if (fclose(out) != 0 || !written) ok = err_set(e, ERR_IO, "writing %s failed: %s", path.s, strerror(errno));
-    }
+    ok = ok && write_file(path.s, script.s, script.length, e);
     text_free(&script);
     text_free(&source);
     text_free(&path);
@@ -335,15 +339,11 @@ bool report_folder(const char *dir, struct err *e)
     return ok;
 }
 
-/* Nothing to draw: the table without rows goes, and the folder when it is empty again. */
+/* Nothing to draw: a folder that was made for it goes again; what another database's drawing left there stays. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
-    struct text path = {0};
-    text_add(&path, "%s/%s.csv", f->dir, f->as);
-    unlink(path.s);
     if (f->folder_made) rmdir(f->dir);
-    text_free(&path);
     marked_line(sql, "-- needs: ", needs, sizeof needs);
     return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s), f->name,
                    *needs ? "; first: " : "", needs);
@@ -352,9 +352,9 @@ static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 static bool draw(struct figure *f, const char *sql, struct err *e)
 {
     struct text script = {0};
-    remove_images(f);
     bool ok = write_tables(f, sql, e);
-    if (ok && f->nrow == 0) ok = no_rows(f, sql, e);
+    if (ok && f->nrow == 0) return no_rows(f, sql, e);
+    remove_images(f);
     text_add(&script, "%s.gp", f->as);
     ok = ok && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
     if (!ok) remove_images(f);

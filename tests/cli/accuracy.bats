@@ -207,6 +207,13 @@ scenario() {
     MIMDSIM_GNUPLOT=/nonexistent works mimdsim report
     [ -s figures/omissions-small.csv ] && [ -s figures/omissions-other.csv ] && [ ! -e figures/omissions-other.png ]
     grep -q 'This figure was not drawn' mimdsim.md
+    # a database without rows for a figure leaves alone what another's report shows
+    works mimdsim report
+    works mimdsim run speedup-t3e --set n=4 -o other.db --quiet
+    works mimdsim report other.db
+    [ -s figures/fig6.svg ] && [ -s figures/stability-small.svg ]
+    works mimdsim report
+    [ -s figures/fig6.svg ] && [ -s figures/fig6.csv ]
     fails_with 66 mimdsim report none.db
 }
 
