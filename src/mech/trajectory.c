@@ -119,8 +119,12 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
 {
     int which = stepper_find(options->stepper, e);
     if (which < 0) return false;
-    struct arena_mark mark = arena_mark(scratch);
     size_t n = (size_t)(m->nq + m->nu);
+    if (report) *report = (struct trajectory_report){0};
+    if (n == 0) return true; /* nothing can move */
+    if (!(duration > 0) || !isfinite(duration))
+        return err_set(e, ERR_CHECK, "stepper '%s' cannot go on for a time of %g", options->stepper, duration);
+    struct arena_mark mark = arena_mark(scratch);
     struct flow f = {.d = dynamics_take(m, scratch), .tau = s->tau, .shifted = TAKE(scratch, n, double),
                      .change = TAKE(scratch, n, double)};
     f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;

@@ -21,6 +21,15 @@ scenario() {
     [ -s figures/accuracy-small.csv ]
 }
 
+@test "a scene in which nothing can move has ladders and grades all the same" {
+    scenario
+    works mimdsim accuracy small.yaml --quiet --set model.joint=fixed
+    stdout_says 'network (n=P=4, makespan within 0.02)'
+    works mimdsim stability small.yaml --quiet --set model.joint=fixed
+    stdout_says ' 0 failed of '
+    works mimdsim explain small.yaml --measure --quiet --set model.joint=fixed
+}
+
 @test "accuracy answers in JSON and refuses what is no tolerance" {
     scenario
     works mimdsim accuracy small.yaml --json

@@ -245,6 +245,27 @@ static void an_unknown_stepper_is_refused_with_the_nearest_name(void **state)
     const struct trajectory_options few = {.stepper = "rkf45", .tolerance = 1e-6, .most_evaluations = 3};
     assert_false(trajectory_advance(s.model, s.state, 1, &few, s.a, NULL, &e));
     assert_int_equal(e.kind, ERR_CHECK);
+    const double no_time[] = {0, -1, INFINITY, NAN};
+    const struct trajectory_options good = {.stepper = "rkf45", .tolerance = 1e-6};
+    for (int k = 0; k < 4; k++) {
+        err_clear(&e);
+        assert_false(trajectory_advance(s.model, s.state, no_time[k], &good, s.a, NULL, &e));
+        assert_int_equal(e.kind, ERR_CHECK);
+    }
+    scene_end(&s);
+}
+
+static void what_cannot_move_stays_where_it_is(void **state)
+{
+    (void)state;
+    struct model_spec spec = spec_random(MODEL_SERIAL_CHAIN, 2, JOINT_FIXED, 1);
+    struct scene s = scene_of(&spec);
+    struct err e;
+    err_clear(&e);
+    struct trajectory_report report = {1, 1};
+    const struct trajectory_options o = {.stepper = "bsimp", .tolerance = 1e-6};
+    assert_true(trajectory_advance(s.model, s.state, 1, &o, s.a, &report, &e));
+    assert_true(report.steps == 0 && report.evaluations == 0);
     scene_end(&s);
 }
 
@@ -259,6 +280,7 @@ int main(void)
         cmocka_unit_test(fixed_steps_of_the_library_have_their_orders),
         cmocka_unit_test(the_best_stepper_follows_all_instants),
         cmocka_unit_test(an_unknown_stepper_is_refused_with_the_nearest_name),
+        cmocka_unit_test(what_cannot_move_stays_where_it_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
