@@ -32,7 +32,7 @@ do for [format in formats] {
     set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6 autofreq
     set xtics (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
     do for [p=1:panels] { do for [side=1:2] {
-        set lmargin at screen (side == 1 ? 0.09 : 0.58); set rmargin at screen (side == 1 ? 0.495 : 0.985)
+        set lmargin at screen (side == 1 ? 0.115 : 0.6); set rmargin at screen (side == 1 ? 0.5 : 0.985)
         set tmargin at screen 1.0 - (126.0 + 230*(p - 1) + 18)/high
         set bmargin at screen 1.0 - (126.0 + 230*p - 42)/high
         if (side == 1) { set logscale y 2; set yrange [*:*]; set ylabel "speedup" } else { unset logscale y; set yrange [*<0.9:*]; set ylabel "factor" }

@@ -32,7 +32,7 @@ do for [format in formats] {
     unset key; unset label 97; unset label 98; unset label 99
     set border 3
     do for [p=1:2] {
-        set lmargin at screen (p == 1 ? 0.09 : 0.58); set rmargin at screen (p == 1 ? 0.495 : 0.985)
+        set lmargin at screen (p == 1 ? 0.105 : 0.59); set rmargin at screen (p == 1 ? 0.495 : 0.985)
         set tmargin at screen 0.81; set bmargin at screen 0.42
         set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6
         set logscale x 2; set logscale y 2
