@@ -140,13 +140,26 @@ void page_table_end(struct page *p)
 
 enum { MOST_COLUMNS = 32 };
 
+/* Columns by their names in SQL, in words. */
+static void add_heading(struct page *p, int n, const char *const *name)
+{
+    char word[MOST_COLUMNS][64];
+    const char *words[MOST_COLUMNS] = {0};
+    for (int i = 0; i < n; i++) {
+        text_copy(word[i], sizeof word[i], name[i]);
+        for (char *c = strchr(word[i], '_'); c != NULL; c = strchr(c, '_')) *c = ' ';
+        words[i] = word[i];
+    }
+    page_row(p, true, n, words);
+}
+
 static bool add_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
 {
     struct page *p = context;
     char number[MOST_COLUMNS][40];
     const char *cell[MOST_COLUMNS];
     if (ncolumn > MOST_COLUMNS) ncolumn = MOST_COLUMNS;
-    if (!p->columns) page_row(p, true, ncolumn, name);
+    if (!p->columns) add_heading(p, ncolumn, name);
     for (int i = 0; i < ncolumn; i++) {
         cell[i] = value[i].kind == STORE_TEXT ? value[i].text : value[i].kind == STORE_NULL ? "" : number[i];
         if (value[i].kind == STORE_INT) snprintf(number[i], sizeof number[i], "%lld", (long long)value[i].integer);

@@ -221,6 +221,7 @@ scenario() {
     works mimdsim run speedup-t3e --set n=4 -o other.db --quiet
     works mimdsim report other.db
     [ -s figures/fig6.svg ] && [ -s figures/stability-small.svg ]
+    grep -q '| runs that do not add up |' other.md
     works mimdsim report
     [ -s figures/fig6.svg ] && [ -s figures/fig6.csv ]
     fails_with 66 mimdsim report none.db
