@@ -128,7 +128,9 @@ static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, co
     text_copy(r->text, sizeof r->text, t.text);
     if (t.answered) {
         grade(r, trial_error(t.qdd, reference, l->model->nu));
-        snprintf(r->text, sizeof r->text, "residual %.1e, condition %.1e", t.residual, t.condition);
+        int length = snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
+        if (t.condition > 0)
+            snprintf(r->text + length, sizeof r->text - (size_t)length, ", condition %.1e", t.condition);
         r->machine_ps = t.makespan_ps;
         r->host_s = t.host_s;
         for (int i = 0; i < 2 && t.host_s < 5e-3; i++) /* the fastest of a few: the others were disturbed */

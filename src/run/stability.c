@@ -44,6 +44,14 @@ void row_grade(struct stability_row *row, double error, bool single)
     if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the answer is no number");
 }
 
+/* Points of a scenario by what their models have: bodies as built, a base that is not fixed. */
+static void name_scene(const struct scene *c, const struct model *m, char *name, int size)
+{
+    static const char *const base[] = {"", ", moving", ", floating"};
+    if (!c->complete) snprintf(name, (size_t)size, "%s", c->name);
+    else snprintf(name, (size_t)size, "%.40s, n = %d%s", c->name, m->nbody, base[c->spec.base]);
+}
+
 static bool measure_scene(struct stability_report *r, const struct scene *c, int most_bodies, struct err *e)
 {
     struct arena *a = arena_create();
@@ -52,9 +60,11 @@ static bool measure_scene(struct stability_report *r, const struct scene *c, int
     bool good = (most_bodies > 0 && c->spec.nbody > most_bodies);
     if (!good) {
         good = scene_build(c, a, &m, &s, e);
-        if (good) stability_accelerations(r, c->name, m, s, a);
-        if (good && c->moves) stability_motion(r, c->name, m, s, c->spec.damping > 0, a);
-        else if (good) stability_energy(r, c->name, m, s, a);
+        char name[64] = "";
+        if (good) name_scene(c, m, name, (int)sizeof name);
+        if (good) stability_accelerations(r, name, m, s, a);
+        if (good && c->moves) stability_motion(r, name, m, s, c->spec.damping > 0, a);
+        else if (good) stability_energy(r, name, m, s, a);
     }
     arena_destroy(a);
     return good;
@@ -85,9 +95,7 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
         if (!kernel_spec_needs_model(&spec[i].kernel))
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
         char name[64];
-        int length = snprintf(name, sizeof name, "%.32s point %d", spec[i].scenario, i + 1);
-        if (spec[i].model.nbody > 0)
-            snprintf(name + length, sizeof name - (size_t)length, ", n = %d", spec[i].model.nbody);
+        snprintf(name, sizeof name, "%.28s point %d", spec[i].scenario, i + 1);
         struct scene c = {.name = name, .spec = spec[i].model, .complete = true};
         c.moves = c.spec.stiffness > 0 || c.spec.damping > 0;
         if (!measure_scene(r, &c, most_bodies, e)) return false;
