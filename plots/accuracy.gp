@@ -27,6 +27,8 @@ stats data using (b = int(column("block")), c = 3*b - 3 + int(column("panel")), 
     h = column("machine_s"), h = e >= 0 && h > 0 ? h : NaN, low[2*b] = h < low[2*b] ? h : low[2*b], \
     high[2*b] = h > high[2*b] ? h : high[2*b], \
     headline = "Error against run time: ".strcol("scenario"), 0) nooutput
+# A block without any error: all its rungs are exact, or none answered.
+do for [b=1:3] { if (!(least[b] <= top[b])) { least[b] = 1e-16; top[b] = 1.0 } }
 subline = "each symbol a rung of a ladder, each curve a method; further left is cheaper, further down is better"
 # Lines below a block's panels that tell what failed.
 array failures[3]; do for [i=1:3] { failures[i] = 0 }

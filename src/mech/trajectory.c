@@ -140,10 +140,13 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
                      ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
                      : drive(driver, duration, y);
     gsl_odeiv2_driver_free(driver);
-    if (steps >= 0) state_from(f.d, y, s);
+    bool finite = true;
+    for (size_t i = 0; i < n; i++) finite = finite && isfinite(y[i]);
+    if (steps >= 0 && finite) state_from(f.d, y, s);
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
     arena_release(scratch, mark);
-    if (steps >= 0) return true;
+    if (steps >= 0 && finite) return true;
+    if (steps >= 0) return err_set(e, ERR_CHECK, "stepper '%s' came to what is no number", options->stepper);
     if (f.evaluations > f.most)
         return err_set(e, ERR_CHECK, "stepper '%s' is not there after %ld evaluations", options->stepper, f.most);
     return err_set(e, ERR_CHECK, "stepper '%s' %s", options->stepper,

@@ -24,8 +24,8 @@ struct trajectory_report {
 /* trajectory_advance: move s (q, qd) by `duration` under s->tau, springs, gravity and s->fext; loops included.
  *
  *   Returns false with ERR_USAGE for an unknown stepper (the nearest name is told), ERR_CHECK when the
- *   duration is no positive number, the step size vanishes, evaluations run out, the dynamics break down or a fixed
- *   step fails. Without a joint that moves: true, at once. */
+ *   duration is no positive number, the step size vanishes, evaluations run out, the dynamics break down, a fixed
+ *   step fails or the end is no number; s is then as it was. Without a joint that moves: true, at once. */
 bool trajectory_advance(const struct model *m, struct state *s, double duration,
                         const struct trajectory_options *options, struct arena *scratch,
                         struct trajectory_report *report, struct err *e);

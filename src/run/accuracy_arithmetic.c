@@ -128,7 +128,8 @@ static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, co
     text_copy(r->text, sizeof r->text, t.text);
     if (t.answered) {
         grade(r, trial_error(t.qdd, reference, l->model->nu));
-        int length = snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
+        int length = isnan(t.residual) ? snprintf(r->text, sizeof r->text, "the residual is no number")
+                                       : snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
         if (t.condition > 0)
             snprintf(r->text + length, sizeof r->text - (size_t)length, ", condition %.1e", t.condition);
         r->machine_ps = t.makespan_ps;

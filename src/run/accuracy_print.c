@@ -37,11 +37,14 @@ static int rung_length(const struct accuracy_report *r, int i)
 
 static void print_choice(FILE *out, const struct accuracy_choice *c)
 {
-    fprintf(out, "%s (%s, %s within %.2g): ", c->ladder, c->at, c->quantity, c->tolerance);
+    fprintf(out, "%s (%s%s%s within %.2g): ", c->ladder, c->at, c->at[0] ? ", " : "", c->quantity, c->tolerance);
+    if (!c->finest) {
+        fprintf(out, "no rung has an answer\n");
+        return;
+    }
     if (!c->rung) {
-        fprintf(out, "no rung is good enough; the finest, %s %s, has an error of %.1e\n",
-                c->finest ? c->finest->method : "none", c->finest ? c->finest->rung : "",
-                c->finest ? c->finest->error : NAN);
+        fprintf(out, "no rung is good enough; the finest, %s %s, has an error of %.1e\n", c->finest->method,
+                c->finest->rung, c->finest->error);
         return;
     }
     bool same = strcmp(c->rung->method, c->rung->rung) == 0;

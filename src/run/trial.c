@@ -24,7 +24,7 @@ double trial_change_error(const double *x, const double *reference, const double
 {
     double difference = 0, scale = 0;
     for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return INFINITY;
+        if (!isfinite(x[i]) || !isfinite(reference[i])) return INFINITY;
         difference = fmax(difference, fabs(x[i] - reference[i]));
         scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
     }

@@ -36,7 +36,8 @@ struct machine_spec trial_machine(int nrank);
 double trial_error(const double *x, const double *reference, int n);
 
 /* trial_change_error: max |x - reference| over the largest number (of n) that the reference has at the end of a motion
- * or `begin` at its beginning: what has come to rest would have no scale of its own. INFINITY when x has no numbers. */
+ * or `begin` at its beginning: what has come to rest would have no scale of its own. INFINITY when x or the reference
+ * has no numbers. */
 double trial_change_error(const double *x, const double *reference, const double *begin, int n);
 
 #endif

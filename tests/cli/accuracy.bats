@@ -30,6 +30,16 @@ scenario() {
     works mimdsim explain small.yaml --measure --quiet --set model.joint=fixed
 }
 
+@test "a motion that ends in no numbers is no reference, and its ladder is drawn all the same" {
+    scenario
+    works mimdsim accuracy small.yaml --quiet --set model.generator=polymer --set n=1 --set 'model.damping=1e15 N m s/rad' \
+        --set 'model.torque=1e-300 N m'
+    stdout_says 'integration (state within 1e-06): no rung has an answer'
+    sql_is mimdsim.db "SELECT count(*), max(status), max(text) FROM ladder WHERE ladder = 'integration'" \
+        "1|failed|stepper 'rk8pd' came to what is no number"
+    [ -s figures/accuracy-small.png ]
+}
+
 @test "accuracy answers in JSON and refuses what is no tolerance" {
     scenario
     works mimdsim accuracy small.yaml --json
