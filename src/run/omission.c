@@ -157,6 +157,17 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
         add(l, KEEP_BASELINE, 0, "mass-matrix baseline", "more than 512 degrees of freedom: cubic, never fastest");
 }
 
+/* list_starts: sends need no event of their own where every message is eager: always, or because the largest is. */
+static void list_starts(const struct kernel_job *job, const struct kernel_type *kernel, struct list *l)
+{
+    const enum network_level level = job->spec->machine.network.level;
+    const int64_t eager = job->spec->machine.software.eager_bytes, largest = launch_largest_message(kernel, job);
+    if (level != LEVEL_LINK && level != LEVEL_PACKET && level != LEVEL_AUTO) return;
+    if (eager < 0) add(l, 0, 0, "events that start messages", "the machine sends every message at once, in order");
+    else if (largest >= 0 && largest <= eager)
+        add(l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
+}
+
 int omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct omission *out)
 {
     const struct run_spec *spec = job->spec;
@@ -166,8 +177,7 @@ int omission_list(const struct kernel_job *job, const struct kernel_type *kernel
         list_terms(job, kernel, &l);
         list_model(job, kernel, &l);
     }
-    if (kernel->largest_message && (n->level == LEVEL_LINK || n->level == LEVEL_PACKET || n->level == LEVEL_AUTO))
-        add(&l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
+    list_starts(job, kernel, &l);
     if (n->level == LEVEL_AUTO)
         add(&l, KEEP_CONTENTION, 0, "contention where routes share no link", "level auto has the packet level's times");
     if (!spec->record.spans) add(&l, KEEP_SPANS, 0, "timeline", "record.spans does not ask for it");

@@ -110,6 +110,7 @@ static struct run_spec draw(int number)
     s.nrank = 1 + any(&r, s.model.nbody);
     s.machine = trial_machine(s.nrank);
     s.machine.network.level = levels[any(&r, 5)];
+    s.machine.software.eager_bytes = 2048; /* longer messages ask first */
     s.machine.network.packet_bytes = 256;
     s.machine.network.flit_bytes = 8;
     s.machine.network.buffer_flits = 64;
