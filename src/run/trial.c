@@ -61,16 +61,6 @@ static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, c
     return kernel->accepts(spec, m, e) && kernel->prepare(job, a, e);
 }
 
-/* A number that is none must not hide behind the others. */
-static double worst(const double *x, int n)
-{
-    double largest = 0;
-    for (int i = 0; i < n; i++)
-        if (isnan(x[i])) return x[i];
-        else if (x[i] > largest) largest = x[i];
-    return largest;
-}
-
 static void answer(struct trial *t, const struct kernel_job *job, const struct run_result *r)
 {
     t->answered = r->status == RUN_OK;
@@ -78,7 +68,7 @@ static void answer(struct trial *t, const struct kernel_job *job, const struct r
     t->tau = job->tau;
     t->qdd = job->qdd;
     t->residual = trust_residual(job);
-    t->condition = worst(job->condition, job->nrank);
+    t->condition = trust_condition(job);
     t->refined = *job->refined;
     t->makespan_ps = r->makespan_ps;
     t->finish_ps = r->finish_ps;

@@ -8,6 +8,7 @@
 #include "kernel/estimate.h"
 #include "run/references.h"
 
+/* A number that is none must not hide behind the others. */
 static double worst(const double *x, int n)
 {
     double largest = 0;
@@ -28,6 +29,8 @@ double trust_residual(const struct kernel_job *job)
     }
     return scale > 0 ? residual / scale : residual;
 }
+
+double trust_condition(const struct kernel_job *job) { return worst(job->condition, job->nrank); }
 
 /* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. What the run has
  * tried by itself is not named again. */
@@ -99,7 +102,7 @@ void trust_check(const struct kernel_job *job, struct run_result *out)
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
     if (k->residual == RESIDUAL_TWICE) resolved = INFINITY; /* what the factors lack, the residual would show */
     out->residual = trust_residual(job);
-    out->condition = worst(job->condition, job->nrank);
+    out->condition = trust_condition(job);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
     out->status = RUN_INVALID;
     char residual[32] = "no number"; /* whose sign would differ from host to host */

@@ -16,6 +16,9 @@ void trust_check(const struct kernel_job *job, struct run_result *out);
  * but rounding beside those of others has no say. NaN when a rank's is no number. */
 double trust_residual(const struct kernel_job *job);
 
+/* trust_condition: the largest of all ranks, 0 when the job has none. NaN when a rank's is no number. */
+double trust_condition(const struct kernel_job *job);
+
 /* trust_refine: more refinements for spec->kernel, which gave out->residual on `m`, when that is too much: one inner,
  * then one outer; then open chains in the direct formulation get their residual in twice the digits with four inner
  * ones and with twenty, others up to four outer ones. Linearly implicit steps of trees have no inner ones. False: none

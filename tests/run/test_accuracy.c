@@ -235,15 +235,14 @@ static const struct stability_row *row_of(const struct stability_report *r, cons
     return NULL;
 }
 
-/* A light body between heavy ones is the bad case of every constraint-force form, and of those alone: physics 8.3. */
-static void the_suite_knows_good_from_bad(void **state)
+/* The rows of one scene of the suite, in `rows`. */
+static struct stability_report rows_of(const char *name, struct arena *rows)
 {
-    (void)state;
     int n;
     const struct scene *c = scene_list(&n);
-    while (n > 0 && strcmp(c->name, "mass alternating 1e6") != 0) c++, n--;
+    while (n > 0 && strcmp(c->name, name) != 0) c++, n--;
     assert_true(n > 0);
-    struct arena *a = arena_create(), *rows = arena_create();
+    struct arena *a = arena_create();
     struct stability_report r = {.arena = rows};
     struct model *m;
     struct state *s;
@@ -251,6 +250,16 @@ static void the_suite_knows_good_from_bad(void **state)
     err_clear(&e);
     assert_true(scene_build(c, a, &m, &s, &e));
     stability_accelerations(&r, c->name, m, s, a);
+    arena_destroy(a);
+    return r;
+}
+
+/* A light body between heavy ones is the bad case of every constraint-force form, and of those alone: physics 8.3. */
+static void the_suite_knows_good_from_bad(void **state)
+{
+    (void)state;
+    struct arena *rows = arena_create();
+    const struct stability_report r = rows_of("mass alternating 1e6", rows);
     assert_int_equal(row_of(&r, "aba")->status, STABILITY_OK);
     assert_int_equal(row_of(&r, "paper pcr")->status, STABILITY_FAILED);
     assert_int_equal(row_of(&r, "direct cr")->status, STABILITY_DEGRADED);
@@ -261,7 +270,6 @@ static void the_suite_knows_good_from_bad(void **state)
     assert_int_equal(row_of(&r, "robust cr")->refinements, 2);
     assert_true(row_of(&r, "cfa-robust")->refinements > 1);
     arena_destroy(rows);
-    arena_destroy(a);
 }
 
 /* What no refinement in working precision mends, twice the precision does. */
@@ -270,23 +278,12 @@ static void twice_the_precision_mends_the_worst(void **state)
     (void)state;
     static const char *const name[] = {"mass alternating 1e12", "nearly points"};
     for (int k = 0; k < 2; k++) {
-        int n;
-        const struct scene *c = scene_list(&n);
-        while (n > 0 && strcmp(c->name, name[k]) != 0) c++, n--;
-        assert_true(n > 0);
-        struct arena *a = arena_create(), *rows = arena_create();
-        struct stability_report r = {.arena = rows};
-        struct model *m;
-        struct state *s;
-        struct err e;
-        err_clear(&e);
-        assert_true(scene_build(c, a, &m, &s, &e));
-        stability_accelerations(&r, c->name, m, s, a);
+        struct arena *rows = arena_create();
+        const struct stability_report r = rows_of(name[k], rows);
         assert_true(row_of(&r, "robust cr")->error > 1e-5);
         assert_true(row_of(&r, "twice cr")->error < 1e-13);
         assert_int_equal(row_of(&r, "twice cr")->refinements, 20);
         arena_destroy(rows);
-        arena_destroy(a);
     }
 }
 
