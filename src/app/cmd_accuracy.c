@@ -7,7 +7,6 @@
 #include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "report/report.h"
 #include "run/accuracy.h"
 #include "store/store.h"
 
@@ -40,10 +39,7 @@ static bool keep_and_draw(const struct common *c, const struct accuracy_report *
     if (!s) return false;
     struct text figure = {0};
     text_add(&figure, "accuracy-%s", r->scenario);
-    bool ok = keep_accuracy(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
-    if (ok && !c->quiet)
-        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
-                c->database);
+    bool ok = keep_accuracy(s, r, e) && keep_draw(c, s, figure.s, e);
     text_free(&figure);
     store_close(s);
     return ok;

@@ -4,13 +4,13 @@
 #include <string.h>
 
 #include "app/flag.h"
+#include "app/keep.h"
 #include "app/savings.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "report/report.h"
 #include "run/run.h"
 #include "spec/field.h"
 #include "store/store.h"
@@ -205,10 +205,7 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
     struct store *s = store_open(c->database, STORE_WRITE, e);
     text_add(&figure, "omissions-%s", all->scenario);
     bool ok = s && savings_store(s, all, e);
-    ok = ok && (all->n == 0 || report_figure(s, plan_data_dir(), figure.s, c->directory, e));
-    if (ok && all->n > 0 && !c->quiet)
-        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
-                c->database);
+    ok = ok && (all->n == 0 || keep_draw(c, s, figure.s, e));
     text_free(&figure);
     store_close(s);
     return ok;

@@ -5,7 +5,6 @@
 #include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "report/report.h"
 #include "run/stability.h"
 #include "store/store.h"
 
@@ -22,10 +21,7 @@ static bool keep_and_draw(const struct common *c, const struct stability_report 
     if (!s) return false;
     struct text figure = {0};
     text_add(&figure, strcmp(r->suite, "suite") == 0 ? "stability" : "stability-%s", r->suite);
-    bool ok = keep_stability(s, r, e) && report_figure(s, plan_data_dir(), figure.s, c->directory, e);
-    if (ok && !c->quiet)
-        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure.s,
-                c->database);
+    bool ok = keep_stability(s, r, e) && keep_draw(c, s, figure.s, e);
     text_free(&figure);
     store_close(s);
     return ok;

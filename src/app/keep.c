@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "app/levels.h"
+#include "report/report.h"
 
 static bool store_choice(struct store *s, const char *scenario, const struct accuracy_choice *c, struct err *e)
 {
@@ -50,4 +51,13 @@ bool keep_stability(struct store *s, const struct stability_report *r, struct er
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;
+}
+
+bool keep_draw(const struct common *c, struct store *s, const char *figure, struct err *e)
+{
+    if (!report_figure(s, plan_data_dir(), figure, c->directory, e)) return false;
+    if (!c->quiet)
+        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure,
+                c->database);
+    return true;
 }

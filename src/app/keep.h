@@ -1,7 +1,9 @@
-/* keep.h - ladders and grades of stability into the database, in place of older ones of the same scenario. */
+/* keep.h - ladders and grades of stability into the database, in place of older ones of the same scenario, and their
+ * figures out of it. */
 #ifndef APP_KEEP_H
 #define APP_KEEP_H
 
+#include "app/verb.h"
 #include "run/accuracy.h"
 #include "run/stability.h"
 #include "store/store.h"
@@ -10,5 +12,9 @@
  * false as store_insert does, with nothing changed. */
 bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err *e);
 bool keep_stability(struct store *s, const struct stability_report *r, struct err *e);
+
+/* keep_draw: draw `figure` from `s` into the folder that the command line names, and say on stderr, unless quiet, where
+ * it is and how to have its section. Returns false as report_figure. */
+bool keep_draw(const struct common *c, struct store *s, const char *figure, struct err *e);
 
 #endif
