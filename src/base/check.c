@@ -25,7 +25,7 @@ void check_memory(size_t bytes)
     fprintf(stderr,
             "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` tells what a run needs\n",
             (double)bytes / (1 << 20));
-    _exit(err_exit_status(ERR_INTERNAL)); /* a worker's copy of the parent's output is not its own to flush */
+    _exit(ERR_INTERNAL_STATUS); /* a worker's copy of the parent's output is not its own to flush */
 }
 
 void check_failed(const char *file, int line, const char *cond)

@@ -31,6 +31,13 @@ enum err_kind {
 #undef X
 };
 
+/* Exit statuses by name (ERR_IO_STATUS = 74), for check.c, which stands below err.c. */
+enum err_status {
+#define X(name, status, word) name##_STATUS = status,
+    ERR_KINDS(X)
+#undef X
+};
+
 struct err {
     enum err_kind kind;
     int line;          /* 1-based line in `file`, 0 when there is none */

@@ -1,8 +1,7 @@
-/* text.c - strings: nearest valid name, growing buffer, whole files. */
+/* text.c - strings: nearest valid name, growing buffer. */
 #include "base/text.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,8 +68,7 @@ const char *text_nearest(const char *word, const char *const *names, int n)
     return nearest ? nearest : text_abbreviated(word, length, names, n);
 }
 
-/* text_reserve: room for n more bytes and a NUL. */
-static void text_reserve(struct text *t, size_t n)
+void text_reserve(struct text *t, size_t n)
 {
     size_t need = t->length + n + 1;
     if (need <= t->capacity) return;
@@ -107,24 +105,6 @@ void text_free(struct text *t)
 {
     free(t->s);
     *t = (struct text){0};
-}
-
-bool text_read_file(struct text *t, const char *path, struct err *e)
-{
-    t->length = 0;
-    FILE *in = fopen(path, "rb");
-    if (!in) return err_set_at(e, ERR_NO_INPUT, path, 0, "cannot open: %s", strerror(errno));
-    size_t n;
-    do { /* a directory opens well and fails in the first read */
-        text_reserve(t, 65536);
-        n = fread(t->s + t->length, 1, 65536, in);
-        t->length += n;
-    } while (n == 65536);
-    t->s[t->length] = '\0';
-    int failure = ferror(in) ? errno : 0;
-    fclose(in);
-    if (failure) return err_set_at(e, ERR_IO, path, 0, "cannot read: %s", strerror(failure));
-    return true;
 }
 
 void text_copy(char *buffer, size_t size, const char *s)

@@ -19,6 +19,9 @@ struct text {
     size_t capacity;
 };
 
+/* text_reserve: room for `n` more bytes and a NUL behind them. */
+void text_reserve(struct text *t, size_t n);
+
 /* text_add: append printf-like. */
 void text_add(struct text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -4,12 +4,6 @@
 #include "kernel/extremes.h"
 #include "kernel/forward_rows.h"
 
-static twice *force_of(const struct forward *f, int i)
-{
-    const int lo = f->chain.lo, hi = f->chain.hi;
-    return f->exact + SPACE * (i < lo ? hi - lo : i == hi ? hi - lo + 1 : i - lo);
-}
-
 static void widen(const real *x, twice *y)
 {
     for (int k = 0; k < SPACE; k++) y[k] = x[k];
@@ -18,16 +12,9 @@ static void widen(const real *x, twice *y)
 void exact_begin(struct forward *f)
 {
     const struct chain *ch = &f->chain;
-    for (int i = ch->lo; i < ch->hi; i++) widen(chain_at(ch, f->force, i), force_of(f, i));
-    if (ch->lo > 0) widen(f->force_left, force_of(f, ch->lo - 1));
-    if (ch->hi < ch->n) widen(f->force_right, force_of(f, ch->hi));
-}
-
-void exact_add(struct forward *f, int i, const real *x)
-{
-    twice *force = force_of(f, i);
-    for (int k = 0; k < SPACE; k++) force[k] += x[k];
-    f->chain.work.flop += TWICE_FLOP * SPACE;
+    for (int i = ch->lo; i < ch->hi; i++) widen(chain_at(ch, f->force, i), exact_force(f, i));
+    if (ch->lo > 0) widen(f->force_left, exact_force(f, ch->lo - 1));
+    if (ch->hi < ch->n) widen(f->force_right, exact_force(f, ch->hi));
 }
 
 /* y = M x, or M^T x; y may be x. */
@@ -85,9 +72,9 @@ static void body_acceleration(struct forward *f, int i, const real *gain, twice 
 {
     const struct chain *ch = &f->chain;
     twice above[SPACE];
-    for (int k = 0; k < SPACE; k++) y[k] = force_of(f, i)[k];
+    for (int k = 0; k < SPACE; k++) y[k] = exact_force(f, i)[k];
     if (i + 1 < ch->n) {
-        for (int k = 0; k < SPACE; k++) above[k] = force_of(f, i + 1)[k];
+        for (int k = 0; k < SPACE; k++) above[k] = exact_force(f, i + 1)[k];
         transform(f, i + 1, false, above);
         for (int k = 0; k < SPACE; k++) y[k] -= above[k];
     }

@@ -19,9 +19,20 @@ enum { TWICE_FLOP = 20 };
 #define exact_begin SPACE_NAME(exact_begin)
 void exact_begin(struct forward *f);
 
+/* exact_force: F (SPACE) of joint i, own or beside the block. */
+static inline twice *exact_force(const struct forward *f, int i)
+{
+    const int lo = f->chain.lo, hi = f->chain.hi;
+    return f->exact + SPACE * (i < lo ? hi - lo : i == hi ? hi - lo + 1 : i - lo);
+}
+
 /* exact_add: F += x (SPACE) for joint i, own or beside the block. */
-#define exact_add SPACE_NAME(exact_add)
-void exact_add(struct forward *f, int i, const real *x);
+static inline void exact_add(struct forward *f, int i, const real *x)
+{
+    twice *force = exact_force(f, i);
+    for (int k = 0; k < SPACE; k++) force[k] += x[k];
+    f->chain.work.flop += TWICE_FLOP * SPACE;
+}
 
 /* exact_operator_form: z of own bodies (4.8), rounded once, from these forces; f->residual with it. The flags say which
  * terms there are: loads (gain), joint bias accelerations, the base's. */

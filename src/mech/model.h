@@ -124,6 +124,9 @@ struct state *state_take(const struct model *m, struct arena *a);
  * only when a vector file, readable a moment ago, no longer is. */
 struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a);
 
+/* state_generate: state_make of all but vector files. */
+struct state *state_generate(const struct model *m, const struct model_spec *spec, struct arena *a);
+
 /* state_fext_need: the state's fext array, taken (zero) when there was none. */
 double *state_fext_need(struct state *s, const struct model *m, struct arena *a);
 

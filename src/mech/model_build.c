@@ -1,4 +1,4 @@
-/* model_build.c - from a spec to a model: which reader or generator. */
+/* model_build.c - from a spec to a model and its state: which reader or generator. */
 #include "mech/generator.h"
 #include "mech/model.h"
 #include "mech/urdf_model.h"
@@ -11,4 +11,12 @@ struct model *model_build(const struct model_spec *spec, struct arena *a, struct
     case MODEL_VECTOR: return vector_model_build(spec, a, e);
     default: return generator_model(spec, a, e);
     }
+}
+
+struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a)
+{
+    if (spec->generator != MODEL_VECTOR) return state_generate(m, spec, a);
+    struct err e;
+    err_clear(&e);
+    return vector_state_make(m, spec, a, &e);
 }

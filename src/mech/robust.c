@@ -4,17 +4,6 @@
 
 enum { ROBUST_OUTER = 12 };
 
-double relative_size(int n, const real *x, const real *y)
-{
-    double a = 0, b = 0;
-    for (int i = 0; i < n; i++) {
-        double xi = (double)real_fabs(x[i]), yi = (double)real_fabs(y[i]);
-        if (!(xi <= a)) a = xi;
-        if (yi > b) b = yi;
-    }
-    return b > 0 ? a / b : a > 0 ? 1 : 0;
-}
-
 /* ud += M^-1 (tau - RNEA(ud)) by articulated bodies, while corrections shrink. */
 static void refine(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud,
                    struct cfa_report *report, struct work *w)

@@ -5,7 +5,6 @@
 #include "mech/integrate.h"
 #include "mech/model.h"
 #include "mech/pose.h"
-#include "mech/vector_model.h"
 
 #define PI 3.14159265358979323846
 
@@ -82,13 +81,8 @@ static void close_velocities(const struct model *m, struct state *s, struct aren
     arena_release(a, mark);
 }
 
-struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a)
+struct state *state_generate(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
-    if (spec->generator == MODEL_VECTOR) {
-        struct err e;
-        err_clear(&e);
-        return vector_state_make(m, spec, a, &e);
-    }
     struct state *s = state_take(m, a);
     double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
     double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;

@@ -20,24 +20,6 @@ bool trace_format_find(const char *name, enum trace_format *format)
     return false;
 }
 
-const char *timeline_kind(enum span_kind kind)
-{
-    static const char *const word[] = {"compute", "send", "recv", "wait", "barrier"};
-    return word[kind];
-}
-
-const char *timeline_stage(const struct timeline *t, int stage)
-{
-    return stage >= 0 && stage < t->run->nstage ? t->run->stage_name[stage] : "";
-}
-
-int64_t timeline_group(const struct timeline *t, int64_t first)
-{
-    int64_t i = first + 1;
-    while (i < t->nspan && t->span[i]->rank == t->span[first]->rank && t->span[i]->stage == t->span[first]->stage) i++;
-    return i;
-}
-
 static int compare_begin(const void *a, const void *b)
 {
     const struct span *x = *(const struct span *const *)a, *y = *(const struct span *const *)b;
@@ -49,39 +31,6 @@ static int compare_rank(const void *a, const void *b)
 {
     const struct span *x = *(const struct span *const *)a, *y = *(const struct span *const *)b;
     return x->rank != y->rank ? (x->rank < y->rank ? -1 : 1) : compare_begin(a, b);
-}
-
-/* A message's two ends, while they are matched. */
-struct message_end {
-    int64_t message, index;
-};
-
-static int compare_message(const void *a, const void *b)
-{
-    const struct message_end *x = a, *y = b;
-    if (x->message != y->message) return x->message < y->message ? -1 : 1;
-    return x->index < y->index ? -1 : x->index > y->index;
-}
-
-int64_t *timeline_partners(const struct timeline *t)
-{
-    int64_t *partner = malloc((size_t)t->nspan * sizeof *partner), n = 0;
-    struct message_end *end = malloc((size_t)t->nspan * sizeof *end);
-    CHECK(partner != NULL && end != NULL);
-    for (int64_t i = 0; i < t->nspan; i++) {
-        partner[i] = -1;
-        bool is_end = t->span[i]->kind == SPAN_SEND || t->span[i]->kind == SPAN_RECV;
-        if (is_end && t->span[i]->message >= 0) end[n++] = (struct message_end){t->span[i]->message, i};
-    }
-    qsort(end, (size_t)n, sizeof *end, compare_message);
-    for (int64_t i = 0; i + 1 < n; i++) {
-        int64_t a = end[i].index, b = end[i + 1].index;
-        if (end[i].message != end[i + 1].message || t->span[a]->kind == t->span[b]->kind) continue;
-        partner[a] = b;
-        partner[b] = a;
-    }
-    free(end);
-    return partner;
 }
 
 /* The spans of *t within its window and ranks, at most `max` of them. Returns how many were left out. */

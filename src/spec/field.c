@@ -7,43 +7,11 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/check.h"
 #include "spec/field_list.h"
-
-static bool refuse(char *why, int size, const char *format, ...) __attribute__((format(printf, 3, 4)));
-
-static bool refuse(char *why, int size, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    vsnprintf(why, (size_t)size, format, args);
-    va_end(args);
-    return false;
-}
-
-/* A bound for messages: counts without, quantities with their unit. */
-static void print_bound(const struct field *f, double value, char *buffer, int size)
-{
-    if (f->kind == FIELD_REAL || f->kind == FIELD_REALS || f->unit == UNIT_BYTES)
-        units_print(value, f->unit, buffer, size);
-    else snprintf(buffer, (size_t)size, "%.0f", value);
-}
-
-bool field_in_range(const struct field *f, double value, char *why, int size)
-{
-    if (value >= f->min && value <= f->max) return true;
-    char low[48], high[48];
-    print_bound(f, f->min, low, (int)sizeof low);
-    print_bound(f, f->max, high, (int)sizeof high);
-    bool has_low = isfinite(f->min), has_high = isfinite(f->max) && fabs(f->max) < 1e15;
-    if (has_low && has_high) return refuse(why, size, "out of range; expected %s to %s", low, high);
-    if (has_low) return refuse(why, size, "out of range; expected at least %s", low);
-    return refuse(why, size, "out of range; expected at most %s", high);
-}
 
 bool field_int_parse(const char *text, int64_t *value, char *why, int size)
 {
@@ -51,8 +19,8 @@ bool field_int_parse(const char *text, int64_t *value, char *why, int size)
     errno = 0;
     long long v = strtoll(text, &end, 10);
     while (isspace((unsigned char)*end)) end++;
-    if (end == text || *end != '\0') return refuse(why, size, "not a whole number; expected one such as '16'");
-    if (errno == ERANGE) return refuse(why, size, "out of range of 64-bit whole numbers");
+    if (end == text || *end != '\0') return field_refuse(why, size, "not a whole number; expected one such as '16'");
+    if (errno == ERANGE) return field_refuse(why, size, "out of range of 64-bit whole numbers");
     *value = v;
     return true;
 }
@@ -88,9 +56,9 @@ static bool set_int64(const struct field *f, int64_t *place, const char *text, c
     }
     double v;
     if (!units_parse(text, f->unit, &v, why, size)) return false;
-    if (v < 0) return refuse(why, size, "a size cannot be negative");
+    if (v < 0) return field_refuse(why, size, "a size cannot be negative");
     if (!field_in_range(f, v, why, size)) return false;
-    if (v != floor(v)) return refuse(why, size, "not a whole number of bytes");
+    if (v != floor(v)) return field_refuse(why, size, "not a whole number of bytes");
     *place = (int64_t)v;
     return true;
 }
@@ -101,7 +69,7 @@ static bool set_seed(uint64_t *place, const char *text, char *why, int size)
     errno = 0;
     unsigned long long v = strtoull(text, &end, 10);
     if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno == ERANGE)
-        return refuse(why, size, "not a seed; expected a whole number from 0 to 2^64-1");
+        return field_refuse(why, size, "not a seed; expected a whole number from 0 to 2^64-1");
     *place = v;
     return true;
 }
@@ -113,7 +81,7 @@ static bool set_bool(bool *place, const char *text, char *why, int size)
         if (strcmp(text, yes[i]) == 0) return *place = true, true;
         if (strcmp(text, no[i]) == 0) return *place = false, true;
     }
-    return refuse(why, size, "expected 'true' or 'false'");
+    return field_refuse(why, size, "expected 'true' or 'false'");
 }
 
 static bool set_choice(const struct field *f, int *place, const char *text, char *why, int size)
@@ -132,9 +100,9 @@ static bool set_choice(const struct field *f, int *place, const char *text, char
 static bool set_text(const struct field *f, char *place, const char *text, char *why, int size)
 {
     size_t length = strlen(text);
-    if (length >= (size_t)f->capacity) return refuse(why, size, "too long; at most %d bytes", f->capacity - 1);
+    if (length >= (size_t)f->capacity) return field_refuse(why, size, "too long; at most %d bytes", f->capacity - 1);
     for (const char *s = text; *s != '\0'; s++)
-        if ((unsigned char)*s < 0x20) return refuse(why, size, "control characters are not allowed in a name");
+        if ((unsigned char)*s < 0x20) return field_refuse(why, size, "control characters are not allowed in a name");
     memset(place, 0, (size_t)f->capacity);
     memcpy(place, text, length);
     return true;

@@ -10,12 +10,6 @@
 
 enum { LIST_MAX_ENTRIES = 1 << 22, ENTRY_LENGTH = 64 };
 
-static bool refuse(char *why, int size, const char *clause)
-{
-    snprintf(why, (size_t)size, "%s", clause);
-    return false;
-}
-
 static const char *skip_blanks(const char *s)
 {
     while (isspace((unsigned char)*s)) s++;
@@ -27,7 +21,7 @@ static bool take_int(const struct field *f, const char **s, int *value, char *wh
 {
     char *end;
     long long v = strtoll(*s, &end, 10);
-    if (end == *s) return refuse(why, size, "not a list of whole numbers; expected one such as '[8, 4, 4]'");
+    if (end == *s) return field_refuse(why, size, "not a list of whole numbers; expected one such as '[8, 4, 4]'");
     if (!field_in_range(f, (double)v, why, size)) return false;
     *value = (int)v;
     *s = end;
@@ -45,14 +39,14 @@ static bool scan_ints(const struct field *f, const char *text, int *value, int c
     while (*s != '\0' && *s != ']') {
         int v;
         if (!take_int(f, &s, &v, why, size)) return false;
-        if (n == capacity) return refuse(why, size, "too many entries");
+        if (n == capacity) return field_refuse(why, size, "too many entries");
         if (value != NULL) value[n] = v;
         n++;
         s = skip_blanks(s);
         if (*s == ',' || (*s == 'x' && !bracket)) s = skip_blanks(s + 1);
     }
     if (bracket != (*s == ']') || (bracket && *skip_blanks(s + 1) != '\0'))
-        return refuse(why, size, "brackets do not match; expected a list such as '[8, 4, 4]'");
+        return field_refuse(why, size, "brackets do not match; expected a list such as '[8, 4, 4]'");
     *count = n;
     return true;
 }
@@ -61,7 +55,7 @@ bool field_ints_set(const struct field *f, void *base, const char *text, char *w
 {
     int n, *place = (int *)(void *)((char *)base + f->offset);
     if (!scan_ints(f, text, NULL, f->capacity, &n, why, size)) return false;
-    if (n == 0) return refuse(why, size, "an empty list; expected at least one number");
+    if (n == 0) return field_refuse(why, size, "an empty list; expected at least one number");
     memset(place, 0, (size_t)f->capacity * sizeof *place);
     scan_ints(f, text, place, f->capacity, &n, why, size);
     *(int *)(void *)((char *)base + f->count) = n;
@@ -83,12 +77,12 @@ bool field_int_list_set(const struct field *f, void *base, const char *text, str
 static bool take_pair(const struct field *f, const char **s, int pair[2], char *why, int size)
 {
     static const char expected[] = "not a list of pairs; expected one such as '[[0, 1], [1, 2]]'";
-    if (**s != '[') return refuse(why, size, expected);
+    if (**s != '[') return field_refuse(why, size, expected);
     for (int i = 0; i < 2; i++) {
         *s = skip_blanks(*s + 1);
         if (!take_int(f, s, &pair[i], why, size)) return false;
         *s = skip_blanks(*s);
-        if (**s != (i == 0 ? ',' : ']')) return refuse(why, size, expected);
+        if (**s != (i == 0 ? ',' : ']')) return field_refuse(why, size, expected);
     }
     *s = skip_blanks(*s + 1);
     return true;
@@ -98,16 +92,16 @@ static bool scan_pairs(const struct field *f, const char *text, int (*list)[2], 
 {
     const char *s = skip_blanks(text);
     int n = 0, pair[2];
-    if (*s != '[') return refuse(why, size, "not a list of pairs; expected one such as '[[0, 1], [1, 2]]'");
+    if (*s != '[') return field_refuse(why, size, "not a list of pairs; expected one such as '[[0, 1], [1, 2]]'");
     s = skip_blanks(s + 1);
     while (*s != '\0' && *s != ']') {
         if (!take_pair(f, &s, pair, why, size)) return false;
-        if (n == LIST_MAX_ENTRIES) return refuse(why, size, "too many entries");
+        if (n == LIST_MAX_ENTRIES) return field_refuse(why, size, "too many entries");
         if (list != NULL) memcpy(list[n], pair, sizeof pair);
         n++;
         if (*s == ',') s = skip_blanks(s + 1);
     }
-    if (*s != ']' || *skip_blanks(s + 1) != '\0') return refuse(why, size, "brackets do not match");
+    if (*s != ']' || *skip_blanks(s + 1) != '\0') return field_refuse(why, size, "brackets do not match");
     *count = n;
     return true;
 }
@@ -145,9 +139,9 @@ static bool open_list(const char *text, char *inner, int capacity, char unit[ENT
     const char *s = skip_blanks(text);
     bool bracket = *s == '[';
     const char *end = bracket ? strchr(s, ']') : s + strlen(s);
-    if (end == NULL) return refuse(why, size, "a bracket is not closed");
+    if (end == NULL) return field_refuse(why, size, "a bracket is not closed");
     s += bracket;
-    if (end - s >= capacity) return refuse(why, size, "too long a list");
+    if (end - s >= capacity) return field_refuse(why, size, "too long a list");
     memcpy(inner, s, (size_t)(end - s));
     inner[end - s] = '\0';
     snprintf(unit, ENTRY_LENGTH, "%s", bracket ? skip_blanks(end + 1) : "");
@@ -170,7 +164,7 @@ bool field_reals_set(const struct field *f, void *base, const char *text, char *
     if (!open_list(text, inner, (int)sizeof inner, unit, why, size)) return false;
     bool commas = strchr(inner, ',') != NULL;
     for (const char *s = skip_blanks(inner); *s != '\0'; s = skip_blanks(s)) {
-        if (n == f->capacity || n == 16) return refuse(why, size, "too many entries");
+        if (n == f->capacity || n == 16) return field_refuse(why, size, "too many entries");
         s = next_entry(s, commas, entry[n++]);
     }
     if (n < f->at_least) {

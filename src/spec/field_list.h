@@ -13,6 +13,9 @@ bool field_pair_list_set(const struct field *f, void *base, const char *text, st
 /* field_list_print: any list kind, as field_print. */
 void field_list_print(const struct field *f, const void *base, struct text *out);
 
+/* field_refuse: the clause, printf-like, into `why`. Always returns false. */
+bool field_refuse(char *why, int size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 /* field_in_range: whether `value` is within the field's bounds; the clause in `why` names them. */
 bool field_in_range(const struct field *f, double value, char *why, int size);
 

@@ -1,0 +1,17 @@
+/* tolerance.c - how far a correct parallel answer may be from the serial one (references.h). */
+#include <math.h>
+
+#include "run/references.h"
+
+static double precision_scale(enum precision p) { return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1; }
+
+double references_tolerance(const struct kernel_spec *k, int n)
+{
+    double size = fmax(1, n / 100.0), base = k->formulation == FORMULATION_PAPER ? 1e-8 : 1e-10;
+    return fmin(base * size * size * precision_scale(k->precision), 1e-2);
+}
+
+double references_tolerance_inverse(const struct kernel_spec *k, int n)
+{
+    return fmin(1e-11 * fmax(1, n / 100.0) * precision_scale(k->precision), 1e-2);
+}
