@@ -8,7 +8,8 @@
 #include "base/arena.h"
 #include "base/check.h"
 #include "base/progress.h"
-#include "mech/dynamics.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/system.h"
 
 struct scene {
     struct arena *arena;
@@ -27,6 +28,7 @@ static struct scene scene_make(int n)
     err_clear(&e);
     struct model *m = model_build(&spec, s.arena, &e);
     CHECK(m);
+    system_prepare(m);
     s.state = state_make(m, &spec, s.arena);
     s.dynamics = dynamics_take(m, s.arena);
     s.out = TAKE(s.arena, (size_t)n * (size_t)n + 1, double);

@@ -11,8 +11,9 @@
 
 #include "../tests/support/many_ranks.h"
 #include "base/progress.h"
+#include "dynamics/system.h"
 #include "kernel/kernel.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
 #include "torus_plan.h"
@@ -45,6 +46,7 @@ static double bare_seconds(const struct run_spec *spec, bool watch, struct err *
     struct bare b = {.kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision)};
     struct model *m = model_build(&spec->model, a, e);
     if (!m) return 0;
+    system_prepare(m);
     b.job =
         (struct kernel_job){.spec = spec, .model = m, .state = state_make(m, &spec->model, a), .nrank = spec->nrank};
     b.job.tau = TAKE(a, m->nu, double);

@@ -8,11 +8,11 @@
 #include "linalg/space.h"
 
 #if SPACE == 6
-#include "mech/body.h"
-#include "mech/loop.h"
+#include "dynamics/body.h"
+#include "dynamics/loop.h"
 #else
-#include "mech/planar_body.h"
-#include "mech/planar_loop.h"
+#include "dynamics/planar_body.h"
+#include "dynamics/planar_loop.h"
 #endif
 
 #endif

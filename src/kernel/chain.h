@@ -13,7 +13,7 @@
 #include "kernel/kernel.h"
 #include "kernel/reduction.h"
 #include "kernel/scan.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* What all ranks share, made by prepare; read-only. */
 struct chain_shared {

@@ -14,7 +14,7 @@
 #include "kernel/algebra.h"
 #include "kernel/carve.h"
 #include "linalg/real.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* What all ranks share. Side s of the 2 nloop ones: body a (s even) or b (odd) of loop s / 2. */
 struct closure_shared {

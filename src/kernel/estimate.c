@@ -3,7 +3,7 @@
 
 #include "kernel/blocks.h"
 #include "kernel/chain.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* What the formulas need of a spec: P ranks, n bodies, orders of a typical joint (that of the last body). */
 struct outline {

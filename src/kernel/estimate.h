@@ -4,7 +4,7 @@
 
 #include "kernel/kernel.h"
 #include "linalg/space.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
  * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a

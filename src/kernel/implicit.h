@@ -8,7 +8,7 @@
 
 #include "kernel/algebra.h"
 #include "kernel/kernel.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* steps_implicitly: whether the job's time steps are linearly implicit. */
 static inline bool steps_implicitly(const struct kernel_job *job)

@@ -62,7 +62,7 @@ struct kernel_type {
     const char *title; /* one line for people */
     bool needs_model;
     bool does_inverse, does_forward;
-    bool planar; /* computes in three components: the scene must be planar (mech/planar.h) */
+    bool planar; /* computes in three components: the scene must be planar (dynamics/planar.h) */
     int nstage;
     const char *const *stage_name; /* (nstage) */
 
@@ -92,8 +92,8 @@ const struct kernel_type *kernel_find(const char *name);
 /* kernel_find_precision: the same kernel computing in `precision`. Micro-benchmarks are the same in all. */
 const struct kernel_type *kernel_find_precision(const char *name, enum precision precision);
 
-/* kernel_find_planar: the same kernel in three components instead of six, for planar scenes (mech/planar.h). NULL when
- * there is none. */
+/* kernel_find_planar: the same kernel in three components instead of six, for planar scenes (dynamics/planar.h). NULL
+ * when there is none. */
 const struct kernel_type *kernel_find_planar(const char *name, enum precision precision);
 
 /* kernel_list: all of them, (*n) pointers, in double precision. */

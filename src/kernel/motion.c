@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mech/model.h"
+#include "model/model.h"
 
 void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu)
 {

@@ -8,7 +8,7 @@
 #define KERNEL_TREE_PLAN_H
 
 #include "base/arena.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 enum tree_kind { TREE_RAKE, TREE_MERGE };
 

@@ -1,7 +1,7 @@
 /* real.h - the scalar of the numerics: one source, three precisions, chosen by the build of each archive.
  *
- * Files of linalg, mech and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128. Their public
- * names carry the precision (REAL_NAME); a header renames them right under each prototype's comment, so that the
+ * Files of linalg, dynamics and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128. Their
+ * public names carry the precision (REAL_NAME); a header renames them right under each prototype's comment, so that the
  * plain name always means "in this file's precision". Without REAL_BITS it is double. Answers of another precision
  * are reached through const tables of functions (dynamics_table.h, kernel.h). */
 #ifndef LINALG_REAL_H

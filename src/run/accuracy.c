@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "base/text.h"
+#include "dynamics/system.h"
 #include "run/accuracy_ladder.h"
 #include "run/level_choice.h"
 #include "run/run.h"
@@ -90,6 +91,7 @@ static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const stru
     if (nbody == 0) return true;
     l->model = model_build(&spec->model, l->arena, e);
     if (!l->model) return false;
+    system_prepare(l->model);
     l->state = state_make(l->model, &spec->model, l->arena);
     return true;
 }

@@ -4,9 +4,9 @@
 
 #include "base/progress.h"
 #include "base/text.h"
+#include "dynamics/dynamics_table.h"
+#include "dynamics/planar_dynamics.h"
 #include "machine/node_cost.h"
-#include "mech/dynamics_table.h"
-#include "mech/planar_dynamics.h"
 #include "run/accuracy_ladder.h"
 #include "run/omission.h"
 #include "run/trial.h"

@@ -5,8 +5,8 @@
 
 #include "base/progress.h"
 #include "base/text.h"
-#include "mech/dynamics_table.h"
-#include "mech/trajectory.h"
+#include "dynamics/dynamics_table.h"
+#include "dynamics/trajectory.h"
 #include "run/accuracy_ladder.h"
 #include "run/trial.h"
 

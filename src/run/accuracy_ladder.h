@@ -2,7 +2,7 @@
 #ifndef RUN_ACCURACY_LADDER_H
 #define RUN_ACCURACY_LADDER_H
 
-#include "mech/model.h"
+#include "model/model.h"
 #include "run/accuracy.h"
 
 /* One ladder at one point of a scenario. */

@@ -1,6 +1,6 @@
 /* dense_tally.h - operation counts of the serial codes when written with general 6x6 operators.
  *
- * The serial algorithms of room mech exploit the structure of rigid transforms and count what they do. A parallel
+ * The serial algorithms of room dynamics exploit the structure of rigid transforms and count what they do. A parallel
  * code with dense operators has to be held against serial codes of the same style, which are tallied here: products
  * of full matrices, inertias moved and inverted every time. For a revolute joint: Newton-Euler 2000 flops a body,
  * articulated bodies 3000, the constraint force algorithm 6400. */
@@ -8,7 +8,7 @@
 #define RUN_DENSE_TALLY_H
 
 #include "base/work.h"
-#include "mech/dynamics_table.h"
+#include "dynamics/dynamics_table.h"
 
 /* dense_tally_inverse, dense_tally_forward: replace the flops and operator calls that the structured code counted in
  * *w for model m by those of the dense one; divisions, roots and sines are the same in both. */

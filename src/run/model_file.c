@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "mech/urdf_model.h"
-#include "mech/vector_model.h"
+#include "model/urdf_model.h"
+#include "model/vector_model.h"
 
 static bool ends_in(const char *path, const char *end)
 {

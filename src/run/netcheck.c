@@ -7,8 +7,8 @@
 
 #include "base/progress.h"
 #include "base/text.h"
+#include "io/document.h"
 #include "machine/topology.h"
-#include "mech/document.h"
 #include "run/netcheck_case.h"
 
 enum { MAX_NODES = 1 << 22, MAX_FLITS = 1 << 20, MAX_BUFFERS = 8, LOAD_SEED = 1 };

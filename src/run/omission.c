@@ -3,9 +3,9 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "dynamics/planar.h"
 #include "kernel/estimate.h"
-#include "mech/lump.h"
-#include "mech/planar.h"
+#include "model/lump.h"
 #include "run/launch.h"
 #include "run/references.h"
 

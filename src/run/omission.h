@@ -9,7 +9,7 @@
 
 #include "kernel/kernel.h"
 #include "measure/run_result.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "spec/run_spec.h"
 
 /* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on fixed joints become

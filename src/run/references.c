@@ -7,8 +7,8 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "dynamics/dynamics_table.h"
 #include "machine/node_cost.h"
-#include "mech/dynamics_table.h"
 #include "run/dense_tally.h"
 
 enum { CRBA_MOST_DOFS = 512 };

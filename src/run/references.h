@@ -5,7 +5,7 @@
 #include "kernel/kernel.h"
 #include "machine/node_cost.h"
 #include "measure/run_result.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "run/scene.h"
 #include "spec/run_spec.h"
 

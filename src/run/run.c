@@ -7,8 +7,9 @@
 
 #include "base/check.h"
 #include "base/progress.h"
+#include "dynamics/system.h"
 #include "kernel/kernel.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/references.h"

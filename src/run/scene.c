@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/check.h"
-#include "mech/planar_dynamics.h"
+#include "dynamics/planar_dynamics.h"
+#include "dynamics/system.h"
 #include "run/omission.h"
 
 /* Bodies: what may stay in memory beside the scene in use. */
@@ -46,6 +47,7 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
         s->nbody = s->model->nbody;
         s->movable = omission_movable(s->model);
         s->fixed = omission_scene(spec, &s->model, &s->state, a);
+        system_prepare(s->model);
         s->state->at_rest = omission_job(spec, s->model, s->state).velocity;
         return s;
     }

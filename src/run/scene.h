@@ -9,8 +9,8 @@
 
 #include "base/arena.h"
 #include "base/err.h"
-#include "mech/dynamics_table.h"
-#include "mech/model.h"
+#include "dynamics/dynamics_table.h"
+#include "model/model.h"
 #include "spec/run_spec.h"
 
 struct serial_answer {
@@ -50,7 +50,7 @@ const struct serial_answer *scene_inverse(struct scene *s);
 const struct serial_answer *scene_forward(struct scene *s, enum forward_method method);
 
 /* scene_planar_inverse, scene_planar_forward: by recursive Newton-Euler and by articulated bodies of three components,
- * for scenes that are planar (mech/planar.h). */
+ * for scenes that are planar (dynamics/planar.h). */
 const struct serial_answer *scene_planar_inverse(struct scene *s);
 const struct serial_answer *scene_planar_forward(struct scene *s);
 

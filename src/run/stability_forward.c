@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "mech/dynamics_table.h"
+#include "dynamics/dynamics_table.h"
 #include "run/stability_scene.h"
 #include "run/trial.h"
 #include "run/trust.h"

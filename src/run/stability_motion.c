@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "mech/dynamics_table.h"
-#include "mech/trajectory.h"
+#include "dynamics/dynamics_table.h"
+#include "dynamics/trajectory.h"
 #include "run/stability_scene.h"
 #include "run/trial.h"
 

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "mech/pose.h"
+#include "dynamics/system.h"
+#include "model/pose.h"
 
 /* What is not said: unit rods on revolute joints under gravity, joint rates and forces of order one. */
 #define CHAIN(n) .nbody = (n)
@@ -153,6 +154,7 @@ bool scene_build(const struct scene *c, struct arena *a, struct model **m, struc
     *m = model_build(&spec, a, e);
     if (*m) *m = reshape(c, *m, a, e);
     if (!*m) return false;
+    system_prepare(*m);
     *s = state_make(*m, &spec, a);
     for (int i = 0; i < (*m)->nq && c->nudge != 0; i++) (*s)->q[i] += i % 2 ? -c->nudge : c->nudge;
     /* springs pull from where the pose would be anyway: give them something to do */

@@ -2,7 +2,7 @@
 #ifndef RUN_STABILITY_SCENE_H
 #define RUN_STABILITY_SCENE_H
 
-#include "mech/model.h"
+#include "model/model.h"
 #include "run/stability.h"
 
 /* How the masses of a chain are spread. */

@@ -10,7 +10,7 @@
 
 #include "base/arena.h"
 #include "measure/run_result.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "spec/run_spec.h"
 
 struct trial {

@@ -4,7 +4,7 @@
 
 #include "kernel/kernel.h"
 #include "measure/run_result.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 /* trust_check: out->residual and condition = the worst over the ranks. A residual that is no number or leaves fewer
  * than about four digits (one in single precision; both less one and a half in the paper's formulation), or a

@@ -7,8 +7,9 @@
 
 #include "base/progress.h"
 #include "base/text.h"
-#include "mech/lump.h"
-#include "mech/vector_model.h"
+#include "dynamics/system.h"
+#include "model/lump.h"
+#include "model/vector_model.h"
 #include "run/verify_rows.h"
 
 double verify_error(const double *x, const double *ref, int n)
@@ -172,8 +173,10 @@ bool verify_file(const char *path, const struct verify_options *o, struct arena 
     struct arena *own = arena_create();
     struct vector_case c;
     struct verify_case v = {.vector = &c, .options = o, .report = r, .arena = own};
-    bool good = vector_read(path, &c, own, e) && (v.model = vector_model(&c, own, e)) != NULL;
+    struct model *model = vector_read(path, &c, own, e) ? vector_model(&c, own, e) : NULL;
+    bool good = (v.model = model) != NULL;
     if (good) {
+        system_prepare(model);
         v.state = vector_state(&c, v.model, own);
         report_begin(r, &c, a);
         good = lump(&v, e);

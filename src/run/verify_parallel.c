@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "dynamics/planar.h"
 #include "kernel/kernel.h"
-#include "mech/planar.h"
-#include "run/verify_rows.h"
 #include "run/launch.h"
 #include "run/omission.h"
+#include "run/verify_rows.h"
 
 /* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
 struct variant {

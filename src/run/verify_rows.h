@@ -2,9 +2,9 @@
 #ifndef RUN_VERIFY_ROWS_H
 #define RUN_VERIFY_ROWS_H
 
-#include "mech/dynamics_table.h"
-#include "mech/model.h"
-#include "mech/vector.h"
+#include "dynamics/dynamics_table.h"
+#include "model/model.h"
+#include "model/vector.h"
 #include "run/verify.h"
 
 struct verify_case {

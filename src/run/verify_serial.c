@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "mech/dynamics.h"
-#include "mech/urdf_model.h"
+#include "dynamics/dynamics.h"
+#include "model/urdf_model.h"
 #include "run/verify_rows.h"
 
 static const struct dynamics_type *type_of(const struct verify_case *v)

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "mech/trajectory.h"
+#include "dynamics/trajectory.h"
 #include "run/verify_rows.h"
 
 /* A stepper with the error per step that it is given, the error at the end that it then holds for tame motions, and how

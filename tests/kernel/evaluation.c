@@ -10,8 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dynamics/dynamics.h"
+#include "dynamics/system.h"
 #include "evaluation.h"
-#include "mech/dynamics.h"
 
 struct run_spec evaluation_spec(const char *name, int n, int P)
 {

@@ -5,7 +5,7 @@
 #include "../support/many_ranks.h"
 #include "base/arena.h"
 #include "kernel/kernel.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 struct evaluation {
     struct many_ranks_result counts;

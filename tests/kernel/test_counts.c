@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "dynamics/system.h"
 #include "evaluation.h"
 #include "linalg/block_row.h"
 

@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "dynamics/dynamics_table.h"
+#include "dynamics/system.h"
 #include "evaluation.h"
-#include "mech/dynamics_table.h"
 
 /* Of the accelerations, against articulated bodies in quad precision. */
 static double error_of(const struct run_spec *spec)

@@ -8,10 +8,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "dynamics/dynamics_table.h"
+#include "dynamics/system.h"
+#include "dynamics/trajectory.h"
 #include "evaluation.h"
 #include "kernel/motion.h"
-#include "mech/dynamics_table.h"
-#include "mech/trajectory.h"
 
 /* distance: largest difference of the end state from a tight reference. */
 static double distance(const struct run_spec *spec)

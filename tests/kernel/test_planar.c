@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "../support/planar_models.h"
+#include "dynamics/system.h"
 #include "evaluation.h"
 
 /* The largest errors of a test, printed with it. */

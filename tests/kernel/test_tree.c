@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <stdio.h>
 
+#include "dynamics/system.h"
 #include "evaluation.h"
 #include "kernel/tree_plan.h"
 

@@ -13,7 +13,7 @@
 #include "../support/scratch.h"
 #include "base/arena.h"
 #include "base/text.h"
-#include "mech/document.h"
+#include "io/document.h"
 #include "run/netcheck.h"
 #include "run/netcheck_case.h"
 

@@ -6,9 +6,9 @@
 
 #include "../support/many_ranks.h"
 #include "base/random.h"
+#include "dynamics/dynamics.h"
 #include "kernel/blocks.h"
 #include "linalg/block_tridiag.h"
-#include "mech/dynamics.h"
 
 enum { ITERATIONS = 120 };
 

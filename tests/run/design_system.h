@@ -4,7 +4,7 @@
 #define TESTS_RUN_DESIGN_SYSTEM_H
 
 #include "base/arena.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "spec/kernel_spec.h"
 
 struct design_system {

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/arena.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "run/dense_tally.h"
 #include "spec/field.h"
 

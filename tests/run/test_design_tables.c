@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "design_system.h"
-#include "mech/dynamics.h"
+#include "dynamics/dynamics.h"
 #include "run/stability.h"
 #include "run/stability_scene.h"
 

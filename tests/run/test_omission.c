@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "dynamics/system.h"
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/run.h"

@@ -9,9 +9,10 @@
 
 #include <cmocka.h>
 
+#include "dynamics/dynamics_table.h"
+#include "dynamics/system.h"
 #include "kernel/kernel.h"
-#include "mech/dynamics_table.h"
-#include "mech/model.h"
+#include "model/model.h"
 #include "plan/plan.h"
 #include "run/references.h"
 #include "run/run.h"

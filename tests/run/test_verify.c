@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "base/text.h"
-#include "mech/document.h"
+#include "io/document.h"
 #include "run/verify.h"
 
 #define DATA(file) MIMDSIM_SRCDIR "/tests/data/vectors/" file

@@ -3,7 +3,7 @@
 #define TESTS_SUPPORT_PLANAR_MODELS_H
 
 #include "base/arena.h"
-#include "mech/model.h"
+#include "model/model.h"
 
 struct planar_options {
     int n;

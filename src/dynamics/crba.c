@@ -1,0 +1,167 @@
+/* crba.c - composite rigid bodies: the mass matrix, and forward dynamics through it, physics 2.3. */
+#include "dynamics/dynamics.h"
+#include "dynamics/revolute.h"
+#include "dynamics/work_count.h"
+
+/* Composite inertias (nbody), tip to base. */
+static void composites(const struct dynamics *d, struct inertia *c)
+{
+    for (int i = 0; i < d->nbody; i++) c[i] = d->body[i].inertia;
+    for (int i = d->nbody - 1; i >= 0; i--) {
+        struct inertia moved;
+        if (d->body[i].parent < 0) continue;
+        inertia_move(&moved, &d->pose[i].x, &c[i]);
+        inertia_add(&c[d->body[i].parent], &moved);
+    }
+}
+
+/* Rows of body i: its own block, then the walk to the root with f = X f for each of its columns. */
+static void fill_rows(const struct dynamics *d, int i, const struct inertia *composite, real *mass)
+{
+    const struct body *b = &d->body[i];
+    real f[36], block[6], h[6];
+    for (int k = 0; k < b->d; k++) {
+        subspace_column(&d->pose[i].s, k, h);
+        inertia_mul(f + 6 * k, composite, h);
+        subspace_h_transposed(&d->pose[i].s, f + 6 * k, block);
+        for (int r = 0; r < b->d; r++) mass[(size_t)(b->u_at + k) * d->nu + b->u_at + r] = block[r];
+    }
+    /* one triangle decides */
+    for (int k = 0; k < b->d; k++)
+        for (int r = 0; r < k; r++)
+            mass[(size_t)(b->u_at + r) * d->nu + b->u_at + k] = mass[(size_t)(b->u_at + k) * d->nu + b->u_at + r];
+    for (int j = i; d->body[j].parent >= 0;) {
+        const struct body *p = &d->body[d->body[j].parent];
+        for (int k = 0; k < b->d; k++) {
+            xform_force(f + 6 * k, &d->pose[j].x, f + 6 * k);
+            subspace_h_transposed(&d->pose[d->body[j].parent].s, f + 6 * k, block);
+            for (int r = 0; r < p->d; r++) {
+                mass[(size_t)(b->u_at + k) * d->nu + p->u_at + r] = block[r];
+                mass[(size_t)(p->u_at + r) * d->nu + b->u_at + k] = block[r];
+            }
+        }
+        j = d->body[j].parent;
+    }
+}
+
+void crba(struct dynamics *d, const real *q, real *mass, struct work *w)
+{
+    work_count_crba(d, w);
+    if (d->revolute) {
+        crba_revolute(d, q, mass);
+        return;
+    }
+    struct arena_mark mark = arena_mark(d->arena);
+    struct inertia *c = TAKE(d->arena, d->nbody, struct inertia);
+    dynamics_place(d, q);
+    composites(d, c);
+    for (size_t k = 0; k < (size_t)d->nu * (size_t)d->nu; k++) mass[k] = 0;
+    for (int i = 0; i < d->nbody; i++) fill_rows(d, i, &c[i], mass);
+    arena_release(d->arena, mark);
+}
+
+/* Dense Cholesky, lower triangle in place; false when a pivot is not positive. */
+static bool cholesky(int n, real *m)
+{
+    for (int i = 0; i < n; i++) {
+        real *row = m + (size_t)i * n;
+        for (int j = 0; j <= i; j++) {
+            const real *other = m + (size_t)j * n;
+            real s = row[j];
+            for (int k = 0; k < j; k++) s -= row[k] * other[k];
+            if (j < i)
+                row[j] = s / other[j];
+            else if (!(s > 0))
+                return false;
+            else
+                row[i] = real_sqrt(s);
+        }
+    }
+    return true;
+}
+
+static void cholesky_solve(int n, const real *m, real *x)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < i; k++) x[i] -= m[(size_t)i * n + k] * x[k];
+        x[i] /= m[(size_t)i * n + i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        x[i] /= m[(size_t)i * n + i];
+        for (int k = 0; k < i; k++) x[k] -= m[(size_t)i * n + k] * x[i];
+    }
+}
+
+/* The velocity before u-index k on the path to the root (-1: none), for L^T D L along the tree (Featherstone 8.3). */
+static void path_of(const struct dynamics *d, int *up)
+{
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *b = &d->body[i];
+        int p = b->parent;
+        while (p >= 0 && d->body[p].d == 0) p = d->body[p].parent;
+        int before = p >= 0 ? d->body[p].u_at + d->body[p].d - 1 : -1;
+        for (int k = 0; k < b->d; k++) up[b->u_at + k] = k == 0 ? before : b->u_at + k - 1;
+    }
+}
+
+/* M = L^T D L in place, nonzeros on paths to the root alone; counts operations. */
+static bool sparse_factor(int n, const int *up, real *m, struct work *w)
+{
+    for (int k = n - 1; k >= 0; k--) {
+        real pivot = m[(size_t)k * n + k];
+        if (!(pivot > 0)) return false;
+        for (int i = up[k]; i >= 0; i = up[i]) {
+            real a = m[(size_t)k * n + i] / pivot;
+            w->div++;
+            for (int j = i; j >= 0; j = up[j]) {
+                m[(size_t)i * n + j] -= a * m[(size_t)k * n + j];
+                w->flop += 2;
+            }
+            m[(size_t)k * n + i] = a;
+        }
+    }
+    return true;
+}
+
+static void sparse_solve(int n, const int *up, const real *m, real *x, struct work *w)
+{
+    for (int i = n - 1; i >= 0; i--)
+        for (int j = up[i]; j >= 0; j = up[j]) x[j] -= m[(size_t)i * n + j] * x[i], w->flop += 2;
+    for (int i = 0; i < n; i++) {
+        x[i] /= m[(size_t)i * n + i];
+        w->div++;
+        for (int j = up[i]; j >= 0; j = up[j]) x[i] -= m[(size_t)i * n + j] * x[j], w->flop += 2;
+    }
+}
+
+bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *tau, bool sparse, real *ud,
+                  struct work *w)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    struct work own = {0};
+    int n = d->nu;
+    real *mass = TAKE(d->arena, (size_t)n * (size_t)n, real), *x = TAKE(d->arena, n, real);
+    bool good;
+    rnea(d, q, u, d->zero, x, w);
+    crba(d, q, mass, w);
+    for (int i = 0; i < n; i++) x[i] = tau[i] - x[i];
+    if (sparse) {
+        int *up = TAKE(d->arena, n, int);
+        path_of(d, up);
+        good = sparse_factor(n, up, mass, &own);
+        if (good) sparse_solve(n, up, mass, x, &own);
+    } else {
+        good = cholesky(n, mass);
+        if (good) cholesky_solve(n, mass, x);
+        uint64_t m = (uint64_t)n;
+        own.flop = m * (m + 1) * (2 * m + 1) / 6 - m * (m + 1) / 2 + 2 * m * (m - 1);
+        own.div = m * (m - 1) / 2 + 2 * m;
+        own.sqrt = m;
+    }
+    if (good)
+        for (int i = 0; i < n; i++) ud[i] = x[i];
+    arena_release(d->arena, mark);
+    if (w) work_add(w, &own);
+    if (w) w->flop += (uint64_t)n;
+    return good;
+}

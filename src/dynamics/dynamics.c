@@ -1,0 +1,76 @@
+/* dynamics.c - a model's work arrays; positions and velocities of all bodies; springs. */
+#include "dynamics/dynamics.h"
+
+#include "dynamics/revolute.h"
+
+/* Whether every joint is revolute, and that may be used. */
+static bool all_revolute(const struct model *m)
+{
+    if (m->general_joints) return false;
+    for (int i = 0; i < m->nbody; i++)
+        if (m->body[i].joint != JOINT_REVOLUTE) return false;
+    return true;
+}
+
+struct dynamics *dynamics_take(const struct model *m, struct arena *a)
+{
+    struct dynamics *d = TAKE(a, 1, struct dynamics);
+    d->model = m;
+    d->nbody = m->nbody;
+    d->nu = m->nu;
+    d->body = bodies_make(m, a);
+    d->revolute = all_revolute(m) ? revolutes_take(m, d->body, a) : NULL;
+    d->pose = TAKE(a, m->nbody, struct body_pose);
+    d->v = TAKE(a, 6 * m->nbody, real);
+    d->a = TAKE(a, 6 * m->nbody, real);
+    d->f = TAKE(a, 6 * m->nbody, real);
+    d->bias = TAKE(a, 6 * m->nbody, real);
+    d->zero = TAKE(a, m->nu, real);
+    if (d->revolute) d->scratch = TAKE(a, DYNAMICS_SCRATCH * (m->nbody + 2), real);
+    d->arena = a;
+    for (int i = 0; i < 3; i++) d->base[3 + i] = -(real)m->gravity[i];
+    return d;
+}
+
+void dynamics_load(struct dynamics *d, const struct state *s)
+{
+    for (int i = 0; i < 6; i++) {
+        d->base[i] = (real)s->base_acceleration[i];
+        if (i >= 3) d->base[i] -= (real)d->model->gravity[i - 3];
+    }
+    if (!s->fext) {
+        d->load = NULL;
+        return;
+    }
+    if (!d->load) d->load = TAKE(d->arena, 6 * d->nbody, real);
+    for (int i = 0; i < d->nbody; i++) body_load(&d->body[i], s->fext + 6 * i, d->load + 6 * i);
+}
+
+void dynamics_place(struct dynamics *d, const real *q)
+{
+    for (int i = 0; i < d->nbody; i++) body_place(&d->body[i], q + d->body[i].q_at, &d->pose[i]);
+}
+
+void dynamics_velocities(struct dynamics *d, const real *u)
+{
+    for (int i = 0; i < d->nbody && !d->at_rest; i++) {
+        const struct body *b = &d->body[i];
+        real h[6], *v = d->v + 6 * i;
+        body_rate(&d->pose[i], u + b->u_at, h);
+        screw_copy(v, h);
+        if (b->parent >= 0) {
+            real carried[6];
+            xform_motion(carried, &d->pose[i].x, d->v + 6 * b->parent);
+            screw_add(v, carried);
+        }
+        body_bias(b, &d->pose[i], v, h, u + b->u_at, d->bias + 6 * i);
+    }
+}
+
+void springs_add(struct dynamics *d, const real *q, const real *u, real *tau)
+{
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *b = &d->body[i];
+        body_spring(b, q + b->q_at, u + b->u_at, tau + b->u_at);
+    }
+}

@@ -1,0 +1,150 @@
+/* dynamics.h - serial rigid-body dynamics of trees and closed chains, in the build's precision.
+ *
+ * A `struct dynamics` holds one model's constants and work arrays; functions take coordinates in model order (model.h).
+ * Everything is body-local: no function's accuracy depends on where the base is or how fast it moves. Work is
+ * counted by formula from the number of bodies of each joint type. Sources: Featherstone, Rigid Body Dynamics
+ * Algorithms, chapters 5-7; the constraint force algorithm after Fijany, Sharf and D'Eleuterio (1995). */
+#ifndef DYNAMICS_DYNAMICS_H
+#define DYNAMICS_DYNAMICS_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/work.h"
+#include "dynamics/body.h"
+#include "linalg/real.h"
+#include "model/model.h"
+
+enum { DYNAMICS_SCRATCH = 64 };
+
+struct revolute;              /* compact constants of a body on a revolute joint: revolute.h */
+
+struct dynamics {
+    const struct model *model;
+    int nbody, nu;
+    const struct body *body;  /* (nbody) constants */
+    struct revolute *revolute;/* (nbody) the same, compact, when all joints are revolute; else NULL */
+    struct body_pose *pose;   /* (nbody) of the last dynamics_place */
+    real *v, *a, *f;          /* (nbody x 6) velocity, acceleration, joint force on the body by its parent */
+    real *bias;               /* (nbody x 6) b of physics (1.9) */
+    real *load;               /* (nbody x 6) external wrenches of the last dynamics_load, internal axes; or NULL */
+    bool at_rest;             /* velocities are zero: v and bias are never written, their terms left out */
+    real base[6];             /* acceleration of the base minus gravity, [angular; linear] */
+    real *zero;               /* (nu) zeros */
+    real *scratch;            /* (nbody x DYNAMICS_SCRATCH) of the fast paths */
+    struct arena *arena;      /* borrowed: scratch */
+};
+
+/* dynamics_take: constants and work arrays for m, in `a`, which also gives scratch. */
+#define dynamics_take REAL_NAME(dynamics_take)
+struct dynamics *dynamics_take(const struct model *m, struct arena *a);
+
+/* dynamics_load: set base acceleration and external wrenches from a state; copied. */
+#define dynamics_load REAL_NAME(dynamics_load)
+void dynamics_load(struct dynamics *d, const struct state *s);
+
+/* dynamics_place: transforms and subspaces of all bodies at q (nq), in d->pose. */
+#define dynamics_place REAL_NAME(dynamics_place)
+void dynamics_place(struct dynamics *d, const real *q);
+
+/* dynamics_velocities: d->v (linear part too) and d->bias of all bodies at (q, u); after dynamics_place. */
+#define dynamics_velocities REAL_NAME(dynamics_velocities)
+void dynamics_velocities(struct dynamics *d, const real *u);
+
+/* rnea: joint forces tau (nu) that give accelerations ud (nu) at (q, u): Newton-Euler, physics (2.1)-(2.5).
+ * Springs are not considered: tau is what actuators and springs supply together.
+ *
+ *   rnea_full also leaves velocities (angular only), accelerations and joint forces in d->v, a, f, internal axes. */
+#define rnea REAL_NAME(rnea)
+void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
+#define rnea_full REAL_NAME(rnea_full)
+void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
+
+/* aba: accelerations ud (nu) from joint forces tau (nu), articulated bodies, physics (2.6), (2.7); massless bodies
+ * allowed. Returns false when an articulated inertia is singular along its joint. */
+#define aba REAL_NAME(aba)
+bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
+
+/* aba_full: as aba, by the general code whatever the joints; leaves accelerations in d->a. aba_response: the same at
+ * d's present poses without velocity terms and base acceleration: M^-1 (tau + loads). */
+#define aba_full REAL_NAME(aba_full)
+bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
+#define aba_response REAL_NAME(aba_response)
+bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w);
+
+/* crba: mass matrix (nu x nu, row-major, both triangles) at q. */
+#define crba REAL_NAME(crba)
+void crba(struct dynamics *d, const real *q, real *mass, struct work *w);
+
+/* crba_forward: ud from tau through the mass matrix. sparse: use the tree's zero pattern (L^T L along paths to the
+ * root); otherwise dense Cholesky. Returns false when a pivot is not positive. */
+#define crba_forward REAL_NAME(crba_forward)
+bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *tau, bool sparse, real *ud,
+                  struct work *w);
+
+/* The constraint force algorithm's variants. */
+struct cfa_options {
+    bool direct;              /* physics 4.3; false: the paper's 4.2 */
+    int inner, outer;         /* refinements, physics 8.6; at most this many outer ones, fewer when they end to help */
+};
+
+struct cfa_report {
+    double residual;          /* largest |W^T Z| of the answer over the largest acceleration */
+    double correction;        /* last outer correction over the answer, 0 without one */
+    int rank, nrow;           /* of the loops' constraint matrix; nrow - rank are redundant */
+    int inner_done, outer_done; /* corrections applied to the first solution; outer corrections applied */
+    bool fell_back;           /* forward_robust: articulated bodies had to solve it */
+};
+
+/* cfa: ud from tau by block elimination from leaves to root of the constraint forces' system (block Thomas for a
+ * chain), trees, floating bases and loops included (bordered system, least norm). lambda (nrow) gets the loop forces
+ * on body b [rows as the loop's], NULL if not wanted.
+ *
+ *   Returns false when a pivot is not positive definite (e: massless bodies, breakdown) */
+#define cfa REAL_NAME(cfa)
+bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, const struct cfa_options *options, real *ud,
+         real *lambda, struct cfa_report *report, struct work *w);
+
+/* forward_robust: the most accurate way: cfa direct with refinements; where light bodies between heavy ones, or bodies
+ * without Phi, make that break down or not converge, articulated bodies with the same outer refinement. */
+#define forward_robust REAL_NAME(forward_robust)
+bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
+                    struct cfa_report *report, struct work *w);
+
+/* closed_forward: ud of a closed system through the articulated-body algorithm: M^-1 J^T column by column; the second,
+ * independent way to loops. lambda (nrow) may be NULL. Returns false as aba. */
+#define closed_forward REAL_NAME(closed_forward)
+bool closed_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
+                    struct cfa_report *report, struct work *w);
+
+/* springs_add: tau (nu) += spring and damper forces at (q, u). */
+#define springs_add REAL_NAME(springs_add)
+void springs_add(struct dynamics *d, const real *q, const real *u, real *tau);
+
+/* What can be measured of a motion; world = base frame axes. */
+struct motion_totals {
+    real kinetic, potential;  /* energy; potential = - sum m g . c + springs */
+    real linear[3], angular[3]; /* momentum, about the base's origin */
+    real mass, com[3];
+};
+
+/* motion_totals_of: energy, momentum and centre of mass at (q, u). */
+#define motion_totals_of REAL_NAME(motion_totals_of)
+void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t);
+
+/* Where a body is and how it moves, user's body axes, world components. */
+struct body_motion {
+    real r[9], p[3];          /* body -> world; origin */
+    real v[3], w[3];          /* of the origin; angular */
+    real a[3], alpha[3];      /* classical acceleration of the origin without gravity; angular */
+};
+
+/* forward_kinematics: of all bodies (nbody) at (q, u, ud). */
+#define forward_kinematics REAL_NAME(forward_kinematics)
+void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out);
+
+/* loop_drift: the loops' violation: g (nrow) position, rho (nrow) velocity, at (q, u). Either may be NULL. */
+#define loop_drift REAL_NAME(loop_drift)
+void loop_drift(struct dynamics *d, const real *q, const real *u, real *g, real *rho);
+
+#endif

@@ -1,0 +1,68 @@
+/* dynamics_table.h - the serial algorithms behind one table per precision, double in and out.
+ *
+ * This is the door for whoever does not compute in `real`: run (references of a simulated answer), app (verify),
+ * report (accuracy). Answers are rounded to double at the very end. */
+#ifndef DYNAMICS_DYNAMICS_TABLE_H
+#define DYNAMICS_DYNAMICS_TABLE_H
+
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "base/work.h"
+#include "model/model.h"
+#include "spec/kernel_spec.h"
+
+/* The serial ways from joint forces to accelerations. */
+enum forward_method {
+    FORWARD_ABA, FORWARD_CRBA, FORWARD_CRBA_SPARSE, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT,
+    FORWARD_CFA_ROBUST,          /* direct, inner and outer refinement; articulated bodies where that fails */
+    FORWARD_METHODS
+};
+
+/* Loops are closed by every method: cfa-* by the bordered system, the others by columns of M^-1 J^T. */
+struct forward_report {
+    double residual;             /* see cfa_report */
+    int rank, nrow;
+    int refined;                 /* cfa-robust: corrections applied, inner and outer */
+    bool fell_back;              /* cfa-robust: articulated bodies had to solve it */
+};
+
+struct dynamics_totals {
+    double kinetic, potential, linear[3], angular[3], mass, com[3];
+};
+
+struct dynamics_type {
+    const char *name;            /* "float", "double", "quad" */
+    double epsilon;
+
+    /* inverse: tau (nu) for s->qdd, loops cut open: what actuators and springs do together. */
+    void (*inverse)(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w);
+
+    /* forward: qdd (nu) for s->tau plus springs; lambda (nrow) and report may be NULL. False: the method broke down
+     * (singular pivot) or does not apply (constraint forces with massless bodies). */
+    bool (*forward)(const struct model *m, const struct state *s, enum forward_method method, struct arena *scratch,
+                    double *qdd, double *lambda, struct forward_report *report, struct work *w);
+
+    /* mass_matrix: (nu x nu) row-major at s->q. */
+    void (*mass_matrix)(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
+                        struct work *w);
+
+    /* totals: energy (springs included), momentum, centre of mass. */
+    void (*totals)(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t);
+
+    /* advance: move s->q, s->qd by `steps` fixed steps of h; false when the dynamics broke down. */
+    bool (*advance)(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
+                    struct arena *scratch, struct work *w);
+
+    /* drift: largest violation of the loops' position and velocity constraints. */
+    void (*drift)(const struct model *m, const struct state *s, struct arena *scratch, double *position,
+                  double *velocity);
+};
+
+/* dynamics_type_of: the table of a precision. */
+const struct dynamics_type *dynamics_type_of(enum precision precision);
+
+/* forward_method_name: "aba", "crba", "crba-sparse", "cfa-paper", "cfa-direct", "cfa-robust". */
+const char *forward_method_name(enum forward_method method);
+
+#endif

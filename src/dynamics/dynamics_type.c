@@ -1,0 +1,146 @@
+/* dynamics_type.c - this precision's table of serial algorithms, double in and out. */
+#include "dynamics/dynamics.h"
+#include "dynamics/dynamics_table.h"
+#include "dynamics/integrate.h"
+
+/* A model's numbers in this precision. */
+struct problem {
+    struct dynamics *d;
+    real *q, *u, *ud, *tau;
+};
+
+static real *to_real(struct arena *a, const double *x, int n)
+{
+    real *y = TAKE(a, n, real);
+    for (int i = 0; i < n; i++) y[i] = (real)x[i];
+    return y;
+}
+
+static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a)
+{
+    struct problem p = {.d = dynamics_take(m, a)};
+    dynamics_load(p.d, s);
+    p.q = to_real(a, s->q, m->nq);
+    p.u = to_real(a, s->qd, m->nu);
+    p.ud = to_real(a, s->qdd, m->nu);
+    p.tau = to_real(a, s->tau, m->nu);
+    return p;
+}
+
+static void to_double(double *y, const real *x, int n)
+{
+    for (int i = 0; i < n; i++) y[i] = (double)x[i];
+}
+
+static void inverse(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    real *out = TAKE(scratch, m->nu, real);
+    p.d->at_rest = s->at_rest;
+    rnea(p.d, p.q, p.u, p.ud, out, w);
+    to_double(tau, out, m->nu);
+    arena_release(scratch, mark);
+}
+
+static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda, struct cfa_report *report,
+                  struct work *w)
+{
+    struct dynamics *d = p->d;
+    if (method == FORWARD_CFA_ROBUST) return forward_robust(d, p->q, p->u, p->tau, ud, lambda, report, w);
+    if (method == FORWARD_CFA_PAPER || method == FORWARD_CFA_DIRECT) {
+        const struct cfa_options options = {.direct = method == FORWARD_CFA_DIRECT};
+        return cfa(d, p->q, p->u, p->tau, &options, ud, lambda, report, w);
+    }
+    if (d->model->nloop > 0) return closed_forward(d, p->q, p->u, p->tau, ud, lambda, report, w);
+    if (method == FORWARD_ABA) return aba(d, p->q, p->u, p->tau, ud, w);
+    return crba_forward(d, p->q, p->u, p->tau, method == FORWARD_CRBA_SPARSE, ud, w);
+}
+
+static bool forward(const struct model *m, const struct state *s, enum forward_method method, struct arena *scratch,
+                    double *qdd, double *lambda, struct forward_report *report, struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    struct cfa_report full = {0};
+    real *ud = TAKE(scratch, m->nu, real), *force = TAKE(scratch, m->nrow, real);
+    springs_add(p.d, p.q, p.u, p.tau);
+    p.d->at_rest = s->at_rest;
+    bool good = solve(&p, method, ud, force, &full, w);
+    if (good) to_double(qdd, ud, m->nu);
+    if (good && lambda) to_double(lambda, force, m->nrow);
+    const int refined = full.inner_done + full.outer_done;
+    if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, refined, full.fell_back};
+    arena_release(scratch, mark);
+    return good;
+}
+
+static void mass_matrix(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
+                        struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    real *out = TAKE(scratch, (size_t)m->nu * (size_t)m->nu, real);
+    crba(p.d, p.q, out, w);
+    to_double(mass, out, m->nu * m->nu);
+    arena_release(scratch, mark);
+}
+
+static void totals(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    struct motion_totals x;
+    motion_totals_of(p.d, p.q, p.u, &x);
+    t->kinetic = (double)x.kinetic;
+    t->potential = (double)x.potential;
+    t->mass = (double)x.mass;
+    to_double(t->linear, x.linear, 3);
+    to_double(t->angular, x.angular, 3);
+    to_double(t->com, x.com, 3);
+    arena_release(scratch, mark);
+}
+
+static bool advance(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
+                    struct arena *scratch, struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    struct integrator it = integrator_make(p.d, rule, (real)h, p.q, p.u, p.tau);
+    bool good = true;
+    for (int k = 0; k < steps && good; k++) good = integrator_step(&it);
+    to_double(s->q, p.q, m->nq);
+    to_double(s->qd, p.u, m->nu);
+    if (w) work_add(w, &it.work);
+    arena_release(scratch, mark);
+    return good;
+}
+
+static void drift(const struct model *m, const struct state *s, struct arena *scratch, double *position,
+                  double *velocity)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    real *g = TAKE(scratch, m->nrow, real), *rho = TAKE(scratch, m->nrow, real);
+    loop_drift(p.d, p.q, p.u, g, rho);
+    *position = *velocity = 0;
+    for (int k = 0; k < m->nrow; k++) {
+        double a = (double)real_fabs(g[k]), b = (double)real_fabs(rho[k]);
+        *position = a > *position ? a : *position;
+        *velocity = b > *velocity ? b : *velocity;
+    }
+    arena_release(scratch, mark);
+}
+
+#define dynamics_type_here REAL_NAME(dynamics_type)
+extern const struct dynamics_type dynamics_type_here;
+const struct dynamics_type dynamics_type_here = {
+    .name = REAL_BITS == 32 ? "float" : REAL_BITS == 64 ? "double" : "quad",
+    .epsilon = (double)REAL_EPSILON,
+    .inverse = inverse,
+    .forward = forward,
+    .mass_matrix = mass_matrix,
+    .totals = totals,
+    .advance = advance,
+    .drift = drift,
+};

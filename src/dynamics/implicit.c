@@ -1,0 +1,102 @@
+/* implicit.c - accelerations under linearly implicit joint springs, (M + s) u' = tau_0 - xi, physics (9.0).
+ *
+ * Articulated bodies with the resistance s in the pivot of each joint. What a joint passes on keeps a part along H,
+ * unlike in aba.c: with Y = (H^T I H + s)^-1 (I H)^T, I^a = I - I H Y. */
+#include "dynamics/dynamics.h"
+#include "dynamics/integrate.h"
+#include "dynamics/work_count.h"
+#include "linalg/dense.h"
+
+struct resisting {
+    struct sym6 inertia;
+    real p[6];   /* bias force, body axes */
+    real y[36];  /* (d x 6) */
+    real x[6];   /* (d) (H^T I H + s)^-1 (tau - H^T p) */
+};
+
+/* inertia -= u y^T for a product that is symmetric once all columns are subtracted. */
+static void lower(struct sym6 *inertia, const real *u, const real *y)
+{
+    static const signed char row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (int e = 0; e < 6; e++) {
+        inertia->a[e] -= u[row[e]] * y[column[e]];
+        inertia->c[e] -= u[3 + row[e]] * y[3 + column[e]];
+    }
+    for (int e = 0; e < 9; e++) inertia->b[e] -= u[e / 3] * y[3 + e % 3];
+}
+
+/* Eliminate the joint of b; ia, pa: what its parent gets, body axes. */
+static bool eliminate(const struct subspace *s, const real *bias, const real *tau, const real *resistance,
+                      struct resisting *b, struct sym6 *ia, real *pa)
+{
+    real h[36], u[36], g[21], t[6];
+    struct work uncounted = {0};
+    *ia = b->inertia;
+    screw_copy(pa, b->p);
+    for (int k = 0; k < s->d; k++) {
+        subspace_column(s, k, h + 6 * k);
+        sym6_mul(u + 6 * k, &b->inertia, h + 6 * k);
+        for (int j = 0; j <= k; j++) g[packed_index(k, j)] = screw_dot(h + 6 * j, u + 6 * k);
+        g[packed_index(k, k)] += resistance[k];
+        b->x[k] = tau[k] - screw_dot(h + 6 * k, b->p);
+        screw_copy(b->y + 6 * k, u + 6 * k);
+    }
+    if (s->d > 0 && !dense_factor(s->d, g, g, &uncounted)) return false;
+    if (s->d > 0) dense_solve(s->d, 1, g, b->x, &uncounted);
+    if (s->d > 0) dense_solve(s->d, 6, g, b->y, &uncounted);
+    for (int k = 0; k < s->d; k++) {
+        lower(ia, u + 6 * k, b->y + 6 * k);
+        for (int i = 0; i < 6; i++) pa[i] += u[6 * k + i] * b->x[k];
+    }
+    sym6_mul(t, ia, bias);
+    screw_add(pa, t);
+    return true;
+}
+
+static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud)
+{
+    const struct subspace *s = &d->pose[i].s;
+    const int parent = d->body[i].parent;
+    real *a = d->a + 6 * i;
+    xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : d->base);
+    screw_add(a, d->bias + 6 * i);
+    for (int k = 0; k < s->d; k++) ud[k] = b->x[k] - screw_dot(b->y + 6 * k, a);
+    subspace_h(s, ud, a);
+}
+
+bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
+                      struct work *w)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    struct resisting *b = TAKE(d->arena, d->nbody, struct resisting);
+    real *given = TAKE(d->arena, d->nu, real), *resistance = TAKE(d->arena, d->nu + 6, real);
+    bool good = true;
+    for (int k = 0; k < d->nu; k++) given[k] = tau[k];
+    springs_add(d, q, u, given);
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    work_count_aba(d, w);
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *body = &d->body[i];
+        sym6_from_inertia(&b[i].inertia, &body->inertia);
+        body_gyro(body, d->v + 6 * i, b[i].p);
+        if (d->load) screw_sub(b[i].p, d->load + 6 * i);
+        if (!body->has_spring) continue;
+        given[body->u_at] -= h * body->stiffness * u[body->u_at];
+        resistance[body->u_at] = h * (body->damping + h * body->stiffness);
+    }
+    for (int i = d->nbody - 1; i >= 0 && good; i--) {
+        const struct body *body = &d->body[i];
+        struct sym6 ia, moved;
+        real pa[6];
+        good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at, resistance + body->u_at, &b[i], &ia, pa);
+        if (!good || body->parent < 0) continue;
+        sym6_move(&moved, &d->pose[i].x, &ia);
+        sym6_add(&b[body->parent].inertia, &moved);
+        xform_force(pa, &d->pose[i].x, pa);
+        screw_add(b[body->parent].p, pa);
+    }
+    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, &b[i], ud + d->body[i].u_at);
+    arena_release(d->arena, mark);
+    return good;
+}

@@ -1,0 +1,136 @@
+/* integrate.c - fixed time steps. */
+#include "dynamics/integrate.h"
+
+#include "dynamics/loops.h"
+
+bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    real *sum = TAKE(d->arena, d->nu, real);
+    for (int k = 0; k < d->nu; k++) sum[k] = tau[k];
+    springs_add(d, q, u, sum);
+    bool good = d->model->nloop > 0 ? closed_forward(d, q, u, sum, ud, NULL, NULL, w) : aba(d, q, u, sum, ud, w);
+    arena_release(d->arena, mark);
+    return good;
+}
+
+struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real h, real *q, real *u, const real *tau)
+{
+    return (struct integrator){.d = d, .rule = rule, .h = h, .q = q, .u = u, .tau = tau,
+                               .a = TAKE(d->arena, d->nu, real)};
+}
+
+static bool accelerate(struct integrator *it, const real *q, const real *u, real *a)
+{
+    it->evaluations++;
+    return dynamics_forward(it->d, q, u, it->tau, a, &it->work);
+}
+
+/* q += h N u for every joint, on the group. */
+static void drift(struct integrator *it)
+{
+    for (int i = 0; i < it->d->nbody; i++) {
+        const struct body *b = &it->d->body[i];
+        body_step(b, it->q + b->q_at, it->u + b->u_at, it->h);
+    }
+}
+
+/* y = x + h k. */
+static void combine(int n, const real *x, real h, const real *k, real *y)
+{
+    for (int i = 0; i < n; i++) y[i] = x[i] + h * k[i];
+}
+
+static bool step_semi_implicit(struct integrator *it)
+{
+    if (!accelerate(it, it->q, it->u, it->a)) return false;
+    combine(it->d->nu, it->u, it->h, it->a, it->u);
+    drift(it);
+    return true;
+}
+
+static bool step_linearly_implicit(struct integrator *it)
+{
+    it->evaluations++;
+    if (it->d->model->nloop > 0 || !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
+        return false;
+    combine(it->d->nu, it->u, it->h, it->a, it->u);
+    drift(it);
+    return true;
+}
+
+static bool step_kdk(struct integrator *it)
+{
+    int n = it->d->nu;
+    real half = it->h / 2;
+    if (!it->has_a && !accelerate(it, it->q, it->u, it->a)) return false;
+    struct arena_mark mark = arena_mark(it->d->arena);
+    real *predicted = TAKE(it->d->arena, n, real);
+    combine(n, it->u, half, it->a, it->u);
+    drift(it);
+    combine(n, it->u, half, it->a, predicted);
+    bool good = accelerate(it, it->q, predicted, it->a);
+    combine(n, it->u, half, it->a, it->u);
+    it->has_a = true;
+    arena_release(it->d->arena, mark);
+    return good;
+}
+
+/* Derivative of the state: qd = N(q) u, a. */
+static bool derive(struct integrator *it, const real *q, const real *u, real *qd, real *a)
+{
+    for (int i = 0; i < it->d->nbody; i++) {
+        const struct body *b = &it->d->body[i];
+        body_qdot(b, q + b->q_at, u + b->u_at, qd + b->q_at);
+    }
+    return accelerate(it, q, u, a);
+}
+
+/* Quaternions of all joints to length 1. */
+static void normalise(struct integrator *it)
+{
+    for (int i = 0; i < it->d->nbody; i++) {
+        const struct body *b = &it->d->body[i];
+        if (b->joint != JOINT_SPHERICAL && b->joint != JOINT_FLOATING && b->joint != JOINT_SLOT &&
+            b->joint != JOINT_POINT_PLANE)
+            continue;
+        real *c = it->q + b->q_at + (b->joint == JOINT_FLOATING ? 3 : 0);
+        real scale = 1 / real_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
+        for (int k = 0; k < 4; k++) c[k] *= scale;
+    }
+}
+
+static bool step_rk4(struct integrator *it)
+{
+    const struct model *m = it->d->model;
+    int nq = m->nq, nu = m->nu;
+    struct arena_mark mark = arena_mark(it->d->arena);
+    real *q = TAKE(it->d->arena, nq, real), *u = TAKE(it->d->arena, nu, real);
+    real *kq = TAKE(it->d->arena, nq, real), *ku = TAKE(it->d->arena, nu, real);
+    real *sq = TAKE(it->d->arena, nq, real), *su = TAKE(it->d->arena, nu, real);
+    static const real at[4] = {0, (real)0.5, (real)0.5, 1}, weight[4] = {1, 2, 2, 1};
+    bool good = true;
+    for (int s = 0; s < 4 && good; s++) {
+        combine(nq, it->q, at[s] * it->h, kq, q);
+        combine(nu, it->u, at[s] * it->h, ku, u);
+        good = derive(it, q, u, kq, ku);
+        combine(nq, sq, weight[s], kq, sq);
+        combine(nu, su, weight[s], ku, su);
+    }
+    combine(nq, it->q, it->h / 6, sq, it->q);
+    combine(nu, it->u, it->h / 6, su, it->u);
+    normalise(it);
+    arena_release(it->d->arena, mark);
+    return good;
+}
+
+bool integrator_step(struct integrator *it)
+{
+    switch (it->rule) {
+    case STEP_KDK: return step_kdk(it);
+    case STEP_RK4: return step_rk4(it);
+    case STEP_LINEARLY_IMPLICIT: return step_linearly_implicit(it);
+    case STEP_SEMI_IMPLICIT: break;
+    }
+    return step_semi_implicit(it);
+}

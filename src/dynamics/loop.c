@@ -1,0 +1,179 @@
+/* loop.c - loop joints: pose, constraint subspace, velocity terms, forces. */
+#include "dynamics/loop.h"
+
+#include "dynamics/body.h"
+#include "dynamics/body_constants.h"
+
+static void frame_to(const struct model *m, int body, const struct frame *f, struct xform *x)
+{
+    quad r[9], p[3];
+    frame_constants_make(m, body, f, r, p);
+    for (int k = 0; k < 9; k++) x->r[k] = (real)r[k];
+    for (int k = 0; k < 3; k++) x->p[k] = (real)p[k];
+}
+
+void loop_make(const struct model *m, int i, struct loop *l)
+{
+    const struct loop_def *def = &m->loop[i];
+    l->body_a = def->body_a;
+    l->body_b = def->body_b;
+    l->row_at = m->row_at[i];
+    l->c = m->row_at[i + 1] - m->row_at[i];
+    l->by_rows = def->nrow > 0;
+    l->joint = def->joint;
+    l->alpha = (real)def->alpha;
+    l->beta = (real)def->beta;
+    frame_to(m, def->body_a, &def->frame_a, &l->a);
+    frame_to(m, def->body_b, &def->frame_b, &l->b);
+    for (int k = 0; k < def->nrow; k++)
+        for (int j = 0; j < 6; j++) l->row[6 * k + j] = (real)def->row[k][(j + 3) % 6];
+}
+
+/* y = a^-1 o b. */
+static void between(struct xform *y, const struct xform *a, const struct xform *b)
+{
+    real p[3];
+    mat3_transposed_mul(y->r, a->r, b->r);
+    for (int k = 0; k < 3; k++) p[k] = b->p[k] - a->p[k];
+    mat3_mul_vec_transposed(y->p, a->r, p);
+}
+
+/* Rotation vector of a small rotation: vee of (R - R^T) / 2. */
+static void small_angle(const real *r, real *angle)
+{
+    const real half = (real)0.5;
+    vec3_set(angle, half * (r[7] - r[5]), half * (r[2] - r[6]), half * (r[3] - r[1]));
+}
+
+/* y = w x (w x p). */
+static void centripetal(const real *w, const real *p, real *y)
+{
+    vec3_cross(y, w, p);
+    vec3_cross(y, w, y);
+}
+
+/* Constraint columns in frame b for joints; r: frame b -> frame a. */
+static void joint_columns(const struct loop *l, const real *r, struct loop_pose *p)
+{
+    struct body free = {.joint = l->joint, .d = 6 - l->c};
+    struct subspace s;
+    if (l->joint == JOINT_SLOT || l->joint == JOINT_POINT_PLANE) {
+        for (int k = 0; k < l->c; k++)
+            for (int j = 0; j < 3; j++) p->w[6 * k + j] = 0, p->w[6 * k + 3 + j] = r[3 * (3 - l->c + k) + j];
+        return;
+    }
+    body_subspace(&free, NULL, &s);
+    for (int k = 0; k < l->c; k++) subspace_column(&s, s.d + k, p->w + 6 * k);
+}
+
+/* Common end: projections of position error (6) and relative velocity (6). */
+static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
+{
+    for (int k = 0; k < l->c; k++) {
+        p->g[k] = screw_dot(p->w + 6 * k, error);
+        p->rho[k] = screw_dot(p->w + 6 * k, relative);
+        p->stabilise[k] = 2 * l->alpha * p->rho[k] + l->beta * l->beta * p->g[k];
+    }
+}
+
+/* Axes of frame a; each body's own point. gamma is the difference of the points' centripetal accelerations. */
+static void place_rows(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
+                       const real *vb, struct loop_pose *p)
+{
+    struct xform wa, wb, rel;
+    real a[6], b[6], error[6], relative[6];
+    xform_compose(&wa, xa, &l->a);
+    xform_compose(&wb, xb, &l->b);
+    p->ta = l->a;
+    mat3_transposed_mul(p->tb.r, xb->r, wa.r);
+    vec3_copy(p->tb.p, l->b.p);
+    for (int k = 0; k < 6 * l->c; k++) p->w[k] = l->row[k];
+    xform_motion(a, &p->ta, va);
+    xform_motion(b, &p->tb, vb);
+    for (int k = 0; k < 6; k++) relative[k] = b[k] - a[k];
+    real ca[3], cb[3];
+    centripetal(va, l->a.p, ca);
+    centripetal(vb, l->b.p, cb);
+    mat3_mul_vec_transposed(ca, p->ta.r, ca);
+    mat3_mul_vec_transposed(cb, p->tb.r, cb);
+    screw_zero(p->gamma);
+    for (int k = 0; k < 3; k++) p->gamma[3 + k] = cb[k] - ca[k];
+    between(&rel, &wa, &wb);
+    small_angle(rel.r, error);
+    vec3_copy(error + 3, rel.p);
+    project(l, error, relative, p);
+}
+
+/* Frame b throughout: physics (7.1)-(7.3). */
+static void place_joint(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
+                        const real *vb, struct loop_pose *p)
+{
+    struct xform wa, wb, rel;
+    real a[6], b[6], relative[6], error[6], angle[3], pa[3], pb[3], t[3];
+    xform_compose(&wa, xa, &l->a);
+    xform_compose(&wb, xb, &l->b);
+    p->tb = l->b;
+    between(&p->ta, xa, &wb);
+    between(&rel, &wa, &wb);
+    joint_columns(l, rel.r, p);
+    xform_motion(a, &p->ta, va);
+    xform_motion(b, &p->tb, vb);
+    for (int k = 0; k < 6; k++) relative[k] = b[k] - a[k];
+    const real *turn = relative, *slip = relative + 3;
+    mat3_mul_vec_transposed(pa, p->ta.r, p->ta.p);
+    mat3_mul_vec_transposed(pb, p->tb.r, p->tb.p);
+    vec3_cross(p->gamma, turn, a);
+    centripetal(b, pb, p->gamma + 3);
+    centripetal(a, pa, t);
+    vec3_sub(p->gamma + 3, t);
+    for (int k = 0; k < 3; k++) t[k] = a[k] + a[k];
+    /* slot and point-plane: W moves with frame a, which cancels w_J x v_J */
+    if (l->joint != JOINT_SLOT && l->joint != JOINT_POINT_PLANE) vec3_add(t, turn);
+    vec3_cross_sub(p->gamma + 3, t, slip);
+    small_angle(rel.r, angle);
+    mat3_mul_vec_transposed(error, rel.r, angle);
+    mat3_mul_vec_transposed(error + 3, rel.r, rel.p);
+    project(l, error, relative, p);
+}
+
+void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
+                struct loop_pose *p)
+{
+    p->c = l->c;
+    if (l->by_rows)
+        place_rows(l, xa, xb, va, vb, p);
+    else
+        place_joint(l, xa, xb, va, vb, p);
+}
+
+void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb)
+{
+    real f[6], t[6];
+    screw_zero(f);
+    for (int k = 0; k < p->c; k++) screw_axpy(f, lambda[k], p->w + 6 * k);
+    if (fb) {
+        xform_force(t, &p->tb, f);
+        screw_add(fb, t);
+    }
+    if (fa) {
+        xform_force(t, &p->ta, f);
+        screw_sub(fa, t);
+    }
+}
+
+void loop_column(const struct loop_pose *p, bool side_b, real *out)
+{
+    for (int k = 0; k < p->c; k++) {
+        xform_force(out + 6 * k, side_b ? &p->tb : &p->ta, p->w + 6 * k);
+        for (int j = 0; j < 6 && !side_b; j++) out[6 * k + j] = -out[6 * k + j];
+    }
+}
+
+void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r)
+{
+    real a[6], b[6];
+    xform_motion(a, &p->ta, aa);
+    xform_motion(b, &p->tb, ab);
+    for (int k = 0; k < 6; k++) b[k] = (b[k] - a[k]) + p->gamma[k];
+    for (int k = 0; k < p->c; k++) r[k] = screw_dot(p->w + 6 * k, b) + p->stabilise[k];
+}

@@ -1,0 +1,68 @@
+/* loop_project.c - mass-weighted projection of a state on its loops, physics 7.5. */
+#include "dynamics/integrate.h"
+#include "dynamics/loops.h"
+#include "linalg/least_norm.h"
+
+/* Responses M^-1 J^T (nrow x nu) to unit loop forces and S = J M^-1 J^T. */
+static bool responses(struct dynamics *d, const struct loops *l, real *response, real *s, struct work *w)
+{
+    int m = l->nrow, n = d->nu;
+    real *load = TAKE(d->arena, 6 * d->nbody, real), *column = TAKE(d->arena, m, real), *given = d->load;
+    bool good = true;
+    d->load = load;
+    for (int k = 0; k < m && good; k++) {
+        for (int i = 0; i < 6 * d->nbody; i++) load[i] = 0;
+        loops_column(l, k, load);
+        good = aba_response(d, d->zero, response + (size_t)k * (size_t)n, w);
+        loops_residual(l, d->a, NULL, true, column);
+        for (int i = 0; i < m; i++) s[i * m + k] = column[i];
+    }
+    d->load = given;
+    for (int i = 0; i < m; i++)
+        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (s[i * m + k] + s[k * m + i]) / 2;
+    return good;
+}
+
+/* delta (nu) = - M^-1 J^T S^+ x with x = g (position) or rho (velocity) at (q, u). */
+static bool correction(struct dynamics *d, const real *q, const real *u, bool position, real *delta, struct work *w)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    int m = d->model->nrow, n = d->nu;
+    struct loops l;
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    loops_take(d, &l);
+    real *response = TAKE(d->arena, (size_t)m * (size_t)n, real), *s = TAKE(d->arena, m * m, real);
+    real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
+    real *room = TAKE(d->arena, m * m + 2 * m, real);
+    bool good = responses(d, &l, response, s, w);
+    for (int k = 0; k < l.nloop; k++)
+        for (int i = 0; i < l.pose[k].c; i++)
+            x[l.loop[k].row_at + i] = position ? l.pose[k].g[i] : l.pose[k].rho[i];
+    loops_reference(d, &l, reference);
+    least_norm_solve(m, reference, s, x, room, w);
+    for (int i = 0; i < n; i++) {
+        delta[i] = 0;
+        for (int k = 0; k < m; k++) delta[i] -= response[(size_t)k * (size_t)n + (size_t)i] * x[k];
+    }
+    arena_release(d->arena, mark);
+    return good;
+}
+
+bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work *w)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    struct work own = {0};
+    real *delta = TAKE(d->arena, d->nu, real);
+    bool good = true;
+    for (int k = 0; k < newton && good; k++) {
+        good = correction(d, q, u, true, delta, &own);
+        for (int i = 0; i < d->nbody && good; i++)
+            body_step(&d->body[i], q + d->body[i].q_at, delta + d->body[i].u_at, 1);
+    }
+    good = good && correction(d, q, u, false, delta, &own);
+    for (int i = 0; i < d->nu && good; i++) u[i] += delta[i];
+    if (w) work_add(w, &own);
+    arena_release(d->arena, mark);
+    return good;
+}

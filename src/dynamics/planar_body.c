@@ -1,0 +1,256 @@
+/* planar_body.c - constants, motion and loads of the bodies of a planar scene (planar_body.h). */
+#include "dynamics/planar_body.h"
+
+#include <string.h>
+
+#include "base/check.h"
+#include "dynamics/planar_frame.h"
+#include "linalg/angle.h"
+
+static void make_frames(const struct model *m, int i, const quad *normal, struct body *b)
+{
+    const struct body_def *def = &m->body[i];
+    quad own[9], parents[9], x[4], along = 0;
+    planar_frame(m, i, normal + 3 * (i + 1), own);
+    planar_frame(m, def->parent, normal + 3 * (def->parent + 1), parents);
+    planar_placement(parents, own, &def->placement, x);
+    b->tree = (struct xform){(real)x[0], (real)x[1], {(real)x[2], (real)x[3]}};
+    for (int k = 0; k < 9; k++) b->frame[k] = (real)own[k];
+    for (int k = 0; k < 3; k++) along += def->axis[k] * own[k];
+    b->flipped = (def->joint == JOINT_REVOLUTE || def->joint == JOINT_PLANAR) && along < 0;
+    b->has_spring = def->stiffness != 0 || def->damping != 0;
+    b->stiffness = (real)def->stiffness;
+    b->rest = (real)def->rest;
+    b->damping = (real)def->damping;
+}
+
+static void make_inertia(const struct model *m, int i, const quad *normal, struct body *b)
+{
+    static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const struct body_def *def = &m->body[i];
+    quad own[9], jc = 0, jo, mass = def->mass;
+    planar_frame(m, i, normal + 3 * (i + 1), own);
+    for (int j = 0; j < 9; j++) jc += own[j / 3] * def->inertia[at[j]] * own[j % 3];
+    b->m = (real)mass;
+    b->jc = (real)jc;
+    b->per_m = mass > 0 && jc > 0 ? (real)(1 / mass) : 0;
+    b->per_jc = mass > 0 && jc > 0 ? (real)(1 / jc) : 0;
+    jo = jc;
+    for (int k = 0; k < 2; k++) {
+        quad s = 0;
+        for (int j = 0; j < 3; j++) s += own[3 * (k + 1) + j] * def->com[j];
+        b->s[k] = (real)s;
+        b->ms[k] = (real)(mass * s);
+        jo += mass * s * s;
+    }
+    b->jo = (real)jo;
+}
+
+static void place_in_model(const struct model *m, int i, struct body *b)
+{
+    b->parent = m->body[i].parent;
+    b->joint = m->body[i].joint;
+    b->d = joint_nu(b->joint);
+    b->nq = joint_nq(b->joint);
+    b->q_at = m->q_at[i];
+    b->u_at = m->u_at[i];
+}
+
+static bool same_numbers(const double *x, const double *y, int n) { return memcmp(x, y, (size_t)n * sizeof *x) == 0; }
+
+/* Whether the planar frames of bodies i and j (-1: the base) lie alike in their own. */
+static bool same_frame(const struct model *m, int i, int j, const quad *normal)
+{
+    if (i == j) return true;
+    if (i < 0 || j < 0) return false;
+    const struct body_def *a = &m->body[i], *b = &m->body[j];
+    return a->joint == b->joint && same_numbers(a->axis, b->axis, 3) && same_numbers(a->axis2, b->axis2, 3) &&
+           memcmp(normal + 3 * (i + 1), normal + 3 * (j + 1), 3 * sizeof *normal) == 0;
+}
+
+/* Whether bodies i and j are the same in all but their places in the model. */
+static bool alike(const struct model *m, int i, int j, const quad *normal)
+{
+    const struct body_def *a = &m->body[i], *b = &m->body[j];
+    return same_frame(m, i, j, normal) && same_frame(m, a->parent, b->parent, normal) &&
+           same_numbers(&a->mass, &b->mass, 1) && same_numbers(a->com, b->com, 3) &&
+           same_numbers(a->inertia, b->inertia, 6) && same_numbers(a->placement.quat, b->placement.quat, 4) &&
+           same_numbers(a->placement.p, b->placement.p, 3) && a->stiffness == b->stiffness && a->rest == b->rest &&
+           a->damping == b->damping;
+}
+
+/* The scene's normals: whoever asked for the plane has seen to it that there is one. */
+static quad *normals_of(const struct model *m, struct arena *a)
+{
+    struct err e;
+    err_clear(&e);
+    quad *normal = planar_normals(m, 1e-3Q, a, &e);
+    CHECK(normal);
+    return normal;
+}
+
+const struct body *bodies_make(const struct model *m, struct arena *a)
+{
+    struct body *b = TAKE(a, m->nbody, struct body);
+    struct arena *scratch = arena_create();
+    const quad *normal = normals_of(m, scratch);
+    for (int i = 0; i < m->nbody; i++) {
+        if (i > 0 && alike(m, i, i - 1, normal)) {
+            b[i] = b[i - 1];
+        } else {
+            make_inertia(m, i, normal, &b[i]);
+            make_frames(m, i, normal, &b[i]);
+        }
+        place_in_model(m, i, &b[i]);
+    }
+    arena_destroy(scratch);
+    return b;
+}
+
+void base_motion(const struct model *m, const struct state *s, real *a)
+{
+    struct arena *scratch = arena_create();
+    quad rows[9];
+    planar_frame(m, -1, normals_of(m, scratch), rows);
+    arena_destroy(scratch);
+    for (int k = 0; k < 3; k++) {
+        quad sum = 0;
+        for (int j = 0; j < 3; j++)
+            sum += rows[3 * k + j] *
+                   (k == 0 ? s->base_acceleration[j] : (quad)s->base_acceleration[3 + j] - (quad)m->gravity[j]);
+        a[k] = (real)sum;
+    }
+}
+
+/* Columns [H W]. Picked: those of a slide are x, then normal and y. Given: against the normal, and y against y. */
+static void subspace_set(const struct body *b, struct subspace *s)
+{
+    static const signed char straight[3] = {0, 1, 2}, slide[3] = {1, 0, 2};
+    s->d = b->d;
+    s->c = SPACE - b->d;
+    s->pick = b->flipped ? NULL : b->joint == JOINT_PRISMATIC ? slide : straight;
+    if (!b->flipped) return;
+    for (int k = 0; k < SQUARE; k++) s->col[k] = 0;
+    s->col[0] = -1;
+    s->col[4] = 1;
+    s->col[8] = b->joint == JOINT_PLANAR ? -1 : 1;
+}
+
+void body_subspace(const struct body *b, const real *q, struct subspace *s)
+{
+    (void)q;
+    subspace_set(b, s);
+}
+
+/* The tree's transform, turned by q about the normal. */
+static void turn(const struct body *b, real q, struct xform *x)
+{
+    real s, c;
+    angle_sincos(b->flipped ? -q : q, &s, &c);
+    x->c = b->tree.c * c - b->tree.s * s;
+    x->s = b->tree.s * c + b->tree.c * s;
+}
+
+void body_place(const struct body *b, const real *q, struct body_pose *pose)
+{
+    struct xform *x = &pose->x;
+    subspace_set(b, &pose->s);
+    *x = b->tree;
+    switch (b->joint) {
+    case JOINT_REVOLUTE:
+        turn(b, q[0], x);
+        break;
+    case JOINT_PRISMATIC:
+        x->p[0] += q[0] * x->c;
+        x->p[1] += q[0] * x->s;
+        break;
+    case JOINT_PLANAR:
+        xform_shift(&b->tree, q[1], b->flipped ? -q[2] : q[2], x->p);
+        turn(b, q[0], x);
+        break;
+    default:
+        break;
+    }
+}
+
+void body_rate(const struct body_pose *pose, const real *u, real *h)
+{
+    screw_zero(h);
+    subspace_h(&pose->s, u, h);
+}
+
+void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
+               real *bias)
+{
+    (void)u;
+    const struct xform *x = &pose->x;
+    const real w = v[0] - h[0], pull = -(w * w);
+    bias[0] = 0;
+    bias[1] = pull * (x->c * x->p[0] + x->s * x->p[1]);
+    bias[2] = pull * (x->c * x->p[1] - x->s * x->p[0]);
+    if (b->joint != JOINT_PRISMATIC && b->joint != JOINT_PLANAR) return;
+    const real t = w + w + h[0];
+    bias[1] -= t * h[2];
+    bias[2] += t * h[1];
+}
+
+void body_load(const struct body *b, const double *fext, real *f)
+{
+    screw_zero(f);
+    for (int k = 0; k < 3 && fext; k++) {
+        const real *row = b->frame + 3 * k;
+        const double *x = k == 0 ? fext + 3 : fext;
+        f[k] = row[0] * (real)x[0] + row[1] * (real)x[1] + row[2] * (real)x[2];
+    }
+}
+
+void body_spring(const struct body *b, const real *q, const real *u, real *tau)
+{
+    if (b->has_spring) tau[0] -= b->stiffness * (q[0] - b->rest) + b->damping * u[0];
+}
+
+void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
+{
+    for (int i = 0; i < b->d; i++) qd[i] = u[i];
+    if (b->joint != JOINT_PLANAR) return;
+    real sine, cosine;
+    angle_sincos(q[0], &sine, &cosine);
+    qd[1] = cosine * u[1] - sine * u[2];
+    qd[2] = sine * u[1] + cosine * u[2];
+}
+
+void body_step(const struct body *b, real *q, const real *u, real h)
+{
+    real rate[3];
+    if (b->joint == JOINT_PLANAR) { /* displacement along the axes of mid-step */
+        q[0] += h / 2 * u[0];
+        body_qdot(b, q, u, rate);
+        for (int i = 1; i < 3; i++) q[i] += h * rate[i];
+        q[0] += h / 2 * u[0];
+        return;
+    }
+    for (int i = 0; i < b->d; i++) q[i] += h * u[i];
+}
+
+/* Given columns cost 6 flops to expand (screw_axpy) and 5 to reduce (screw_dot). */
+#define GIVEN(d)                                                                                                       \
+    .rate = 6 * (d), .h = 6 * (d), .h_transposed = 5 * (d), .w = 6 * (3 - (d)), .w_transposed = 5 * (3 - (d))
+#define PICKED(d) .rate = (d), .h = (d), .w = 3 - (d)
+
+/* Turning the tree by an angle; the bias w, w w, the origin in own axes and its product; that of slides besides. */
+enum { TURN = 6, SHIFT = 8, BIAS = 10, SLIDES = 6 };
+
+static const struct joint_cost picked[JOINT_MIXED] = {
+    [JOINT_FIXED] = {.bias = BIAS, PICKED(0)},
+    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, PICKED(1)},
+    [JOINT_PRISMATIC] = {.place = 4, .bias = BIAS + SLIDES, PICKED(1)},
+    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PICKED(3)},
+};
+static const struct joint_cost given[JOINT_MIXED] = {
+    [JOINT_REVOLUTE] = {.place = TURN + 1, .place_trig = 2, .bias = BIAS, GIVEN(1)},
+    [JOINT_PLANAR] = {.place = TURN + SHIFT + 2, .place_trig = 2, .bias = BIAS + SLIDES, GIVEN(3)},
+};
+
+const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint]; }
+
+const struct joint_cost *body_cost(const struct body *b) { return b->flipped ? &given[b->joint] : &picked[b->joint]; }

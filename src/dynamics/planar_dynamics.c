@@ -1,0 +1,475 @@
+/* planar_dynamics.c - Newton-Euler and articulated bodies with three components (planar_dynamics.h).
+ *
+ * A body's velocity is its rate about the normal alone. Joint k's column of H is the normal or the x axis, with a sign
+ * for flipped joints; what is about the joint is kept in these axes, so that no column is ever multiplied. */
+#include "dynamics/planar_dynamics.h"
+
+#include <string.h>
+
+#include "dynamics/planar_body.h"
+#include "dynamics/planar_loop.h"
+#include "linalg/least_norm.h"
+
+/* A body in motion. Symmetric matrices: [about the normal; x; y] as aa, ax, ay, xx, xy, yy. */
+struct moving {
+    struct body_pose pose;
+    real w; /* rate about the normal */
+    real bias[SPACE];
+    real a[SPACE];   /* acceleration */
+    real f[SPACE];   /* force on the body by its parent; while articulating: bias force */
+    real inertia[6]; /* articulated */
+    real per, rest;  /* 1 / inertia along the joint; what is left of the joint force there */
+};
+
+struct scene {
+    const struct model *model;
+    const struct state *state;
+    const struct body *body;
+    struct moving *moving;
+    real base[SPACE];
+    const real *load; /* (nbody x 3) forces of loops on the bodies; NULL: none */
+    bool terms;       /* with velocity terms, wrenches and the base's acceleration */
+};
+
+static struct scene scene_take(const struct model *m, const struct state *s, struct arena *scratch)
+{
+    struct scene x = {m, s, bodies_make(m, scratch), TAKE(scratch, m->nbody, struct moving), {0}, NULL, true};
+    base_motion(m, s, x.base);
+    return x;
+}
+
+static real sign_of(const struct body *b) { return b->flipped ? -1 : 1; }
+
+/* The joint's velocity (or acceleration) from its rates: about the normal and along x, y. Signs cost nothing. */
+static void joint_motion(const struct body *b, const double *u, real *h)
+{
+    screw_zero(h);
+    switch (b->joint) {
+    case JOINT_REVOLUTE:
+        h[0] = sign_of(b) * (real)u[0];
+        break;
+    case JOINT_PRISMATIC:
+        h[1] = (real)u[0];
+        break;
+    case JOINT_PLANAR:
+        h[0] = sign_of(b) * (real)u[0], h[1] = (real)u[1], h[2] = sign_of(b) * (real)u[2];
+        break;
+    default:
+        break;
+    }
+}
+
+/* And back: y = H^T x. */
+static void joint_part(const struct body *b, const real *x, double *y)
+{
+    switch (b->joint) {
+    case JOINT_REVOLUTE:
+        y[0] = (double)(sign_of(b) * x[0]);
+        break;
+    case JOINT_PRISMATIC:
+        y[0] = (double)x[1];
+        break;
+    case JOINT_PLANAR:
+        y[0] = (double)(sign_of(b) * x[0]), y[1] = (double)x[1], y[2] = (double)(sign_of(b) * x[2]);
+        break;
+    default:
+        break;
+    }
+}
+
+static bool slides(const struct body *b) { return b->joint == JOINT_PRISMATIC || b->joint == JOINT_PLANAR; }
+
+/* start: place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: 1 flop, 1 and 4
+ * and 6 for the centripetal part where the parent moves, 8 for slides. */
+static void start(const struct scene *x, int i, struct work *w)
+{
+    const struct body *b = &x->body[i];
+    struct moving *m = &x->moving[i];
+    const struct xform *t = &m->pose.x;
+    const real turning = b->parent < 0 ? 0 : x->moving[b->parent].w;
+    real q[3] = {0}, h[SPACE];
+    for (int k = 0; k < b->nq; k++) q[k] = (real)x->state->q[b->q_at + k];
+    body_place(b, q, &m->pose);
+    screw_zero(m->bias);
+    w->flop += (uint64_t)joint_cost_of(b->joint)->place;
+    w->trig += (uint64_t)joint_cost_of(b->joint)->place_trig;
+    w->call++;
+    m->w = 0;
+    if (x->state->at_rest) return;
+    joint_motion(b, x->state->qd + b->u_at, h);
+    m->w = turning + h[0];
+    const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
+    m->bias[1] = t->c * px + t->s * py;
+    m->bias[2] = t->c * py - t->s * px;
+    if (b->parent >= 0) w->flop += 1 + 1 + 2 + 6;
+    if (!slides(b)) return;
+    const real twice = turning + m->w;
+    m->bias[1] -= twice * h[2];
+    m->bias[2] += twice * h[1];
+    w->flop += 5;
+}
+
+/* pull: f = P - Fext: centripetal force of the centre of mass, 3 flops, less the wrench, 15 + 3, less the loops'
+ * forces; without the terms the last alone. */
+static void pull(const struct scene *x, int i, struct work *w)
+{
+    const struct body *b = &x->body[i];
+    struct moving *m = &x->moving[i];
+    screw_zero(m->f);
+    if (x->load) {
+        screw_sub(m->f, x->load + SPACE * i);
+        w->flop += SCREW_ADD_FLOP;
+    }
+    if (!x->terms) return;
+    if (!x->state->at_rest) {
+        real centripetal[SPACE];
+        body_gyro(b, &m->w, centripetal);
+        screw_add(m->f, centripetal);
+        w->flop += BODY_GYRO_FLOP;
+    }
+    if (!x->state->fext) return;
+    real load[SPACE];
+    body_load(b, x->state->fext + 6 * i, load);
+    screw_sub(m->f, load);
+    w->flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
+}
+
+void planar_inverse(const struct model *model, const struct state *s, struct arena *scratch, double *tau,
+                    struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    const struct scene x = scene_take(model, s, scratch);
+    for (int i = 0; i < model->nbody; i++) {
+        const struct body *b = &x.body[i];
+        struct moving *m = &x.moving[i];
+        real h[SPACE], moved[SPACE], inertial[SPACE];
+        start(&x, i, w);
+        joint_motion(b, s->qdd + b->u_at, h);
+        xform_motion(moved, &m->pose.x, b->parent < 0 ? x.base : x.moving[b->parent].a);
+        screw_copy(m->a, m->bias);
+        screw_add(m->a, moved);
+        screw_add(m->a, h);
+        pull(&x, i, w);
+        body_force(b, m->a, inertial);
+        screw_add(m->f, inertial);
+        /* the bias has no part about the normal, and a joint's columns are unit vectors */
+        w->flop += (uint64_t)(XFORM_MOTION_FLOP + 2 + b->d + BODY_FORCE_FLOP);
+    }
+    for (int i = model->nbody - 1; i >= 0; i--) {
+        const struct body *b = &x.body[i];
+        real moved[SPACE];
+        joint_part(b, x.moving[i].f, tau + b->u_at);
+        if (b->parent < 0) continue;
+        xform_force(moved, &x.moving[i].pose.x, x.moving[i].f);
+        screw_add(x.moving[b->parent].f, moved);
+        w->flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
+    }
+    arena_release(scratch, mark);
+}
+
+/* y = S x; 15 flops. */
+static void symmetric_multiply(const real *s, const real *x, real *y)
+{
+    y[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
+    y[1] = s[1] * x[0] + s[3] * x[1] + s[4] * x[2];
+    y[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
+}
+
+/* into += X S X^T. Rotating the linear block: C - t [s, -c; -c, -s]-wise with t = s (xx - yy) + 2 c xy, 10 flops; the
+ * mixed part, 6; shifting by (-py, px), 8 + 6; adding, 6. `bare`: S has a linear block alone: 10 + 6 + 3 + 6. */
+static void hand_inertia(const struct xform *x, const real *s, bool bare, real *into, struct work *w)
+{
+    const real t = x->s * (s[3] - s[5]) + (x->c + x->c) * s[4];
+    const real xx = s[3] - x->s * t, yy = s[5] + x->s * t, xy = x->c * t - s[4], jx = -x->p[1], jy = x->p[0];
+    real bx = 0, by = 0;
+    if (!bare) {
+        bx = x->c * s[1] - x->s * s[2];
+        by = x->s * s[1] + x->c * s[2];
+    }
+    const real shifted_x = bx + (xx * jx + xy * jy), shifted_y = by + (xy * jx + yy * jy);
+    into[0] += (bare ? 0 : s[0]) + (jx * (bx + shifted_x) + jy * (by + shifted_y));
+    into[1] += shifted_x;
+    into[2] += shifted_y;
+    into[3] += xx;
+    into[4] += xy;
+    into[5] += yy;
+    w->flop += bare ? 10 + 6 + 3 + 6 : 10 + 6 + 8 + 6 + 6;
+}
+
+/* The body's own inertia. */
+static void rigid(const struct body *b, real *s)
+{
+    s[0] = b->jo;
+    s[1] = -b->ms[1];
+    s[2] = b->ms[0];
+    s[3] = s[5] = b->m;
+    s[4] = 0;
+}
+
+/* Joint of one degree of freedom along axis k: what is left of the inertia and of the bias force when it gives way.
+ * False: nothing resists there. */
+static bool give_way(struct moving *m, int k, real tau, real *left, struct work *w)
+{
+    static const signed char row[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, others[2][2] = {{1, 2}, {0, 2}};
+    const real *s = m->inertia, d = s[row[k][k]];
+    const int i = others[k][0], j = others[k][1];
+    if (!(d > 0)) return false;
+    m->per = 1 / d;
+    m->rest = tau - m->f[k];
+    const real gi = s[row[i][k]] * m->per, gj = s[row[j][k]] * m->per;
+    for (int n = 0; n < 6; n++) left[n] = 0;
+    left[row[i][i]] = s[row[i][i]] - gi * s[row[i][k]];
+    left[row[i][j]] = s[row[i][j]] - gi * s[row[j][k]];
+    left[row[j][j]] = s[row[j][j]] - gj * s[row[j][k]];
+    /* p + S' b + g rest; along the joint the joint force itself */
+    const real bi = m->bias[i], bj = m->bias[j];
+    m->f[i] += (left[row[i][i]] * bi + left[row[i][j]] * bj) + gi * m->rest;
+    m->f[j] += (left[row[i][j]] * bi + left[row[j][j]] * bj) + gj * m->rest;
+    m->f[k] = tau;
+    w->div += 1;
+    w->flop += 1 + 2 + 6 + 12;
+    return true;
+}
+
+/* articulate: body i gives way along its joint and hands the rest to its parent. On a joint of three degrees of freedom
+ * nothing is left but the joint force, and the way back needs the bias force as it was. */
+static bool articulate(const struct scene *x, int i, const double *tau, struct work *w)
+{
+    const struct body *b = &x->body[i];
+    struct moving *m = &x->moving[i], *parent = b->parent < 0 ? NULL : &x->moving[b->parent];
+    real left[6], moved[SPACE], force[SPACE], shifted[SPACE];
+    joint_motion(b, tau, force);
+    switch (b->joint) {
+    case JOINT_REVOLUTE:
+        if (!give_way(m, 0, force[0], left, w)) return false;
+        break;
+    case JOINT_PRISMATIC:
+        if (!give_way(m, 1, force[1], left, w)) return false;
+        break;
+    case JOINT_PLANAR:
+        break;
+    default:
+        for (int k = 0; k < 6; k++) left[k] = m->inertia[k];
+        symmetric_multiply(left, m->bias, shifted);
+        screw_add(m->f, shifted);
+        w->flop += 15 + SCREW_ADD_FLOP;
+    }
+    if (!parent) return true;
+    if (b->joint != JOINT_PLANAR) hand_inertia(&m->pose.x, left, b->joint == JOINT_REVOLUTE, parent->inertia, w);
+    xform_force(moved, &m->pose.x, b->joint == JOINT_PLANAR ? force : m->f);
+    screw_add(parent->f, moved);
+    w->flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
+    return true;
+}
+
+/* y = S^-1 x by elimination in order; 25 flops, 3 divisions. False: not positive definite. */
+static bool symmetric_solve(const real *s, const real *x, real *y, struct work *w)
+{
+    if (!(s[0] > 0)) return false;
+    const real d0 = 1 / s[0], l1 = s[1] * d0, l2 = s[2] * d0, m11 = s[3] - l1 * s[1], m21 = s[4] - l2 * s[1];
+    if (!(m11 > 0)) return false;
+    const real d1 = 1 / m11, l21 = m21 * d1, m22 = s[5] - l2 * s[2] - l21 * m21;
+    if (!(m22 > 0)) return false;
+    const real y1 = x[1] - l1 * x[0], y2 = x[2] - l2 * x[0] - l21 * y1;
+    y[2] = y2 / m22;
+    y[1] = y1 * d1 - l21 * y[2];
+    y[0] = x[0] * d0 - l1 * y[1] - l2 * y[2];
+    w->div += 3;
+    w->flop += 11 + 6 + 8;
+    return true;
+}
+
+/* accelerate: body i from its parent. */
+static bool accelerate(const struct scene *x, int i, const double *tau, double *ud, struct work *w)
+{
+    static const signed char row[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const struct body *b = &x->body[i];
+    struct moving *m = &x->moving[i];
+    real carried[SPACE], force[SPACE];
+    xform_motion(carried, &m->pose.x, b->parent < 0 ? x->base : x->moving[b->parent].a);
+    screw_add(carried, m->bias);
+    screw_copy(m->a, carried);
+    w->flop += XFORM_MOTION_FLOP + 2;
+    if (b->joint == JOINT_PLANAR) {
+        real own[SPACE];
+        joint_motion(b, tau, force);
+        screw_sub(force, m->f);
+        if (!symmetric_solve(m->inertia, force, own, w)) return false;
+        screw_sub(own, carried);
+        joint_part(b, own, ud);
+        screw_add(m->a, own);
+        w->flop += 3 * SCREW_ADD_FLOP;
+    } else if (b->d == 1) {
+        const int k = b->joint == JOINT_REVOLUTE ? 0 : 1;
+        real along = 0, y[SPACE] = {0};
+        for (int j = 0; j < 3; j++) along += m->inertia[row[k][j]] * carried[j];
+        y[k] = m->per * (m->rest - along);
+        joint_part(b, y, ud);
+        m->a[k] += y[k];
+        w->flop += 5 + 2 + 1;
+    }
+    return true;
+}
+
+/* open_forward: accelerations of the scene cut open, with x's loads and terms; the bodies have been started. */
+static bool open_forward(const struct scene *x, const double *tau, double *ud, struct work *w)
+{
+    bool good = true;
+    for (int i = 0; i < x->model->nbody; i++) {
+        pull(x, i, w);
+        rigid(&x->body[i], x->moving[i].inertia);
+    }
+    for (int i = x->model->nbody - 1; i >= 0 && good; i--) good = articulate(x, i, tau + x->body[i].u_at, w);
+    for (int i = 0; i < x->model->nbody && good; i++)
+        good = accelerate(x, i, tau + x->body[i].u_at, ud + x->body[i].u_at, w);
+    return good;
+}
+
+/* The loops of a scene in its state. */
+struct closing {
+    int n; /* constraints of all of them */
+    struct loop *loop;
+    struct loop_pose *pose;
+    real *load; /* (nbody x 3) */
+};
+
+/* closing_take: places, 14 flops a body, and velocities, 13, then the loops. */
+static struct closing closing_take(const struct scene *x, struct arena *scratch, struct work *w)
+{
+    const struct model *m = x->model;
+    struct closing c = {loop_rows(m), TAKE(scratch, m->nloop, struct loop), TAKE(scratch, m->nloop, struct loop_pose),
+                        TAKE(scratch, SPACE * m->nbody, real)};
+    struct xform *place = TAKE(scratch, m->nbody + 1, struct xform);
+    real *v = TAKE(scratch, SPACE * (m->nbody + 1), real); /* of the base, then of the bodies */
+    xform_identity(&place[0]);
+    for (int i = 0; i < m->nbody; i++) {
+        const int p = x->body[i].parent + 1;
+        real h[SPACE];
+        xform_compose(&place[i + 1], &place[p], &x->moving[i].pose.x);
+        joint_motion(&x->body[i], x->state->qd + x->body[i].u_at, h);
+        xform_motion(v + SPACE * (i + 1), &x->moving[i].pose.x, v + SPACE * p);
+        screw_add(v + SPACE * (i + 1), h);
+        w->flop += XFORM_COMPOSE_FLOP + XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
+    }
+    loops_make(m, c.loop, TAKE(scratch, m->nrow, int));
+    for (int l = 0; l < m->nloop; l++) {
+        const int a = c.loop[l].body_a + 1, b = c.loop[l].body_b + 1;
+        loop_place(&c.loop[l], &place[a], &place[b], v + SPACE * a, v + SPACE * b, &c.pose[l]);
+        w->flop += LOOP_PLACE_FLOP;
+    }
+    return c;
+}
+
+/* closing_force: load = the loops' forces for lambda (n). */
+static void closing_force(const struct scene *x, const struct closing *c, const real *lambda, struct work *w)
+{
+    memset(c->load, 0, (size_t)(SPACE * x->model->nbody) * sizeof(real));
+    for (int side = 0; side < 2 * x->model->nloop; side++) {
+        const struct loop *l = &c->loop[side / 2];
+        const int body = side % 2 ? l->body_b : l->body_a;
+        real column[6 * SPACE];
+        if (body < 0) continue;
+        loop_column(&c->pose[side / 2], side % 2, column);
+        for (int k = 0; k < l->c; k++) screw_axpy(c->load + SPACE * body, lambda[l->row_at + k], column + SPACE * k);
+        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SCREW_AXPY_FLOP));
+    }
+}
+
+/* closing_residual: r (n): what the present accelerations leave of the constraints; without terms the linear part. */
+static void closing_residual(const struct scene *x, const struct closing *c, real *r, struct work *w)
+{
+    static const real still[SPACE] = {0};
+    for (int l = 0; l < x->model->nloop; l++) {
+        const struct loop *loop = &c->loop[l];
+        const struct loop_pose *p = &c->pose[l];
+        const real *base = x->terms ? x->base : still;
+        real a[SPACE], b[SPACE];
+        xform_motion(a, &p->ta, loop->body_a < 0 ? base : x->moving[loop->body_a].a);
+        xform_motion(b, &p->tb, loop->body_b < 0 ? base : x->moving[loop->body_b].a);
+        screw_sub(b, a);
+        if (x->terms) screw_add(b, p->gamma);
+        for (int k = 0; k < loop->c; k++)
+            r[loop->row_at + k] = screw_dot(p->w + SPACE * k, b) + (x->terms ? p->stabilise[k] : 0);
+        w->flop += (uint64_t)(2 * XFORM_MOTION_FLOP + 2 * SCREW_ADD_FLOP + loop->c * (SCREW_DOT_FLOP + 1));
+    }
+}
+
+/* closing_reference: what S's rounding scales with: the constraints' own bodies as if they were free. */
+static void closing_reference(const struct scene *x, const struct closing *c, real *reference, struct work *w)
+{
+    for (int k = 0; k < c->n; k++) reference[k] = 0;
+    for (int side = 0; side < 2 * x->model->nloop; side++) {
+        const struct loop *l = &c->loop[side / 2];
+        const int body = side % 2 ? l->body_b : l->body_a;
+        real column[6 * SPACE], a[SPACE];
+        if (body < 0) continue;
+        loop_column(&c->pose[side / 2], side % 2, column);
+        for (int k = 0; k < l->c; k++) {
+            body_accelerate(&x->body[body], column + SPACE * k, a);
+            reference[l->row_at + k] += screw_dot(column + SPACE * k, a);
+        }
+        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP + 1));
+    }
+}
+
+/* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops' forces;
+ * twice, to remove what rounding left. */
+static bool closed_forward(struct scene *x, const double *tau, double *ud, struct arena *scratch, struct work *w)
+{
+    const struct closing c = closing_take(x, scratch, w);
+    const int n = c.n;
+    real *S = TAKE(scratch, n * n, real), *copy = TAKE(scratch, n * n, real),
+         *room = TAKE(scratch, n * n + 2 * n, real);
+    real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real), *r = TAKE(scratch, n, real);
+    const double *none = TAKE(scratch, x->model->nu, double);
+    struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;
+    closing_reference(x, &c, reference, w);
+    memcpy(at_rest, moving, (size_t)x->model->nbody * sizeof *at_rest);
+    for (int i = 0; i < x->model->nbody; i++) screw_zero(at_rest[i].bias);
+    struct scene response = *x;
+    response.moving = at_rest;
+    response.terms = false;
+    response.load = c.load;
+    screw_zero(response.base);
+    bool good = true;
+    for (int k = 0; k < n && good; k++) {
+        for (int j = 0; j < n; j++) r[j] = j == k;
+        closing_force(x, &c, r, w);
+        good = open_forward(&response, none, ud, w);
+        closing_residual(&response, &c, r, w);
+        for (int j = 0; j < n; j++) S[j * n + k] = r[j];
+    }
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (S[i * n + k] + S[k * n + i]) / 2;
+    good = good && open_forward(x, tau, ud, w);
+    for (int pass = 0; pass < 2 && good; pass++) {
+        closing_residual(x, &c, r, w);
+        for (int k = 0; k < n * n; k++) copy[k] = S[k];
+        for (int k = 0; k < n; k++) r[k] = -r[k];
+        least_norm_solve(n, reference, copy, r, room, w);
+        for (int k = 0; k < n; k++) lambda[k] += r[k];
+        closing_force(x, &c, lambda, w);
+        x->load = c.load;
+        good = open_forward(x, tau, ud, w);
+    }
+    return good;
+}
+
+bool planar_forward(const struct model *model, const struct state *s, struct arena *scratch, double *qdd,
+                    struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct scene x = scene_take(model, s, scratch);
+    double *tau = TAKE(scratch, model->nu, double);
+    for (int k = 0; k < model->nu; k++) tau[k] = s->tau[k];
+    for (int i = 0; i < model->nbody; i++) {
+        const struct body *b = &x.body[i];
+        start(&x, i, w);
+        if (!b->has_spring) continue;
+        tau[b->u_at] -= b->stiffness * (s->q[b->q_at] - b->rest) + b->damping * s->qd[b->u_at];
+        w->flop += BODY_SPRING_FLOP;
+    }
+    const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w) : open_forward(&x, tau, qdd, w);
+    arena_release(scratch, mark);
+    return good;
+}

@@ -1,0 +1,23 @@
+/* revolute.c - compact constants; inverse dynamics of all-revolute systems. */
+#include "dynamics/revolute.h"
+
+#include "linalg/angle.h"
+
+struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
+{
+    struct revolute *out = TAKE(a, m->nbody, struct revolute);
+    for (int i = 0; i < m->nbody; i++) {
+        struct revolute *r = &out[i];
+        const real *j = b[i].jc, half = (real)0.5;
+        for (int k = 0; k < 9; k++) r->e[k] = b[i].tree.r[k];
+        vec3_copy(r->t, b[i].tree.p);
+        r->m = b[i].m;
+        vec3_copy(r->s, b[i].s);
+        r->second[0] = half * ((j[3] - j[0]) + j[5]);
+        r->second[3] = half * ((j[0] - j[3]) + j[5]);
+        r->second[5] = half * ((j[0] - j[5]) + j[3]);
+        r->second[1] = -j[1], r->second[2] = -j[2], r->second[4] = -j[4];
+        r->parent = b[i].parent;
+    }
+    return out;
+}

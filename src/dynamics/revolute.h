@@ -1,0 +1,30 @@
+/* revolute.h - compact constants and the fast paths of systems whose joints are all revolute.
+ *
+ * A body takes 22 numbers in one piece of memory; r = E Rz(q) and the joint's simple H and b are exploited throughout.
+ * Second moments S = tr(J)/2 U - J replace the inertia: with K = w'~ + w~ w~ the moment about the centre of mass is
+ * the skew part of K S (33 flops instead of 42), and K gives both the centre's and the children's accelerations. */
+#ifndef DYNAMICS_REVOLUTE_H
+#define DYNAMICS_REVOLUTE_H
+
+#include "dynamics/dynamics.h"
+
+struct revolute {
+    real e[9], t[3]; /* joint frame -> parent's body frame */
+    real m, s[3];    /* mass; centre of mass */
+    real second[6];  /* second moments of mass about the centre of mass, xx xy xz yy yz zz */
+    int parent;
+};
+
+/* revolutes_take: of all bodies of d, from their constants. */
+#define revolutes_take REAL_NAME(revolutes_take)
+struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a);
+
+/* rnea_revolute, aba_revolute, crba_revolute: rnea, aba and crba for d->revolute; no work is counted here. */
+#define rnea_revolute REAL_NAME(rnea_revolute)
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau);
+#define aba_revolute REAL_NAME(aba_revolute)
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud);
+#define crba_revolute REAL_NAME(crba_revolute)
+void crba_revolute(struct dynamics *d, const real *q, real *mass);
+
+#endif

@@ -1,0 +1,144 @@
+/* rnea_revolute.c - inverse dynamics of all-revolute systems: about 200 flops a body besides sine and cosine. */
+#include "dynamics/revolute.h"
+#include "linalg/angle.h"
+
+/* Motion of a body as its children need it. */
+struct motion {
+    real w[3], al[3]; /* angular velocity and acceleration */
+    real a[3];        /* acceleration of the origin */
+    real k[9];        /* al~ + w~ w~ */
+};
+
+/* What the inward sweep needs. */
+struct load {
+    real r[9];        /* body -> parent */
+    real n[3], f[3];  /* moment and force that the joint transmits */
+};
+
+/* k = al~ + w~ w~. */
+static inline void spin_matrix(struct motion *c)
+{
+    const real *w = c->w, *al = c->al;
+    real *k = c->k;
+    real xx = w[0] * w[0], yy = w[1] * w[1], zz = w[2] * w[2];
+    real xy = w[0] * w[1], xz = w[0] * w[2], yz = w[1] * w[2];
+    k[0] = -(yy + zz), k[1] = xy - al[2], k[2] = xz + al[1];
+    k[3] = xy + al[2], k[4] = -(xx + zz), k[5] = yz - al[0];
+    k[6] = xz - al[1], k[7] = yz + al[0], k[8] = -(xx + yy);
+}
+
+/* r = E Rz. */
+static inline void turn(real *restrict r, const real *restrict e, real s, real c)
+{
+    for (int i = 0; i < 9; i += 3) {
+        r[i] = c * e[i] + s * e[i + 1];
+        r[i + 1] = c * e[i + 1] - s * e[i];
+        r[i + 2] = e[i + 2];
+    }
+}
+
+/* w, al, a of body c from its parent's p: the joint adds z u and z ud + w* x z u. */
+static inline void carry(const struct revolute *b, const real *r, real u, real ud, const struct motion *p,
+                         struct motion *c)
+{
+    const real *t = b->t, *k = p->k;
+    real g[3], w[3], al[3];
+    mat3_mul_vec_transposed(w, r, p->w);
+    mat3_mul_vec_transposed(al, r, p->al);
+    for (int i = 0; i < 3; i++) g[i] = p->a[i] + (k[3 * i] * t[0] + k[3 * i + 1] * t[1] + k[3 * i + 2] * t[2]);
+    vec3_set(c->w, w[0], w[1], w[2] + u);
+    vec3_set(c->al, al[0] + w[1] * u, al[1] - w[0] * u, al[2] + ud);
+    mat3_mul_vec_transposed(c->a, r, g);
+    spin_matrix(c);
+}
+
+/* f = m (a + K s), n = skew part of K S + s x f. */
+static inline void newton_euler(const struct revolute *b, const struct motion *c, real *f, real *n)
+{
+    const real *s = b->s, *S = b->second, *k = c->k;
+    for (int i = 0; i < 3; i++) f[i] = b->m * (c->a[i] + (k[3 * i] * s[0] + k[3 * i + 1] * s[1] + k[3 * i + 2] * s[2]));
+    n[0] = (k[6] * S[1] + k[7] * S[3] + k[8] * S[4]) - (k[3] * S[2] + k[4] * S[4] + k[5] * S[5]);
+    n[1] = (k[0] * S[2] + k[1] * S[4] + k[2] * S[5]) - (k[6] * S[0] + k[7] * S[1] + k[8] * S[2]);
+    n[2] = (k[3] * S[0] + k[4] * S[1] + k[5] * S[2]) - (k[0] * S[1] + k[1] * S[3] + k[2] * S[4]);
+    vec3_cross_add(n, s, f);
+}
+
+/* carry and newton_euler at rest: al and a alone, with al~ for K. */
+static inline void carry_at_rest(const struct revolute *b, const real *r, real ud, const struct motion *p,
+                                 struct motion *c)
+{
+    real g[3];
+    mat3_mul_vec_transposed(c->al, r, p->al);
+    c->al[2] += ud;
+    vec3_copy(g, p->a);
+    vec3_cross_add(g, p->al, b->t);
+    mat3_mul_vec_transposed(c->a, r, g);
+}
+
+static inline void newton_euler_at_rest(const struct revolute *b, const struct motion *c, real *f, real *n)
+{
+    const real *s = b->s, *S = b->second, *al = c->al;
+    real g[3];
+    vec3_copy(g, c->a);
+    vec3_cross_add(g, al, s);
+    vec3_scale(f, b->m, g);
+    n[0] = (al[0] * S[3] - al[1] * S[1]) - (al[2] * S[2] - al[0] * S[5]);
+    n[1] = (al[1] * S[5] - al[2] * S[4]) - (al[0] * S[1] - al[1] * S[0]);
+    n[2] = (al[2] * S[0] - al[0] * S[2]) - (al[1] * S[4] - al[2] * S[3]);
+    vec3_cross_add(n, s, f);
+}
+
+/* f, n of the parent += r f, r n + t x r f. */
+static inline void hand_down(const struct revolute *b, const struct load *c, struct load *p)
+{
+    real f[3], n[3];
+    mat3_mul_vec(f, c->r, c->f);
+    mat3_mul_vec(n, c->r, c->n);
+    vec3_add(p->f, f);
+    vec3_cross_add(n, b->t, f);
+    vec3_add(p->n, n);
+}
+
+/* Both sweeps. Called with a constant `at_rest`, so that each case is compiled alone. */
+static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const real *u, const real *ud, real *tau)
+{
+    int n = d->nbody;
+    /* a chain needs only the last body's motion: two slots */
+    unsigned slots = d->model->is_chain ? 1u : ~0u;
+    struct motion base = {{0}, {0}, {0}, {0}};
+    real *sine = d->scratch, *cosine = sine + n;
+    struct load *load = (struct load *)(cosine + n);
+    struct motion *motion = (struct motion *)(load + n);
+    vec3_copy(base.al, d->base);
+    vec3_copy(base.a, d->base + 3);
+    if (!at_rest) spin_matrix(&base);
+    angle_sincos_batch(n, q, sine, cosine);
+    for (int i = 0; i < n; i++) {
+        const struct revolute *b = &d->revolute[i];
+        const struct motion *p = b->parent < 0 ? &base : &motion[(unsigned)b->parent & slots];
+        struct motion *c = &motion[(unsigned)i & slots];
+        turn(load[i].r, b->e, sine[i], cosine[i]);
+        if (at_rest) {
+            carry_at_rest(b, load[i].r, ud[i], p, c);
+            newton_euler_at_rest(b, c, load[i].f, load[i].n);
+        } else {
+            carry(b, load[i].r, u[i], ud[i], p, c);
+            newton_euler(b, c, load[i].f, load[i].n);
+        }
+        if (d->load) {
+            vec3_sub(load[i].n, d->load + 6 * i);
+            vec3_sub(load[i].f, d->load + 6 * i + 3);
+        }
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        const struct revolute *b = &d->revolute[i];
+        tau[i] = load[i].n[2];
+        if (b->parent >= 0) hand_down(b, &load[i], &load[b->parent]);
+    }
+}
+
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau)
+{
+    if (d->at_rest) sweep(d, true, q, u, ud, tau);
+    else sweep(d, false, q, u, ud, tau);
+}

@@ -1,0 +1,97 @@
+/* totals.c - energy, momentum, centre of mass; positions and motion of all bodies; drift of loops. */
+#include "dynamics/dynamics.h"
+#include "dynamics/loops.h"
+
+/* Transforms of the internal frames to the base; d must be placed. */
+static struct xform *world_poses(struct dynamics *d)
+{
+    struct xform *x = TAKE(d->arena, d->nbody, struct xform);
+    for (int i = 0; i < d->nbody; i++) {
+        int p = d->body[i].parent;
+        if (p < 0)
+            x[i] = d->pose[i].x;
+        else
+            xform_compose(&x[i], &x[p], &d->pose[i].x);
+    }
+    return x;
+}
+
+/* One body's part; com in *t is the first moment until the end. */
+static void add_body(const struct dynamics *d, int i, const struct xform *x, struct motion_totals *t)
+{
+    const struct body *b = &d->body[i];
+    const real *v = d->v + 6 * i, half = (real)0.5;
+    real vc[3], spin[3], linear[3], c[3];
+    vec3_copy(vc, v + 3);
+    vec3_cross_add(vc, v, b->s);
+    sym3_mul_vec(spin, b->jc, v);
+    t->kinetic += half * (b->m * vec3_dot(vc, vc) + vec3_dot(v, spin));
+    mat3_mul_vec(c, x->r, b->s);
+    vec3_add(c, x->p);
+    for (int k = 0; k < 3; k++) t->potential -= b->m * (real)d->model->gravity[k] * c[k];
+    vec3_scale(linear, b->m, vc);
+    mat3_mul_vec(linear, x->r, linear);
+    mat3_mul_vec(spin, x->r, spin);
+    vec3_add(t->linear, linear);
+    vec3_add(t->angular, spin);
+    vec3_cross_add(t->angular, c, linear);
+    t->mass += b->m;
+    for (int k = 0; k < 3; k++) t->com[k] += b->m * c[k];
+}
+
+void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    struct xform *x = world_poses(d);
+    *t = (struct motion_totals){0};
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *b = &d->body[i];
+        add_body(d, i, &x[i], t);
+        real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
+        t->potential += b->stiffness * stretch * stretch / 2;
+    }
+    for (int k = 0; k < 3 && t->mass > 0; k++) t->com[k] /= t->mass;
+    arena_release(d->arena, mark);
+}
+
+void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    struct xform *x = world_poses(d);
+    for (int i = 0; i < d->nbody; i++) {
+        const struct body *b = &d->body[i];
+        static const real still[6] = {0};
+        real *a = d->a + 6 * i, carried[6];
+        screw_copy(a, d->bias + 6 * i);
+        subspace_h(&d->pose[i].s, ud + b->u_at, a);
+        xform_motion(carried, &d->pose[i].x, b->parent >= 0 ? d->a + 6 * b->parent : still);
+        screw_add(a, carried);
+        struct body_motion *o = &out[i];
+        mat3_mul_transposed(o->r, x[i].r, b->user);
+        vec3_copy(o->p, x[i].p);
+        mat3_mul_vec(o->w, x[i].r, d->v + 6 * i);
+        mat3_mul_vec(o->v, x[i].r, d->v + 6 * i + 3);
+        mat3_mul_vec(o->alpha, x[i].r, a);
+        mat3_mul_vec(o->a, x[i].r, a + 3);
+    }
+    arena_release(d->arena, mark);
+}
+
+void loop_drift(struct dynamics *d, const real *q, const real *u, real *g, real *rho)
+{
+    struct arena_mark mark = arena_mark(d->arena);
+    struct loops l;
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    loops_take(d, &l);
+    for (int k = 0; k < l.nloop; k++)
+        for (int i = 0; i < l.pose[k].c; i++) {
+            if (g) g[l.loop[k].row_at + i] = l.pose[k].g[i];
+            if (rho) rho[l.loop[k].row_at + i] = l.pose[k].rho[i];
+        }
+    arena_release(d->arena, mark);
+}

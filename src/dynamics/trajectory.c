@@ -1,0 +1,154 @@
+/* trajectory.c - the dynamics as GSL wants them. */
+#include "dynamics/trajectory.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "dynamics/integrate.h"
+
+static const char *const names[] = {"rk2",    "rk4",    "rkf45",  "rkck",  "rk8pd", "msadams",
+                                    "rk1imp", "rk2imp", "rk4imp", "bsimp", "msbdf", NULL};
+
+const char *const *trajectory_steppers(void) { return names; }
+
+static const gsl_odeiv2_step_type *stepper_of(int i)
+{
+    const gsl_odeiv2_step_type *const type[] = {
+        gsl_odeiv2_step_rk2,    gsl_odeiv2_step_rk4,    gsl_odeiv2_step_rkf45,  gsl_odeiv2_step_rkck,
+        gsl_odeiv2_step_rk8pd,  gsl_odeiv2_step_msadams, gsl_odeiv2_step_rk1imp, gsl_odeiv2_step_rk2imp,
+        gsl_odeiv2_step_rk4imp, gsl_odeiv2_step_bsimp,  gsl_odeiv2_step_msbdf};
+    return type[i];
+}
+
+struct flow {
+    struct dynamics *d;
+    const double *tau;
+    long evaluations, most;
+    double *shifted, *change; /* (nq + nu) for the Jacobian */
+};
+
+/* dy = f(y). */
+static int derivative(double t, const double y[], double dy[], void *context)
+{
+    struct flow *f = context;
+    const struct model *m = f->d->model;
+    (void)t;
+    if (++f->evaluations > f->most) return GSL_EBADFUNC;
+    for (int i = 0; i < m->nbody; i++) {
+        const struct body *b = &f->d->body[i];
+        body_qdot(b, y + b->q_at, y + m->nq + b->u_at, dy + b->q_at);
+    }
+    bool good = dynamics_forward(f->d, y, y + m->nq, f->tau, dy + m->nq, NULL);
+    return good ? GSL_SUCCESS : GSL_EBADFUNC;
+}
+
+/* Central differences, column by column. */
+static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *context)
+{
+    struct flow *f = context;
+    int n = f->d->model->nq + f->d->model->nu;
+    for (int i = 0; i < n; i++) f->shifted[i] = y[i], dfdt[i] = 0;
+    for (int j = 0; j < n; j++) {
+        double h = 6e-6 * fmax(fabs(y[j]), 1e-2);
+        f->shifted[j] = y[j] + h;
+        int bad = derivative(t, f->shifted, f->change, f);
+        for (int i = 0; i < n; i++) dfdy[i * n + j] = f->change[i];
+        f->shifted[j] = y[j] - h;
+        bad = bad ? bad : derivative(t, f->shifted, f->change, f);
+        for (int i = 0; i < n; i++) dfdy[i * n + j] = (dfdy[i * n + j] - f->change[i]) / (2 * h);
+        f->shifted[j] = y[j];
+        if (bad) return bad;
+    }
+    return GSL_SUCCESS;
+}
+
+/* y -> state, quaternions normalised. */
+static void state_from(const struct dynamics *d, const double *y, struct state *s)
+{
+    const struct model *m = d->model;
+    memcpy(s->q, y, (size_t)m->nq * sizeof *y);
+    memcpy(s->qd, y + m->nq, (size_t)m->nu * sizeof *y);
+    for (int i = 0; i < m->nbody; i++) {
+        int nq = d->body[i].nq, at = d->body[i].q_at + (d->body[i].joint == JOINT_FLOATING ? 3 : 0);
+        if (nq < 4) continue;
+        double *c = s->q + at, length = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
+        for (int k = 0; k < 4; k++) c[k] /= length;
+    }
+}
+
+static int stepper_find(const char *name, struct err *e)
+{
+    int count = (int)(sizeof names / sizeof *names) - 1;
+    for (int i = 0; i < count; i++)
+        if (strcmp(names[i], name) == 0) return i;
+    const char *near = text_nearest(name, names, count);
+    err_set(e, ERR_USAGE, "no stepper '%s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
+            near ? "'?" : "");
+    return -1;
+}
+
+/* Drive to the end; the number of steps, negative when GSL failed. GSL's default handler would abort. */
+static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
+{
+    double t = 0;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    int status = gsl_odeiv2_driver_apply(driver, &t, duration, y);
+    gsl_set_error_handler(handler);
+    return status == GSL_SUCCESS ? (long)driver->e->count : -1;
+}
+
+/* The same in `steps` equal steps, past the driver's control of the error; it still says how well implicit equations
+ * are to be solved. */
+static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, double *y, double *error)
+{
+    const double h = duration / (double)steps;
+    int status = GSL_SUCCESS;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    for (long k = 0; k < steps && status == GSL_SUCCESS; k++)
+        status = gsl_odeiv2_step_apply(driver->s, (double)k * h, h, y, error, NULL, NULL, driver->sys);
+    gsl_set_error_handler(handler);
+    return status == GSL_SUCCESS ? steps : -1;
+}
+
+bool trajectory_advance(const struct model *m, struct state *s, double duration,
+                        const struct trajectory_options *options, struct arena *scratch,
+                        struct trajectory_report *report, struct err *e)
+{
+    int which = stepper_find(options->stepper, e);
+    if (which < 0) return false;
+    size_t n = (size_t)(m->nq + m->nu);
+    if (report) *report = (struct trajectory_report){0};
+    if (n == 0) return true; /* nothing can move */
+    if (!(duration > 0) || !isfinite(duration))
+        return err_set(e, ERR_CHECK, "stepper '%s' cannot go on for a time of %g", options->stepper, duration);
+    struct arena_mark mark = arena_mark(scratch);
+    struct flow f = {.d = dynamics_take(m, scratch), .tau = s->tau, .shifted = TAKE(scratch, n, double),
+                     .change = TAKE(scratch, n, double)};
+    f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
+    dynamics_load(f.d, s);
+    double *y = TAKE(scratch, n, double);
+    memcpy(y, s->q, (size_t)m->nq * sizeof *y);
+    memcpy(y + m->nq, s->qd, (size_t)m->nu * sizeof *y);
+    double first = options->first_step > 0 ? options->first_step : duration / 1000;
+    gsl_odeiv2_system system = {derivative, jacobian, n, &f};
+    gsl_odeiv2_driver *driver =
+        gsl_odeiv2_driver_alloc_y_new(&system, stepper_of(which), first, options->tolerance, options->tolerance);
+    long steps = options->fixed_steps > 0
+                     ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
+                     : drive(driver, duration, y);
+    gsl_odeiv2_driver_free(driver);
+    bool finite = true;
+    for (size_t i = 0; i < n; i++) finite = finite && isfinite(y[i]);
+    if (steps >= 0 && finite) state_from(f.d, y, s);
+    if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
+    arena_release(scratch, mark);
+    if (steps >= 0 && finite) return true;
+    if (steps >= 0) return err_set(e, ERR_CHECK, "stepper '%s' came to what is no number", options->stepper);
+    if (f.evaluations > f.most)
+        return err_set(e, ERR_CHECK, "stepper '%s' is not there after %ld evaluations", options->stepper, f.most);
+    return err_set(e, ERR_CHECK, "stepper '%s' %s", options->stepper,
+                   options->fixed_steps > 0 ? "broke down in a fixed step" : "gave up: its step size vanished");
+}

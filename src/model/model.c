@@ -1,0 +1,225 @@
+/* model.c - building a model body by body, with the checks that keep impossible bodies out. */
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "linalg/eigen.h"
+
+struct model *model_begin(struct arena *a, const char *file)
+{
+    struct model *m = TAKE(a, 1, struct model);
+    m->arena = a;
+    m->file = file;
+    m->metre = m->kilogram = m->second = 1;
+    return m;
+}
+
+/* What is wrong with body `name`, at its line. */
+static bool refuse(const struct model *m, const char *kind, const char *name, int line, struct err *e, const char *why)
+{
+    return err_set_at(e, ERR_DATA, m->file ? m->file : "", line, "%s '%s': %s", kind, name, why);
+}
+
+static bool all_finite(const double *x, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!isfinite(x[i])) return false;
+    return true;
+}
+
+static double norm(const double *x, int n)
+{
+    double s = 0;
+    for (int i = 0; i < n; i++) s = fmax(s, fabs(x[i]));
+    return s;
+}
+
+/* A zero quaternion is the identity. */
+static void complete_frame(struct frame *f)
+{
+    if (norm(f->quat, 4) == 0) f->quat[3] = 1;
+}
+
+static bool frame_finite(const struct frame *f) { return all_finite(f->quat, 4) && all_finite(f->p, 3); }
+
+/* Joints whose axis must not be zero. */
+static bool needs_axis(enum model_joint joint)
+{
+    return joint == JOINT_REVOLUTE || joint == JOINT_PRISMATIC || joint == JOINT_HELICAL ||
+           joint == JOINT_CYLINDRICAL || joint == JOINT_UNIVERSAL || joint == JOINT_PLANAR || joint == JOINT_SLOT ||
+           joint == JOINT_POINT_PLANE;
+}
+
+static bool orthogonal(const double *x, const double *y)
+{
+    double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+    double xx = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], yy = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
+    return fabs(dot) <= 1e-9 * sqrt(xx) * sqrt(yy);
+}
+
+/* Why the joint of `b` cannot be; NULL when it can. */
+static const char *joint_fault(const struct body_def *b)
+{
+    if (b->joint >= JOINT_MIXED) return "unknown joint type";
+    if (!all_finite(b->axis, 3) || !all_finite(b->axis2, 3) || !isfinite(b->pitch)) return "axis or pitch not finite";
+    if (needs_axis(b->joint) && norm(b->axis, 3) == 0) return "its joint needs an axis that is not zero";
+    if (b->joint == JOINT_UNIVERSAL && (norm(b->axis2, 3) == 0 || !orthogonal(b->axis, b->axis2)))
+        return "a universal joint needs two orthogonal axes (use two revolute joints otherwise)";
+    if ((b->joint == JOINT_PLANAR || b->joint == JOINT_POINT_PLANE) && !orthogonal(b->axis, b->axis2))
+        return "the direction of x must lie in the joint's plane";
+    if (!isfinite(b->stiffness) || !isfinite(b->rest) || !isfinite(b->damping)) return "spring or damper not finite";
+    if ((b->stiffness != 0 || b->damping != 0) && joint_nu(b->joint) != 1)
+        return "springs and dampers act on joints of one degree of freedom only";
+    return NULL;
+}
+
+int model_add_body(struct model *m, const struct body_def *def, struct err *e)
+{
+    const char *fault = joint_fault(def);
+    if (!fault && (def->parent < -1 || def->parent >= m->nbody)) fault = "its parent must come before it";
+    if (!fault && !frame_finite(&def->placement)) fault = "placement not finite";
+    if (fault) {
+        refuse(m, "body", def->name, def->line, e, fault);
+        return -1;
+    }
+    if (m->nbody == m->body_room) {
+        m->body_room = m->body_room ? 2 * m->body_room : 64;
+        struct body_def *more = TAKE(m->arena, m->body_room, struct body_def);
+        if (m->nbody) memcpy(more, m->body, (size_t)m->nbody * sizeof *more);
+        m->body = more;
+    }
+    m->body[m->nbody] = *def;
+    complete_frame(&m->body[m->nbody].placement);
+    return m->nbody++;
+}
+
+/* Why the loop cannot be; NULL when it can. */
+static const char *loop_fault(const struct model *m, const struct loop_def *l)
+{
+    if (l->body_a < -1 || l->body_a >= m->nbody || l->body_b < -1 || l->body_b >= m->nbody)
+        return "its bodies must come before it";
+    if (l->body_a == l->body_b) return "it must join two different bodies";
+    if (!frame_finite(&l->frame_a) || !frame_finite(&l->frame_b)) return "frame not finite";
+    if (l->nrow < 0 || l->nrow > 6) return "it must have 1 to 6 rows";
+    if (l->nrow > 0 && !all_finite(&l->row[0][0], 6 * l->nrow)) return "row not finite";
+    for (int i = 0; i < l->nrow; i++)
+        if (norm(l->row[i], 6) == 0) return "a row is zero";
+    if (l->nrow == 0 && (l->joint >= JOINT_MIXED || l->joint == JOINT_FLOATING)) return "its joint constrains nothing";
+    if (l->nrow == 0 && (l->joint == JOINT_HELICAL || l->joint == JOINT_UNIVERSAL))
+        return "helical and universal joints can only be tree joints";
+    if (!isfinite(l->alpha) || !isfinite(l->beta) || l->alpha < 0 || l->beta < 0)
+        return "stabilisation must be finite and not negative";
+    return NULL;
+}
+
+int model_add_loop(struct model *m, const struct loop_def *def, struct err *e)
+{
+    const char *fault = loop_fault(m, def);
+    if (fault) {
+        refuse(m, "loop", def->name, def->line, e, fault);
+        return -1;
+    }
+    if (m->nloop == m->loop_room) {
+        m->loop_room = m->loop_room ? 2 * m->loop_room : 8;
+        struct loop_def *more = TAKE(m->arena, m->loop_room, struct loop_def);
+        if (m->nloop) memcpy(more, m->loop, (size_t)m->nloop * sizeof *more);
+        m->loop = more;
+    }
+    m->loop[m->nloop] = *def;
+    complete_frame(&m->loop[m->nloop].frame_a);
+    complete_frame(&m->loop[m->nloop].frame_b);
+    return m->nloop++;
+}
+
+/* Principal moments of inertia, ascending. */
+static void principal_moments(const double *inertia, double *w)
+{
+    double a[9] = {inertia[0], inertia[1], inertia[2], inertia[1], inertia[3],
+                   inertia[4], inertia[2], inertia[4], inertia[5]};
+    double scale = norm(a, 9);
+    for (int i = 0; scale > 0 && i < 9; i++) a[i] /= scale;
+    eigen_symmetric(3, a, NULL, w);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2 - i; j++)
+            if (w[j] > w[j + 1]) {
+                double t = w[j];
+                w[j] = w[j + 1], w[j + 1] = t;
+            }
+    for (int i = 0; i < 3; i++) w[i] *= scale;
+}
+
+/* Whether the body has an inverse inertia, as far as doubles can tell. */
+static bool invertible(const struct body_def *b)
+{
+    double w[3];
+    principal_moments(b->inertia, w);
+    return b->mass > 0 && w[0] > 1e-15 * w[2];
+}
+
+static bool body_check(const struct model *m, const struct body_def *b, bool allow_nonphysical, struct err *e)
+{
+    if (!isfinite(b->mass) || !all_finite(b->com, 3) || !all_finite(b->inertia, 6))
+        return refuse(m, "body", b->name, b->line, e, "mass, centre of mass or inertia is not finite");
+    if (allow_nonphysical) return true;
+    double w[3];
+    principal_moments(b->inertia, w);
+    const char *file = m->file ? m->file : "";
+    if (b->mass <= 0)
+        return err_set_at(e, ERR_DATA, file, b->line, "body '%s': mass %g, must be positive", b->name, b->mass);
+    if (w[0] <= 0)
+        return err_set_at(e, ERR_DATA, file, b->line,
+                          "body '%s': inertia not positive definite (principal moments %g, %g, %g)", b->name, w[0],
+                          w[1], w[2]);
+    if (w[0] + w[1] < w[2] * (1 - 1e-9))
+        return err_set_at(e, ERR_DATA, file, b->line,
+                          "body '%s': inertia violates the triangle inequality (principal moments %g + %g < %g)",
+                          b->name, w[0], w[1], w[2]);
+    return true;
+}
+
+/* Children in ascending order, by counting. */
+static void index_children(struct model *m)
+{
+    m->child_at = TAKE(m->arena, m->nbody + 2, int);
+    m->child = TAKE(m->arena, m->nbody, int);
+    int *at = m->child_at + 1; /* at[i] becomes the end of i's list while filling */
+    for (int i = 0; i < m->nbody; i++)
+        if (m->body[i].parent >= 0) at[m->body[i].parent + 1]++;
+    for (int i = 1; i <= m->nbody; i++) at[i] += at[i - 1];
+    for (int i = 0; i < m->nbody; i++)
+        if (m->body[i].parent >= 0) m->child[at[m->body[i].parent]++] = i;
+}
+
+static void index_coordinates(struct model *m)
+{
+    m->q_at = TAKE(m->arena, m->nbody + 1, int);
+    m->u_at = TAKE(m->arena, m->nbody + 1, int);
+    m->row_at = TAKE(m->arena, m->nloop + 1, int);
+    m->is_chain = m->has_phi = true;
+    for (int i = 0; i < m->nbody; i++) {
+        const struct body_def *b = &m->body[i];
+        m->q_at[i + 1] = m->q_at[i] + joint_nq(b->joint);
+        m->u_at[i + 1] = m->u_at[i] + joint_nu(b->joint);
+        m->is_chain = m->is_chain && b->parent == i - 1;
+        m->has_phi = m->has_phi && invertible(b);
+    }
+    for (int l = 0; l < m->nloop; l++)
+        m->row_at[l + 1] = m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
+    m->nq = m->q_at[m->nbody];
+    m->nu = m->u_at[m->nbody];
+    m->nrow = m->row_at[m->nloop];
+}
+
+bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
+{
+    if (m->nbody == 0) return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "the model has no body");
+    for (int i = 0; i < m->nbody; i++)
+        if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
+    index_children(m);
+    index_coordinates(m);
+    m->constants = NULL;
+    return true;
+}

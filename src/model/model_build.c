@@ -1,0 +1,22 @@
+/* model_build.c - from a spec to a model and its state: which reader or generator. */
+#include "model/generator.h"
+#include "model/model.h"
+#include "model/urdf_model.h"
+#include "model/vector_model.h"
+
+struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e)
+{
+    switch (spec->generator) {
+    case MODEL_URDF: return urdf_model_build(spec, a, e);
+    case MODEL_VECTOR: return vector_model_build(spec, a, e);
+    default: return generator_model(spec, a, e);
+    }
+}
+
+struct state *state_given(const struct model *m, const struct model_spec *spec, struct arena *a)
+{
+    if (spec->generator != MODEL_VECTOR) return state_generate(m, spec, a);
+    struct err e;
+    err_clear(&e);
+    return vector_state_make(m, spec, a, &e);
+}

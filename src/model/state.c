@@ -1,0 +1,95 @@
+/* state.c - seeded configurations, motions and loads. */
+#include <math.h>
+#include <string.h>
+
+#include "model/model.h"
+#include "model/pose.h"
+
+#define PI 3.14159265358979323846
+
+struct state *state_take(const struct model *m, struct arena *a)
+{
+    struct state *s = TAKE(a, 1, struct state);
+    s->q = TAKE(a, m->nq, double);
+    s->qd = TAKE(a, m->nu, double);
+    s->qdd = TAKE(a, m->nu, double);
+    s->tau = TAKE(a, m->nu, double);
+    for (int i = 0; i < m->nbody; i++) {
+        enum model_joint joint = m->body[i].joint;
+        if (joint == JOINT_FLOATING) s->q[m->q_at[i] + 6] = 1;
+        if (joint == JOINT_SPHERICAL || joint == JOINT_SLOT || joint == JOINT_POINT_PLANE) s->q[m->q_at[i] + 3] = 1;
+    }
+    return s;
+}
+
+double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
+{
+    if (!s->fext) s->fext = TAKE(a, 6 * m->nbody, double);
+    return s->fext;
+}
+
+/* Whether component k of a joint's velocity is linear. */
+static bool is_linear(enum model_joint joint, int k)
+{
+    switch (joint) {
+    case JOINT_PRISMATIC: return true;
+    case JOINT_CYLINDRICAL: return k == 1;
+    case JOINT_PLANAR: return k > 0;
+    case JOINT_SLOT:
+    case JOINT_POINT_PLANE: return k > 2;
+    case JOINT_FLOATING: return k < 3;
+    default: return false;
+    }
+}
+
+/* x (nu) = normal numbers, scaled by `angular` or `linear` as each component is. */
+static void scatter(const struct model *m, uint64_t seed, enum pose_stream stream, double angular, double linear,
+                    double *x)
+{
+    for (int i = 0; i < m->nbody; i++) {
+        struct random r = random_make(seed, stream, (uint64_t)i);
+        enum model_joint joint = m->body[i].joint;
+        for (int k = 0; k < joint_nu(joint); k++)
+            x[m->u_at[i] + k] = random_normal(&r) * (is_linear(joint, k) ? linear : angular);
+    }
+}
+
+static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force, double length,
+                             double *fext)
+{
+    for (int i = 0; i < m->nbody; i++) {
+        struct random r = random_make(spec->seed, STREAM_FORCE, (uint64_t)i);
+        for (int k = 0; k < 6; k++) fext[6 * i + k] = random_normal(&r) * force * (k < 3 ? 1 : length);
+    }
+}
+
+/* The parallelogram's consistent pose and motion. */
+static void pose_four_bar(const struct model_spec *spec, struct state *s)
+{
+    const double angle = 1.1;
+    s->q[0] = angle, s->q[1] = -angle, s->q[2] = angle - PI;
+    s->qd[0] = spec->rate, s->qd[1] = -spec->rate, s->qd[2] = spec->rate;
+}
+
+struct state *state_generate(const struct model *m, const struct model_spec *spec, struct arena *a)
+{
+    struct state *s = state_take(m, a);
+    double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
+    double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;
+    bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
+    if (!closed)
+        for (int i = 0; i < m->nbody; i++) pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
+    scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
+    if (spec->generator == MODEL_FOUR_BAR) pose_four_bar(spec, s);
+    scatter(m, spec->seed, STREAM_ACCELERATION, rate * rate, rate * rate * length, s->qdd);
+    scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length), s->tau);
+    if (spec->external_force > 0)
+        scatter_wrenches(m, spec, spec->external_force / force, length, state_fext_need(s, m, a));
+    if (spec->base == BASE_MOVING) {
+        for (int k = 0; k < 3; k++) {
+            s->base_acceleration[k] = spec->base_acceleration[k] * m->second * m->second;
+            s->base_acceleration[3 + k] = spec->base_acceleration[3 + k] * m->second * m->second / m->metre;
+        }
+    }
+    return s;
+}
