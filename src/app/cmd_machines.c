@@ -43,6 +43,8 @@ static void origin_json(struct json *j, const struct origin *o)
     json_real(j, o->min);
     json_key(j, "source");
     json_text(j, o->source);
+    json_key(j, "validate");
+    json_text(j, o->validate);
     json_key(j, "value");
     json_text(j, o->value);
     json_end(j);
@@ -55,6 +57,7 @@ static void print_origin(const struct origin *o)
     if (o->line) printf("%s:%d", slash ? slash + 1 : o->file, o->line);
     else printf("%s", slash ? slash + 1 : o->file);
     if (*o->source) printf("  %s", o->source);
+    if (*o->validate) printf("; %s%s", strncmp(o->validate, "unused", 6) == 0 ? "" : "validate: ", o->validate);
     putchar('\n');
 }
 
@@ -105,21 +108,34 @@ static void difference_json(struct json *j, const char *key, const struct shown 
     json_end(j);
 }
 
-/* Both machines print the same keys in the same order. */
-static void compare(const struct common *c, const struct shown *x, const struct shown *y)
+static const struct origin *value_of(const struct shown *m, const char *key)
+{
+    for (int i = 0; i < m->n; i++)
+        if (strcmp(m->origin[i].key, key) == 0) return &m->origin[i];
+    return NULL;
+}
+
+static void print_difference(const struct common *c, struct json *j, const char *key, const struct shown *m,
+                             const struct origin *const o[2])
+{
+    const char *x = o[0] ? o[0]->value : "-", *y = o[1] ? o[1]->value : "-";
+    if (strcmp(x, y) == 0) return;
+    if (c->json) difference_json(j, key, &m[0], x, &m[1], y);
+    else printf("%-36s %-26s %s\n", key, x, y);
+}
+
+/* Values are paired by their names: every machine has the keys of the table, and published figures of its own. */
+static void compare(const struct common *c, const struct shown m[2])
 {
     struct json j = json_make(stdout);
     if (c->json) json_array(&j);
-    else printf("%-36s %-26s %s\n", "key", x->spec.name, y->spec.name);
-    for (int i = 0; i < x->n && i < y->n; i++) {
-        const struct origin *a = &x->origin[i], *b = &y->origin[i];
-        if (strcmp(a->value, b->value) == 0) continue;
-        if (!c->json) {
-            printf("%-36s %-26s %s\n", a->key, a->value, b->value);
-            continue;
+    else printf("%-36s %-26s %s\n", "key", m[0].spec.name, m[1].spec.name);
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < m[side].n; i++) {
+            const char *key = m[side].origin[i].key;
+            const struct origin *const o[2] = {value_of(&m[0], key), value_of(&m[1], key)};
+            if (side == 0 || !o[0]) print_difference(c, &j, key, m, o);
         }
-        difference_json(&j, a->key, x, a->value, y, b->value);
-    }
     if (c->json) {
         json_end(&j);
         json_finish(&j);
@@ -136,7 +152,7 @@ static int show(const struct common *c, struct arena *a)
         if (!plan_machine(&m[i].spec, c->arg[i], &o, a, &m[i].origin, &m[i].n, &e)) return common_fail(c, &e);
     }
     if (c->narg == 1) show_one(c, &m[0]);
-    else compare(c, &m[0], &m[1]);
+    else compare(c, m);
     return 0;
 }
 

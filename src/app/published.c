@@ -7,9 +7,9 @@
 #include "base/check.h"
 #include "base/text.h"
 
-enum { COLUMNS = 13, MOST_SETS = 8 };
+enum { COLUMNS = 14, MOST_SETS = 8 };
 
-static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source";
+static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
 
 static const struct {
     const char *name;
@@ -42,6 +42,14 @@ static int split(char *line, char *cell[COLUMNS])
     return n + 1;
 }
 
+/* A row without a cause may end before it. */
+static bool split_row(char *line, char *cell[COLUMNS])
+{
+    cell[COLUMNS - 1] = line + strlen(line);
+    int n = split(line, cell);
+    return n == COLUMNS || n == COLUMNS - 1;
+}
+
 static bool number(const char *s, double scale, double otherwise, double *value)
 {
     char *end;
@@ -63,6 +71,26 @@ static void split_sets(struct published *p, const char *s, struct arena *a)
     }
 }
 
+static const char *const uses[] = {"yes", "no", "other"};
+
+const char *published_use_name(enum published_use use) { return uses[use]; }
+
+static bool read_use(struct published *p, const char *s, struct err *e)
+{
+    for (int i = 0; i < 3; i++) {
+        p->use = (enum published_use)i;
+        if (strcmp(s, uses[i]) == 0) return true;
+    }
+    return err_set(e, ERR_DATA, "calibrated: '%s'; expected yes, no or other", s);
+}
+
+/* A point that cannot be tested says why. */
+static bool check_cause(const struct published *p, struct err *e)
+{
+    return p->use != USE_OTHER || *p->cause ||
+           err_set(e, ERR_DATA, "%s: calibrated is 'other', and no cause is given", p->id);
+}
+
 static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, struct err *e)
 {
     *p = (struct published){.id = cell[0],
@@ -70,19 +98,20 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
                             .at_text = cell[3],
                             .unit = cell[7],
                             .evidence = cell[8],
-                            .source = cell[12]};
+                            .source = cell[12],
+                            .cause = cell[13]};
     p->quantity = probe_find(cell[2]);
     if (p->quantity == PROBE_QUANTITIES) return err_set(e, ERR_DATA, "no quantity is called '%s'", cell[2]);
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (strcmp(cell[7], units[i].name) == 0) p->scale = units[i].scale;
     if (p->scale == 0) return err_set(e, ERR_DATA, "unknown unit '%s'", cell[7]);
-    p->calibrated = strcmp(cell[9], "yes") == 0;
+    if (!read_use(p, cell[9], e)) return false;
     if (!*cell[4] || !number(cell[3], 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
         !number(cell[5], p->scale, p->value, &p->low) || !number(cell[6], p->scale, p->value, &p->high) ||
         !number(cell[10], p->scale, 0, &p->add))
         return err_set(e, ERR_DATA, "%s: not a number", cell[0]);
     split_sets(p, cell[11], a);
-    return true;
+    return check_cause(p, e);
 }
 
 static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n, struct err *e)
@@ -97,7 +126,7 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
         s[length] = '\0';
         line++;
         bool ok = line == 1 ? strcmp(s, header) == 0 || err_set(e, ERR_DATA, "the header is not '%s'", header)
-                            : split(s, cell) == COLUMNS || err_set(e, ERR_DATA, "expected %d cells", COLUMNS);
+                            : split_row(s, cell) || err_set(e, ERR_DATA, "expected %d cells, or one less", COLUMNS);
         if (ok && line > 1) ok = record(&row[(*n)++], cell, a, e);
         if (ok) continue;
         text_copy(e->file, sizeof e->file, path);

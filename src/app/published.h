@@ -8,6 +8,13 @@
 #include "base/err.h"
 #include "run/probe.h"
 
+/* What a figure is to the machine file. */
+enum published_use {
+    USE_CALIBRATED, /* "yes": a number of the file was derived from it */
+    USE_HELD,       /* "no": nothing was; it says how well the model predicts */
+    USE_OTHER       /* "other": measured on other software or another machine; shown, judged by nobody */
+};
+
 /* One figure. Texts lie in the arena. */
 struct published {
     const char *id;
@@ -19,12 +26,16 @@ struct published {
     const char *unit;        /* as written: us, MB/s, B, ... */
     double scale;            /* SI per unit */
     const char *evidence;    /* P, PR, D, E */
-    bool calibrated;         /* a number of the machine file was derived from it */
+    enum published_use use;
     double add;              /* SI, what the simulator leaves out, added to its answer */
     int nset;
     const char **set; /* (nset) "machine.key=value": the machine that was measured, where it is not the file's */
     const char *source;
+    const char *cause; /* why the simulator misses it, or cannot be held against it; "": nothing is known */
 };
+
+/* published_use_name: "yes", "no", "other". */
+const char *published_use_name(enum published_use use);
 
 /* published_read: all rows of `path` into (*n) records in `a`.
  * Returns false with ERR_NO_INPUT, ERR_IO, or ERR_DATA with file and line. */

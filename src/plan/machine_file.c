@@ -30,20 +30,23 @@ static bool is_evidence(const char *s)
     }
 }
 
-static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf, struct err *e)
+/* `published`: the entry is a published figure, which says what validate does with it. */
+static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf, bool published,
+                          struct err *e)
 {
     for (const struct yaml_node *n = leaf->child; n != NULL; n = n->next) {
-        static const char *const known[] = {"value", "min", "max", "class", "source"};
+        static const char *const known[] = {"value", "min", "max", "class", "source", "validate"};
         bool is_known = false;
-        for (int i = 0; i < 5; i++) is_known = is_known || strcmp(n->key, known[i]) == 0;
+        for (int i = 0; i < 5 + published; i++) is_known = is_known || strcmp(n->key, known[i]) == 0;
         if (!is_known)
-            return err_set_at(e, ERR_DATA, v->file, n->line,
-                              "%s: unknown key '%.80s'; expected value, min, max, class or source", key, n->key);
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: unknown key '%.80s'; expected value, min, max, %s",
+                              key, n->key, published ? "class, source or validate" : "class or source");
         if (strcmp(n->key, "value") == 0) continue;
         if (n->kind != YAML_SCALAR)
             return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' has to be one value", key, n->key);
         if (strcmp(n->key, "class") == 0) v->evidence = n->text;
         if (strcmp(n->key, "source") == 0) v->source = n->text;
+        if (strcmp(n->key, "validate") == 0) v->validate = n->text;
     }
     if (!is_evidence(v->evidence) && v->evidence[0] != '\0')
         return err_set_at(e, ERR_DATA, v->file, v->line,
@@ -98,11 +101,11 @@ static bool read_leaf(void *context, const char *full, const struct yaml_node *l
     if (!field_set(f, &r->machine->spec, text, a, why, (int)sizeof why))
         return err_set_at(e, ERR_DATA, file, leaf->line, "%s: '%.80s': %s", key, text, why);
     if (leaf->kind != YAML_MAPPING) return true;
-    if (!read_evidence(v, key, leaf, e)) return false;
+    if (!read_evidence(v, key, leaf, false, e)) return false;
     return read_range(v, f, key, leaf, &r->machine->spec, e);
 }
 
-/* Figures that are known of the machine and not used: any name, value as text. */
+/* Figures that are known of the machine and that no run uses: any name, value as text. */
 static bool read_published(struct machine_file *m, const struct yaml_node *list, const char *file, struct arena *a,
                            struct err *e)
 {
@@ -112,9 +115,9 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
         int i = 0;
         while (i < m->npublished && strcmp(m->published[i].name, n->key) != 0) i++;
         if (i == MAX_PUBLISHED) return err_set_at(e, ERR_DATA, file, n->line, "more than %d published figures", i);
-        struct machine_value v = {.file = file, .line = n->line, .evidence = "", .source = ""};
+        struct machine_value v = {.file = file, .line = n->line, .evidence = "", .source = "", .validate = ""};
         v.text = setting_value(n->key, n, file, a, e);
-        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, e))) return false;
+        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, true, e))) return false;
         m->published[i] = (struct machine_published){.name = n->key, .value = v};
         if (i == m->npublished) m->npublished++;
     }

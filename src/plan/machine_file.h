@@ -11,6 +11,7 @@ struct machine_value {
     const char *file;
     int line;
     const char *evidence, *source;
+    const char *validate; /* of a published figure, NULL of others */
     double min, max;
 };
 
@@ -19,7 +20,7 @@ struct machine_file {
     const char *path;            /* of the file named, not of its bases */
     struct machine_value *value; /* (machine_table.nfield) */
     int npublished;
-    struct machine_published { /* published figures that the simulator does not use */
+    struct machine_published { /* published figures that no run uses */
         const char *name;
         struct machine_value value;
     } * published;

@@ -142,6 +142,7 @@ static struct origin origin_make(const char *key, const char *value, const struc
                            .line = v->line,
                            .evidence = v->evidence,
                            .source = v->source,
+                           .validate = v->validate != NULL ? v->validate : "",
                            .min = v->min,
                            .max = v->max};
 }

@@ -53,6 +53,7 @@ struct origin {
     int line;
     const char *evidence; /* P, PR, D, E or "" */
     const char *source;   /* citation or arithmetic, "" */
+    const char *validate; /* published figures: the row of published.csv that uses it, or why none does; "" */
     double min, max;      /* published range in SI, both 0 when there is none */
 };
 

@@ -51,7 +51,7 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 4,              /* of schema.sql, in user_version */
+    STORE_VERSION = 5,              /* of schema.sql, in user_version */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */

@@ -213,8 +213,9 @@ CREATE TABLE check_point (
     relative_error REAL,
     tolerance      REAL,
     class          TEXT NOT NULL,      -- evidence: exact, P, PR, D, E, blind
-    verdict        TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),
+    verdict        TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'explained', 'not-testable')),
     source         TEXT NOT NULL,
+    cause          TEXT NOT NULL DEFAULT '', -- of an error that is explained, of a point that cannot be tested
     UNIQUE (suite, subject, quantity, at)
 ) STRICT;
 

@@ -1,0 +1,94 @@
+/* validation.c - published figures judged (validation.h). */
+#include "app/validation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+static bool is_cut(const struct published *p)
+{
+    return p->quantity == PROBE_BISECTION || p->quantity == PROBE_GLOBAL || p->quantity == PROBE_WIRE;
+}
+
+static double tolerance_of(const struct published *p)
+{
+    bool recalled = strcmp(p->evidence, "PR") == 0 || strcmp(p->evidence, "E") == 0;
+    if (is_cut(p) || (p->quantity == PROBE_READ && !recalled)) return recalled ? 0.2 : 0.05;
+    if (p->use == USE_HELD) return VALIDATION_UNEXPLAINED;
+    return recalled ? 0.2 : 0.1;
+}
+
+static void judge(const struct published *p, struct outcome *o)
+{
+    o->tolerance = tolerance_of(p);
+    o->error = (o->value - p->value) / p->value;
+    bool inside = p->low < p->high && o->value >= p->low && o->value <= p->high;
+    if (!o->measured || p->use == USE_OTHER) o->verdict = "not-testable";
+    else if (inside || fabs(o->error) <= o->tolerance) o->verdict = "pass";
+    else o->verdict = *p->cause ? "explained" : "fail";
+}
+
+/* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
+bool validation_measure(const struct published *p, struct outcome *o, struct arena *a, struct err *e)
+{
+    struct machine_spec m;
+    struct plan_options options = {.nset = p->nset, .set = p->set};
+    *o = (struct outcome){.value = NAN};
+    if (!plan_machine(&m, p->machine, &options, a, NULL, NULL, e)) return false;
+    struct err why;
+    err_clear(&why);
+    o->measured = probe_measure(&m, p->quantity, p->at, &o->value, &why);
+    o->value = o->measured ? o->value + p->add : NAN;
+    text_copy(o->why, sizeof o->why, why.text);
+    judge(p, o);
+    return true;
+}
+
+static int ascending(const void *x, const void *y)
+{
+    double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+/* The points of one use; `size` is scratch of n. */
+static struct validation_group group(const struct published *const *p, const struct outcome *o, int n,
+                                     enum published_use use, double *size)
+{
+    struct validation_group g = {.worst_id = ""};
+    for (int i = 0; i < n; i++) {
+        double error = fabs(o[i].error);
+        if (!o[i].measured || p[i]->use != use || p[i]->evidence[0] == 'E') continue;
+        size[g.n++] = error;
+        g.mean += error;
+        g.above += error > VALIDATION_UNEXPLAINED;
+        g.unnamed += error > VALIDATION_UNEXPLAINED && !*p[i]->cause;
+        if (*g.worst_id && error <= fabs(g.worst)) continue;
+        g.worst = o[i].error;
+        g.worst_id = p[i]->id;
+    }
+    if (g.n == 0) return g;
+    g.mean /= g.n;
+    qsort(size, (size_t)g.n, sizeof *size, ascending);
+    g.median = (size[(g.n - 1) / 2] + size[g.n / 2]) / 2;
+    return g;
+}
+
+struct validation_summary validation_summarize(const struct published *const *p, const struct outcome *o, int n)
+{
+    struct validation_summary s = {.shown = n};
+    struct arena *a = arena_create();
+    double *size = TAKE(a, n + 1, double);
+    for (int i = 0; i < n; i++) {
+        s.failed += strcmp(o[i].verdict, "fail") == 0;
+        s.explained += strcmp(o[i].verdict, "explained") == 0;
+        bool untested = strcmp(o[i].verdict, "not-testable") == 0;
+        s.untested += untested;
+        s.estimated += !untested && p[i]->evidence[0] == 'E';
+    }
+    s.calibrated = group(p, o, n, USE_CALIBRATED, size);
+    s.held = group(p, o, n, USE_HELD, size);
+    arena_destroy(a);
+    return s;
+}
