@@ -53,7 +53,6 @@ struct joint_cost {
 
 /* bodies_make: the constants of m's bodies (nbody): in double the model's own, made by model_finish; otherwise made in
  * `a`. Bodies equal to their predecessor cost nothing. */
-#define bodies_make REAL_NAME(bodies_make)
 const struct body *bodies_make(const struct model *m, struct arena *a);
 
 /* body_picks: no column of the joint's H and W is ever written: all of them are unit vectors for good. */
@@ -64,19 +63,15 @@ static inline bool body_picks(const struct body *b)
 }
 
 /* base_motion: acceleration of the base minus gravity (6), [angular; linear]. */
-#define base_motion REAL_NAME(base_motion)
 void base_motion(const struct model *m, const struct state *s, real *a);
 
 /* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
-#define body_place REAL_NAME(body_place)
 void body_place(const struct body *b, const real *q, struct body_pose *pose);
 
 /* body_subspace: H and W alone, for a neighbour's joint; needs q only for universal, slot and point-plane. */
-#define body_subspace REAL_NAME(body_subspace)
 void body_subspace(const struct body *b, const real *q, struct subspace *s);
 
 /* body_rate: h = H u (6), the joint's relative velocity. */
-#define body_rate REAL_NAME(body_rate)
 void body_rate(const struct body_pose *pose, const real *u, real *h);
 
 /* body_bias: b (6), acceleration of the joint at u' = 0 seen from the parent's: physics (1.9), with kappa.
@@ -84,7 +79,6 @@ void body_rate(const struct body_pose *pose, const real *u, real *h);
  *   v   in   (>= 3) the body's own angular velocity
  *   h   in   (6) H u from body_rate
  *   u   in   (d) */
-#define body_bias REAL_NAME(body_bias)
 void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
                real *bias);
 
@@ -119,29 +113,23 @@ static inline void body_accelerate(const struct body *b, const real *f, real *a)
 static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
 
 /* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about shift^T is I. */
-#define body_inertia_factors REAL_NAME(body_inertia_factors)
 void body_inertia_factors(const struct body *b, real *shift, real *about);
 
 /* body_load: the external wrench on body i in internal axes and order, from the user's [force; moment] in `fext`
  * (6); zero when fext is NULL. */
-#define body_load REAL_NAME(body_load)
 void body_load(const struct body *b, const double *fext, real *f);
 
 /* body_spring: tau (d) += forces of the joint's spring and damper; nothing without has_spring. */
-#define body_spring REAL_NAME(body_spring)
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);
 
 /* body_step: coordinates after the time h at constant u, in place: rotations by the exponential map, displacements in
  * moving axes along those of mid-step. Symmetric in time, exact for one-degree joints; quaternions stay normalised. */
-#define body_step REAL_NAME(body_step)
 void body_step(const struct body *b, real *q, const real *u, real h);
 
 /* body_qdot: qd (nq) = N(q) u, the derivative of the stored coordinates. */
-#define body_qdot REAL_NAME(body_qdot)
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
 
 /* joint_cost_of: by type, never NULL; the same in every precision. body_cost: of a body. */
-#define joint_cost_of REAL_NAME(joint_cost_of)
 const struct joint_cost *joint_cost_of(enum model_joint joint);
 static inline const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(b->joint); }
 

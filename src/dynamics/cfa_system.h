@@ -22,12 +22,10 @@ struct cfa_system {
 };
 
 /* cfa_factor: at d's poses; memory from d->arena. Returns false when a block is not positive definite. */
-#define cfa_factor REAL_NAME(cfa_factor)
 bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w);
 
 /* cfa_solve: x = W A^-1 r: r (nbody x 6, first c of each body used) in, x (nbody x 6) constraint forces in body axes
  * out; r is destroyed. */
-#define cfa_solve REAL_NAME(cfa_solve)
 void cfa_solve(struct dynamics *d, const struct cfa_system *s, real *r, real *x, struct work *w);
 
 #endif

@@ -36,49 +36,38 @@ struct dynamics {
 };
 
 /* dynamics_take: constants and work arrays for m, in `a`, which also gives scratch. */
-#define dynamics_take REAL_NAME(dynamics_take)
 struct dynamics *dynamics_take(const struct model *m, struct arena *a);
 
 /* dynamics_load: set base acceleration and external wrenches from a state; copied. */
-#define dynamics_load REAL_NAME(dynamics_load)
 void dynamics_load(struct dynamics *d, const struct state *s);
 
 /* dynamics_place: transforms and subspaces of all bodies at q (nq), in d->pose. */
-#define dynamics_place REAL_NAME(dynamics_place)
 void dynamics_place(struct dynamics *d, const real *q);
 
 /* dynamics_velocities: d->v (linear part too) and d->bias of all bodies at (q, u); after dynamics_place. */
-#define dynamics_velocities REAL_NAME(dynamics_velocities)
 void dynamics_velocities(struct dynamics *d, const real *u);
 
 /* rnea: joint forces tau (nu) that give accelerations ud (nu) at (q, u): Newton-Euler, physics (2.1)-(2.5).
  * Springs are not considered: tau is what actuators and springs supply together.
  *
  *   rnea_full also leaves velocities (angular only), accelerations and joint forces in d->v, a, f, internal axes. */
-#define rnea REAL_NAME(rnea)
 void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
-#define rnea_full REAL_NAME(rnea_full)
 void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
 
 /* aba: accelerations ud (nu) from joint forces tau (nu), articulated bodies, physics (2.6), (2.7); massless bodies
  * allowed. Returns false when an articulated inertia is singular along its joint. */
-#define aba REAL_NAME(aba)
 bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 
 /* aba_full: as aba, by the general code whatever the joints; leaves accelerations in d->a. aba_response: the same at
  * d's present poses without velocity terms and base acceleration: M^-1 (tau + loads). */
-#define aba_full REAL_NAME(aba_full)
 bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
-#define aba_response REAL_NAME(aba_response)
 bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w);
 
 /* crba: mass matrix (nu x nu, row-major, both triangles) at q. */
-#define crba REAL_NAME(crba)
 void crba(struct dynamics *d, const real *q, real *mass, struct work *w);
 
 /* crba_forward: ud from tau through the mass matrix. sparse: use the tree's zero pattern (L^T L along paths to the
  * root); otherwise dense Cholesky. Returns false when a pivot is not positive. */
-#define crba_forward REAL_NAME(crba_forward)
 bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *tau, bool sparse, real *ud,
                   struct work *w);
 
@@ -101,24 +90,20 @@ struct cfa_report {
  * on body b [rows as the loop's], NULL if not wanted.
  *
  *   Returns false when a pivot is not positive definite (e: massless bodies, breakdown) */
-#define cfa REAL_NAME(cfa)
 bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, const struct cfa_options *options, real *ud,
          real *lambda, struct cfa_report *report, struct work *w);
 
 /* forward_robust: the most accurate way: cfa direct with refinements; where light bodies between heavy ones, or bodies
  * without Phi, make that break down or not converge, articulated bodies with the same outer refinement. */
-#define forward_robust REAL_NAME(forward_robust)
 bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
                     struct cfa_report *report, struct work *w);
 
 /* closed_forward: ud of a closed system through the articulated-body algorithm: M^-1 J^T column by column; the second,
  * independent way to loops. lambda (nrow) may be NULL. Returns false as aba. */
-#define closed_forward REAL_NAME(closed_forward)
 bool closed_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
                     struct cfa_report *report, struct work *w);
 
 /* springs_add: tau (nu) += spring and damper forces at (q, u). */
-#define springs_add REAL_NAME(springs_add)
 void springs_add(struct dynamics *d, const real *q, const real *u, real *tau);
 
 /* What can be measured of a motion; world = base frame axes. */
@@ -129,7 +114,6 @@ struct motion_totals {
 };
 
 /* motion_totals_of: energy, momentum and centre of mass at (q, u). */
-#define motion_totals_of REAL_NAME(motion_totals_of)
 void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t);
 
 /* Where a body is and how it moves, user's body axes, world components. */
@@ -140,11 +124,9 @@ struct body_motion {
 };
 
 /* forward_kinematics: of all bodies (nbody) at (q, u, ud). */
-#define forward_kinematics REAL_NAME(forward_kinematics)
 void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out);
 
 /* loop_drift: the loops' violation: g (nrow) position, rho (nrow) velocity, at (q, u). Either may be NULL. */
-#define loop_drift REAL_NAME(loop_drift)
 void loop_drift(struct dynamics *d, const real *q, const real *u, real *g, real *rho);
 
 #endif

@@ -11,13 +11,11 @@
 #include "spec/kernel_spec.h"
 
 /* dynamics_forward: ud at (q, u) with springs added to tau: aba, closed_forward when there are loops. */
-#define dynamics_forward REAL_NAME(dynamics_forward)
 bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
 
 /* implicit_forward: ud that gives velocities at the end of a step of h when spring and damper forces are those at its
  * end, linearised: (M + s) ud = tau - k (q - rest + h u) - c u - xi, s = h c + h^2 k, physics (9.0). Open systems only.
  * Returns false when a pivot is not positive. */
-#define implicit_forward REAL_NAME(implicit_forward)
 bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
                       struct work *w);
 
@@ -34,7 +32,6 @@ struct integrator {
 };
 
 /* integrator_make: to move q, u in place. Memory from d->arena. */
-#define integrator_make REAL_NAME(integrator_make)
 struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real h, real *q, real *u, const real *tau);
 
 /* integrator_step: one step:
@@ -43,12 +40,10 @@ struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real 
  *   rk4            the classical Runge-Kutta method on (q, u)                                        order 4
  *   linearly-implicit  semi-implicit with a from implicit_forward: stable whatever k and c             order 1
  *   Returns false when the dynamics broke down, or a closed system is to be stepped implicitly. */
-#define integrator_step REAL_NAME(integrator_step)
 bool integrator_step(struct integrator *it);
 
 /* loop_project: put (q, u) back on the loops: `newton` times q += M^-1 J^T S^+ (-g), then u -= M^-1 J^T S^+ J u: the
  * nearest state in the sense of kinetic energy. newton = 0 mends velocities alone. Returns false as aba. */
-#define loop_project REAL_NAME(loop_project)
 bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work *w);
 
 #endif

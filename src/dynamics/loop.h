@@ -34,7 +34,6 @@ struct loop_pose {
 };
 
 /* loop_make: the constants of loop i of m. */
-#define loop_make REAL_NAME(loop_make)
 void loop_make(const struct model *m, int i, struct loop *l);
 
 /* loop_rows: constraints of all loops. loops_make: the constants of all loops (nloop), and of each constraint its place
@@ -52,20 +51,16 @@ static inline void loops_make(const struct model *m, struct loop *loop, int *pla
  *               the base)
  *   va, vb  in  (6) velocities of a and b in their internal frames (zero for the base) */
 enum { LOOP_PLACE_FLOP = 520 };
-#define loop_place REAL_NAME(loop_place)
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p);
 
 /* loop_force: adds -T_a W lambda to fa (6) and T_b W lambda to fb (6), internal frames; either may be NULL. */
-#define loop_force REAL_NAME(loop_force)
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb);
 
 /* loop_column: T_b W (6 x c, column k at out + 6 k) for side b, -T_a W for side a: the loop's columns at a body. */
-#define loop_column REAL_NAME(loop_column)
 void loop_column(const struct loop_pose *p, bool side_b, real *out);
 
 /* loop_residual: r (c) = W^T (T_b^T ab - T_a^T aa + gamma) + stabilise, for accelerations (6) of the two bodies. */
-#define loop_residual REAL_NAME(loop_residual)
 void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r);
 
 

@@ -13,24 +13,19 @@ struct loops {
 
 /* loops_take: the loops of d's model, placed at d's poses and velocities (dynamics_velocities); memory from
  * d->arena, so that a mark taken before gives it back. */
-#define loops_take REAL_NAME(loops_take)
 void loops_take(struct dynamics *d, struct loops *l);
 
 /* loops_force: f (nbody x 6) += forces of lambda (nrow) on the bodies. */
-#define loops_force REAL_NAME(loops_force)
 void loops_force(const struct loops *l, const real *lambda, real *f);
 
 /* loops_column: f (nbody x 6) += forces of the unit lambda number k. */
-#define loops_column REAL_NAME(loops_column)
 void loops_column(const struct loops *l, int k, real *f);
 
 /* loops_residual: r (nrow) from body accelerations a (nbody x 6) and the base's (6; NULL: zero).
  *   homogeneous: without velocity terms and stabilisation. */
-#define loops_residual REAL_NAME(loops_residual)
 void loops_residual(const struct loops *l, const real *a, const real *base, bool homogeneous, real *r);
 
 /* loops_reference: (nrow) diagonal of A_ll = sum of column^T Phi column; for bodies without Phi, 1 / mass alone. */
-#define loops_reference REAL_NAME(loops_reference)
 void loops_reference(const struct dynamics *d, const struct loops *l, real *reference);
 
 #endif

@@ -45,26 +45,20 @@ struct joint_cost {
 };
 
 /* bodies_make: the constants of all bodies (nbody), in `a`; the scene must be planar, at least nearly. */
-#define bodies_make SPACE_NAME(bodies_make)
 const struct body *bodies_make(const struct model *m, struct arena *a);
 
 /* base_motion: acceleration of the base minus gravity (3). */
-#define base_motion SPACE_NAME(base_motion)
 void base_motion(const struct model *m, const struct state *s, real *a);
 
 /* body_picks: no column of the joint's H and W is ever written. */
 static inline bool body_picks(const struct body *b) { return !b->flipped; }
 
 /* body_place, body_subspace, body_rate: as in body.h. */
-#define body_place SPACE_NAME(body_place)
 void body_place(const struct body *b, const real *q, struct body_pose *pose);
-#define body_subspace SPACE_NAME(body_subspace)
 void body_subspace(const struct body *b, const real *q, struct subspace *s);
-#define body_rate SPACE_NAME(body_rate)
 void body_rate(const struct body_pose *pose, const real *u, real *h);
 
 /* body_bias: b (3) as in body.h: the centripetal acceleration of the origin, and 2 w x v_J + w_J x v_J of slides. */
-#define body_bias SPACE_NAME(body_bias)
 void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
                real *bias);
 
@@ -125,19 +119,13 @@ static inline void body_inertia_factors(const struct body *b, real *shift, real 
 }
 
 /* body_load, body_spring, body_step, body_qdot: as in body.h; of the wrench the part in the plane. */
-#define body_load SPACE_NAME(body_load)
 void body_load(const struct body *b, const double *fext, real *f);
-#define body_spring SPACE_NAME(body_spring)
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);
-#define body_step SPACE_NAME(body_step)
 void body_step(const struct body *b, real *q, const real *u, real h);
-#define body_qdot SPACE_NAME(body_qdot)
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
 
 /* joint_cost_of: by type, with columns picked; never NULL. body_cost: of a body. */
-#define joint_cost_of SPACE_NAME(joint_cost_of)
 const struct joint_cost *joint_cost_of(enum model_joint joint);
-#define body_cost SPACE_NAME(body_cost)
 const struct joint_cost *body_cost(const struct body *b);
 
 #endif

@@ -28,21 +28,17 @@ struct loop_pose {
 };
 
 /* loop_rows: constraints of all loops that act in the plane. */
-#define loop_rows SPACE_NAME(loop_rows)
 int loop_rows(const struct model *m);
 
 /* loops_make: the constants of all loops (nloop), and of each acting constraint the place in the model's lambda. */
-#define loops_make SPACE_NAME(loops_make)
 void loops_make(const struct model *m, struct loop *loop, int *place);
 
 /* loop_place: as in loop.h. */
 enum { LOOP_PLACE_FLOP = 150 };
-#define loop_place SPACE_NAME(loop_place)
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p);
 
 /* loop_column: as in loop.h. */
-#define loop_column SPACE_NAME(loop_column)
 void loop_column(const struct loop_pose *p, bool side_b, real *out);
 
 #endif

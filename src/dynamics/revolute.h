@@ -16,15 +16,11 @@ struct revolute {
 };
 
 /* revolutes_take: of all bodies of d, from their constants. */
-#define revolutes_take REAL_NAME(revolutes_take)
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a);
 
 /* rnea_revolute, aba_revolute, crba_revolute: rnea, aba and crba for d->revolute; no work is counted here. */
-#define rnea_revolute REAL_NAME(rnea_revolute)
 void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau);
-#define aba_revolute REAL_NAME(aba_revolute)
 bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud);
-#define crba_revolute REAL_NAME(crba_revolute)
 void crba_revolute(struct dynamics *d, const real *q, real *mass);
 
 #endif

@@ -16,26 +16,20 @@ struct subspace {
 };
 
 /* subspace_h: y (SPACE) += H x (d). subspace_w: y (SPACE) += W x (c). */
-#define subspace_h SPACE_NAME(subspace_h)
 void subspace_h(const struct subspace *s, const real *x, real *y);
-#define subspace_w SPACE_NAME(subspace_w)
 void subspace_w(const struct subspace *s, const real *x, real *y);
 
 /* subspace_h_transposed: y (d) = H^T x (SPACE). subspace_w_transposed: y (c) = W^T x (SPACE). */
-#define subspace_h_transposed SPACE_NAME(subspace_h_transposed)
 void subspace_h_transposed(const struct subspace *s, const real *x, real *y);
-#define subspace_w_transposed SPACE_NAME(subspace_w_transposed)
 void subspace_w_transposed(const struct subspace *s, const real *x, real *y);
 
 /* subspace_column: column k of [H W] in y (SPACE). */
-#define subspace_column SPACE_NAME(subspace_column)
 void subspace_column(const struct subspace *s, int k, real *y);
 
 /* subspace_project: out (rows of A's part x columns of B's part, row-major) = part(A)^T M part(B) for a full square M.
  *
  *   a, a_w   in   subspace on the left; true: its W, false: its H
  *   b, b_w   in   subspace on the right */
-#define subspace_project SPACE_NAME(subspace_project)
 void subspace_project(const struct subspace *a, bool a_w, const real *m, const struct subspace *b, bool b_w, real *out);
 
 #endif

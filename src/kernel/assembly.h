@@ -9,32 +9,25 @@
 #include "kernel/chain.h"
 
 /* assembly_inverse_inertia: Phi (SPACE x SPACE) of body i; with dense operators shifted and inverted anew. */
-#define assembly_inverse_inertia SPACE_NAME(assembly_inverse_inertia)
 void assembly_inverse_inertia(struct chain *ch, int i, real *phi);
 
 /* assembly_operators: D_ii and E_i (SPACE x SPACE each) of joint i, an own body or the first one behind the block
  * (whose D is of no use: D may be NULL). E is zero for i = 0. */
-#define assembly_operators SPACE_NAME(assembly_operators)
 void assembly_operators(struct chain *ch, int i, real *D, real *E);
 
 /* assembly_project: out (c_a x c_b) = W_a^T M W_b. */
-#define assembly_project SPACE_NAME(assembly_project)
 void assembly_project(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out);
 
 /* assembly_turn: out (SPACE x SPACE) = Q_a^T M Q_b. */
-#define assembly_turn SPACE_NAME(assembly_turn)
 void assembly_turn(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out);
 
 /* assembly_turn_vector: y (SPACE) = Q^T x. */
-#define assembly_turn_vector SPACE_NAME(assembly_turn_vector)
 void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real *x, real *y);
 
 /* assembly_pack: the symmetric (c x c) matrix M, row stride `stride`, into packed storage. */
-#define assembly_pack SPACE_NAME(assembly_pack)
 void assembly_pack(int c, const real *M, int stride, real *packed);
 
 /* chain_shifted_inertia: dense operators: the square inertia of a body about its origin, by two full products. */
-#define chain_shifted_inertia SPACE_NAME(chain_shifted_inertia)
 void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w);
 
 #endif

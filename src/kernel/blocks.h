@@ -55,7 +55,6 @@ static inline int row_owner(const struct row_layout *l, int i)
 }
 
 /* blocks_carve: room for rank `rank`'s rows with m right-hand sides; keep: further ones will follow. */
-#define blocks_carve REAL_NAME(blocks_carve)
 void blocks_carve(struct blocks *b, struct carve *c, const struct kernel_spec *spec, const struct row_layout *layout,
                   int rank, int m, bool keep);
 
@@ -69,26 +68,20 @@ static inline real *blocks_row_r(const struct blocks *b, int i) { return b->r + 
  *
  *   Messages beside the reduction's: one to the left (8 c^2 bytes for one row, with the Schur complement of more rows),
  *   one with the interface solution to the right. */
-#define blocks_solve REAL_NAME(blocks_solve)
 void blocks_solve(struct blocks *b, struct work *w);
 
 /* blocks_resolve: another right-hand side in the rows' r, with the factors of blocks_solve (keep). */
-#define blocks_resolve REAL_NAME(blocks_resolve)
 void blocks_resolve(struct blocks *b, struct work *w);
 
 /* blocks_rows_solve: SOLVER_PCR, SOLVER_PCR_SYMMETRIC with several rows on some rank: all rows are reduced; `again`:
  * further right-hand sides with kept factors (symmetric only). blocks_rows_carve: room for it. */
-#define blocks_rows_solve REAL_NAME(blocks_rows_solve)
 void blocks_rows_solve(struct blocks *b, bool again, struct work *w);
-#define blocks_rows_carve REAL_NAME(blocks_rows_carve)
 void blocks_rows_carve(struct blocks *b, struct carve *c);
 
 /* blocks_serial_solve: SOLVER_THOMAS: gather to rank 0, solve, scatter. */
-#define blocks_serial_solve REAL_NAME(blocks_serial_solve)
 void blocks_serial_solve(struct blocks *b, bool again, struct work *w);
 
 /* blocks_serial_carve: room for it: the whole system on rank 0. */
-#define blocks_serial_carve REAL_NAME(blocks_serial_carve)
 void blocks_serial_carve(struct blocks *b, struct carve *c, int rank);
 
 #endif

@@ -42,50 +42,39 @@ struct chain {
 };
 
 /* chain_shared_make: from a job's model, state and number of ranks. */
-#define chain_shared_make SPACE_NAME(chain_shared_make)
 struct chain_shared *chain_shared_make(const struct kernel_job *job, struct arena *a);
 
 /* chain_carve: room for rank `rank`'s share; `edge`: with a pose for the right neighbour's first body;
  * `forces`: accelerations and forces will be wanted, not only velocities. The scan's
  * room is the caller's to carve, so that it can be shared. */
-#define chain_carve SPACE_NAME(chain_carve)
 void chain_carve(struct chain *ch, struct carve *c, const struct kernel_job *job, int rank, bool edge, bool forces);
 
 /* chain_load: coordinates and rates of own bodies from the job's state. */
-#define chain_load SPACE_NAME(chain_load)
 void chain_load(struct chain *ch);
 
 /* chain_place: transforms, subspaces and joint velocities of own bodies. */
-#define chain_place SPACE_NAME(chain_place)
 void chain_place(struct chain *ch);
 
 /* chain_velocity: v of own bodies; nothing when the job omits velocities. The first of the scans upwards builds the
  * composites of them all. Stage NE[1]. */
-#define chain_velocity SPACE_NAME(chain_velocity)
 void chain_velocity(struct chain *ch);
 
 /* chain_bias: b of own bodies from v; nothing when the job omits velocities. */
-#define chain_bias SPACE_NAME(chain_bias)
 void chain_bias(struct chain *ch);
 
 /* chain_acceleration: a of own bodies from b and u' (ud over own joints, NULL: zero). Stage NE[2]. */
-#define chain_acceleration SPACE_NAME(chain_acceleration)
 void chain_acceleration(struct chain *ch, const real *ud);
 
 /* chain_force: f of own bodies, and joint forces tau over own joints. Stage NE[3]. */
-#define chain_force SPACE_NAME(chain_force)
 void chain_force(struct chain *ch, real *tau);
 
 /* chain_bias_force: joint forces tau over own joints at u' = 0: the three stages NE[1] to NE[3]. */
-#define chain_bias_force SPACE_NAME(chain_bias_force)
 void chain_bias_force(struct chain *ch, real *tau);
 
 /* chain_gyro: P - Fext of own body i into f (SPACE). */
-#define chain_gyro SPACE_NAME(chain_gyro)
 void chain_gyro(struct chain *ch, int i, real *f);
 
 /* chain_gain: Fext - P of own bodies into gain (SPACE each). */
-#define chain_gain SPACE_NAME(chain_gain)
 void chain_gain(struct chain *ch, real *gain);
 
 /* chain_pose: of own body i, or of body hi. */
@@ -114,9 +103,7 @@ static inline int chain_q_at(const struct chain *ch, int i)
 }
 
 /* chain_nu, chain_nq: rates (coordinates) of own joints. */
-#define chain_nu SPACE_NAME(chain_nu)
 int chain_nu(const struct chain_shared *shared, int lo, int hi);
-#define chain_nq SPACE_NAME(chain_nq)
 int chain_nq(const struct chain_shared *shared, int lo, int hi);
 
 /* chain_report: tell the machine what was done since the last report. */

@@ -42,7 +42,6 @@ struct closure {
 
 /* closure_shared_make: the loops of a model; `owner` (2 nloop) and `base` as above, borrowed. NULL when there are
  * none. */
-#define closure_shared_make SPACE_NAME(closure_shared_make)
 struct closure_shared *closure_shared_make(const struct model *m, const struct body *body, const real *base,
                                            const int *owner, struct arena *a);
 
@@ -53,21 +52,17 @@ static inline int closure_body(const struct closure_shared *s, int side)
 }
 
 /* closure_carve: room for rank `rank`. */
-#define closure_carve SPACE_NAME(closure_carve)
 void closure_carve(struct closure *cl, struct carve *c, const struct closure_shared *shared, int rank);
 
 /* closure_meet: both sides of every loop exchange pose and velocity and place the loop. */
-#define closure_meet SPACE_NAME(closure_meet)
 void closure_meet(struct closure *cl, struct work *w);
 
 /* closure_loads: load (m x SPACE) of an own body: column 1 + row += the force of that row's unit lambda. */
-#define closure_loads SPACE_NAME(closure_loads)
 void closure_loads(struct closure *cl, int body, real *load, struct work *w);
 
 /* closure_solve: lambda on every rank.
  *
  *   acceleration  in  (2 nloop) for own sides: (m x SPACE) classical acceleration of the body for each column */
-#define closure_solve SPACE_NAME(closure_solve)
 void closure_solve(struct closure *cl, real *const *acceleration, struct work *w);
 
 #endif

@@ -56,19 +56,15 @@ struct contraction {
 };
 
 /* contraction_carve: room for rank `rank`. */
-#define contraction_carve SPACE_NAME(contraction_carve)
 void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job, int rank);
 
 /* contraction_set: the communicator of this rank. */
-#define contraction_set SPACE_NAME(contraction_set)
 void contraction_set(struct contraction *k, struct comm *c);
 
 /* contraction_run: the job's evaluation or time steps; the first evaluation's answer into the job's arrays. */
-#define contraction_run SPACE_NAME(contraction_run)
 void contraction_run(struct contraction *k);
 
 /* contraction_solve: f1, f2 of all own bodies for what is given (k->given, k->m columns): contract, then undo. */
-#define contraction_solve SPACE_NAME(contraction_solve)
 void contraction_solve(struct contraction *k);
 
 /* contraction_record_size: numbers that an operation leaves for its undoing at the rank of its `into`. */

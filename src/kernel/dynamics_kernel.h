@@ -6,11 +6,8 @@
 #include "linalg/space.h"
 
 /* inverse: parallel Newton-Euler; forward: constraint force algorithm; dynamics: both, a barrier between them. */
-#define inverse_kernel SPACE_NAME(inverse_kernel)
 extern const struct kernel_type inverse_kernel;
-#define forward_kernel SPACE_NAME(forward_kernel)
 extern const struct kernel_type forward_kernel;
-#define dynamics_kernel SPACE_NAME(dynamics_kernel)
 extern const struct kernel_type dynamics_kernel;
 
 #endif

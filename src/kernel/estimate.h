@@ -9,15 +9,12 @@
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
  * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
  * tenth. */
-#define estimate_inverse SPACE_NAME(estimate_inverse)
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 /* estimate_forward: see above. */
-#define estimate_forward SPACE_NAME(estimate_forward)
 void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 /* estimate_dynamics: see above. */
-#define estimate_dynamics SPACE_NAME(estimate_dynamics)
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct kernel_estimate *out);
 
@@ -38,7 +35,6 @@ static inline bool kernel_branches(const struct run_spec *spec, const struct mod
 
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
  * exact but for loops and refinements, flops roughly. */
-#define estimate_tree SPACE_NAME(estimate_tree)
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
                    bool forward, struct kernel_estimate *out);
 

@@ -8,12 +8,10 @@
 #include "linalg/real.h"
 
 /* largest_size: the larger of `so_far` and the magnitudes of x (n); infinite when one is not a number. */
-#define largest_size REAL_NAME(largest_size)
 real largest_size(real so_far, int n, const real *x);
 
 /* largest_everywhere: x[i] = the largest x[i] of all ranks, i < n <= 4, by dissemination in ceil(log2 P) rounds (a
  * maximum may be counted twice). Every rank must call. */
-#define largest_everywhere REAL_NAME(largest_everywhere)
 void largest_everywhere(struct comm *c, int tag, int n, real *x);
 
 /* The course of outer refinement (physics 8.6): it is worth while the constraints are not met to nearly all digits, and
@@ -24,11 +22,9 @@ struct refinement {
 
 /* refinement_begin: false when `residual` of the worst rank is so small that inverse dynamics, whose scans round each
  * force on its own, would rather add errors than remove any. An infinite residual says that it tells nothing. */
-#define refinement_begin REAL_NAME(refinement_begin)
 bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residual);
 
 /* refinement_accept: whether the correction (n of each rank) to the answer is smaller than the one before it. */
-#define refinement_accept REAL_NAME(refinement_accept)
 bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction,
                        const real *answer);
 

@@ -45,15 +45,12 @@ struct forward {
 };
 
 /* forward_carve: room for rank `rank`. */
-#define forward_carve SPACE_NAME(forward_carve)
 void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank);
 
 /* forward_set: the communicator of this rank. */
-#define forward_set SPACE_NAME(forward_set)
 void forward_set(struct forward *f, struct comm *c);
 
 /* forward_run: the job's evaluation or time steps; the first evaluation's answer into the job's arrays. */
-#define forward_run SPACE_NAME(forward_run)
 void forward_run(struct forward *f);
 
 #endif

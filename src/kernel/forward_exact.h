@@ -16,7 +16,6 @@
 enum { TWICE_FLOP = 20 };
 
 /* exact_begin: the present forces of own joints and of those beside the block, as they are in working precision. */
-#define exact_begin SPACE_NAME(exact_begin)
 void exact_begin(struct forward *f);
 
 /* exact_force: F (SPACE) of joint i, own or beside the block. */
@@ -36,7 +35,6 @@ static inline void exact_add(struct forward *f, int i, const real *x)
 
 /* exact_operator_form: z of own bodies (4.8), rounded once, from these forces; f->residual with it. The flags say which
  * terms there are: loads (gain), joint bias accelerations, the base's. */
-#define exact_operator_form SPACE_NAME(exact_operator_form)
 void exact_operator_form(struct forward *f, bool gain, bool bias, bool base);
 
 #endif

@@ -31,16 +31,13 @@ static inline int forward_row_size(const struct forward *f, int i)
 }
 
 /* forward_project: out (row_size(i) x row_size(j)) = Q_i^T M Q_j in the columns of the rows of joints i and j. */
-#define forward_project SPACE_NAME(forward_project)
 void forward_project(struct forward *f, int i, const real *M, int j, real *out);
 
 /* forward_add_reaction: F += W x for joint i, x (c), or [H W] x (SPACE). */
-#define forward_add_reaction SPACE_NAME(forward_add_reaction)
 void forward_add_reaction(struct forward *f, int i, const real *x, real *force);
 
 /* forward_violation: out (row_size(i)): W^T z of own joint i; with a resistance H^T z - s^-1 (tau_0 - H^T F) before it,
  * tau_0 being the active forces that the solution began with. Its work is the caller's to count. */
-#define forward_violation SPACE_NAME(forward_violation)
 void forward_violation(struct forward *f, int i, const real *z, real *out);
 
 /* forward_violation_flops: of it; with a resistance a division comes on top. */

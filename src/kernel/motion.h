@@ -24,16 +24,13 @@ struct motion {
 };
 
 /* motion_carve: room for stepping nq coordinates and nu rates. */
-#define motion_carve SPACE_NAME(motion_carve)
 void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu);
 
 /* motion_run: all time steps of the job, the last state into job->q_end, qd_end; without time steps one evaluation. */
-#define motion_run SPACE_NAME(motion_run)
 void motion_run(struct motion *m);
 
 /* motion_watch: what this rank saw in one more evaluation, a residual relative to `scale` and a condition, into the
  * job's arrays: the largest of all evaluations so far. */
-#define motion_watch SPACE_NAME(motion_watch)
 void motion_watch(const struct kernel_job *job, int rank, real residual, real scale, real condition);
 
 #endif

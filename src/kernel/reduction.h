@@ -49,7 +49,6 @@ struct reduction {
 };
 
 /* reduction_carve: room for rank `rank`'s interface row with m right-hand sides; keep: see above. */
-#define reduction_carve REAL_NAME(reduction_carve)
 void reduction_carve(struct reduction *s, struct carve *c, const struct kernel_spec *spec, enum solver method,
                      const struct row_layout *layout, int rank, int m, bool keep);
 
@@ -69,23 +68,16 @@ static inline real *reduction_right(const struct reduction *s)
  *   w   in/out  work not yet reported
  *
  *   Messages of PCR 2 (P lg P - P + 1) for P = 2^lg; of CR 4 (P - 1) - 2 lg P. Bytes: physics (5.2), 5.3. */
-#define reduction_run REAL_NAME(reduction_run)
 void reduction_run(struct reduction *s, int tag, struct work *w);
 
 /* reduction_rerun: another right-hand side in r (c x m) with the factors kept by reduction_run. */
-#define reduction_rerun REAL_NAME(reduction_rerun)
 void reduction_rerun(struct reduction *s, int tag, struct work *w);
 
 /* The reductions themselves; row `k` of `n` lives on rank (k+1) stride - 1. */
-#define pcr_run REAL_NAME(pcr_run)
 void pcr_run(struct reduction *s, int stride, int tag, struct work *w);
-#define pcr_rerun REAL_NAME(pcr_rerun)
 void pcr_rerun(struct reduction *s, int stride, int tag, struct work *w);
-#define pcr_textbook_run REAL_NAME(pcr_textbook_run)
 void pcr_textbook_run(struct reduction *s, int tag, struct work *w);
-#define cr_run REAL_NAME(cr_run)
 void cr_run(struct reduction *s, int levels, int tag, struct work *w);
-#define cr_rerun REAL_NAME(cr_rerun)
 void cr_rerun(struct reduction *s, int levels, int tag, struct work *w);
 
 /* A row of the textbook's form in a message or a buffer: the numbers [L D U r]. */
@@ -95,29 +87,23 @@ struct textbook_row {
 };
 
 /* textbook_row_at: the row that begins at `base`. */
-#define textbook_row_at REAL_NAME(textbook_row_at)
 struct textbook_row textbook_row_at(real *base, int c, int nl, int nu);
 
 /* textbook_row_fold: the row `v` behind the coupling K (c x v.c) of `row`: alpha = K D_v^-1, D -= alpha back,
  * r -= alpha r_v, next (c x order) = -alpha onward. v's D is destroyed. Returns false when it has no inverse. */
-#define textbook_row_fold REAL_NAME(textbook_row_fold)
 bool textbook_row_fold(struct textbook_row *row, const real *K, struct textbook_row *v, const real *back,
                        const real *onward, int order, real *next, int m, struct work *w);
 
 /* reduction_break: mark the row as broken and spread "not a number" through everything it sends. */
-#define reduction_break REAL_NAME(reduction_break)
 void reduction_break(struct reduction *s, int nl, int nu);
 
 /* reduction_eliminate: eliminate the row in its present state (block_row_eliminate) into factor number `slot`. */
-#define reduction_eliminate REAL_NAME(reduction_eliminate)
 void reduction_eliminate(struct reduction *s, int slot, int nl, int nu, struct work *w);
 
 /* reduction_finish: the row has no neighbours left: factor D into `slot` and r <- D^-1 r. */
-#define reduction_finish REAL_NAME(reduction_finish)
 void reduction_finish(struct reduction *s, int slot, struct work *w);
 
 /* reduction_refinish: r <- D^-1 r with the factor in `slot`. */
-#define reduction_refinish REAL_NAME(reduction_refinish)
 void reduction_refinish(struct reduction *s, int slot, struct work *w);
 
 #endif

@@ -29,39 +29,30 @@ struct scan {
 
 /* transform_force: y = T f; transform_motion: y = T^T v; transform_compose: c = a o b; each with its account.
  * y may be the argument; c may be neither. */
-#define transform_force SPACE_NAME(transform_force)
 void transform_force(bool dense, real *y, const real *T, const real *f, struct work *w);
-#define transform_motion SPACE_NAME(transform_motion)
 void transform_motion(bool dense, real *y, const real *T, const real *v, struct work *w);
-#define transform_compose SPACE_NAME(transform_compose)
 void transform_compose(bool dense, real *c, const real *a, const real *b, struct work *w);
 
 /* transform_base: y = T^T v for the acceleration v of the base; `slides`: it has no angular part, which saves most of
  * the work but with dense operators. */
-#define transform_base SPACE_NAME(transform_base)
 void transform_base(bool dense, bool slides, real *y, const real *T, const real *v, struct work *w);
 
 /* transform_expand: the square matrix of a pair, as the product of a shift and a rotation (dense) or a copy. */
-#define transform_expand SPACE_NAME(transform_expand)
 void transform_expand(bool dense, real *T, const struct xform *x, struct work *w);
 
 /* scan_carve: room of rank `rank` of `nrank` for its levels. */
-#define scan_carve SPACE_NAME(scan_carve)
 void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int rank, int nrank);
 
 /* scan_first: inclusive scan of the motion v (SPACE) in place, building the composites from level 0.
  *
  *   level 0  in   incoming: T_k, frame k -> k-1 (rank 0: none); outgoing: T_{k+1}, frame k+1 -> k (last rank: none)
  *   w        in/out  work done but not yet reported; reported at each communication step */
-#define scan_first SPACE_NAME(scan_first)
 void scan_first(struct scan *s, int tag, real *v, struct work *w);
 
 /* scan_motion: another scan of a motion v (SPACE) with the composites of scan_first. */
-#define scan_motion SPACE_NAME(scan_motion)
 void scan_motion(struct scan *s, int tag, real *v, struct work *w);
 
 /* scan_force: reverse inclusive scan of a force f (SPACE), f_k += T_{k+1} f_{k+1}. */
-#define scan_force SPACE_NAME(scan_force)
 void scan_force(struct scan *s, int tag, real *f, struct work *w);
 
 /* work_report: tell the machine what was done since the last report. */

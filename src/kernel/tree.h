@@ -41,34 +41,24 @@ struct tree {
 };
 
 /* tree_shared_make: from a job's model, state and number of ranks. */
-#define tree_shared_make SPACE_NAME(tree_shared_make)
 struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena *a);
 
 /* tree_carve: room for rank `rank`. */
-#define tree_carve SPACE_NAME(tree_carve)
 void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank);
 
 /* tree_load, tree_place, tree_velocity, tree_bias, tree_acceleration, tree_force: as those of chain.h; `more` (own
  * bodies x SPACE) is added to the bodies' forces, NULL: nothing. */
-#define tree_load SPACE_NAME(tree_load)
 void tree_load(struct tree *t);
-#define tree_place SPACE_NAME(tree_place)
 void tree_place(struct tree *t);
-#define tree_velocity SPACE_NAME(tree_velocity)
 void tree_velocity(struct tree *t);
-#define tree_bias SPACE_NAME(tree_bias)
 void tree_bias(struct tree *t);
-#define tree_acceleration SPACE_NAME(tree_acceleration)
 void tree_acceleration(struct tree *t, const real *ud);
-#define tree_force SPACE_NAME(tree_force)
 void tree_force(struct tree *t, real *tau, const real *more);
 
 /* tree_gyro: P - Fext of own body l into f (SPACE). */
-#define tree_gyro SPACE_NAME(tree_gyro)
 void tree_gyro(struct tree *t, int l, real *f);
 
 /* tree_base_pose: own body l to base; needs `poses` and tree_velocity. */
-#define tree_base_pose SPACE_NAME(tree_base_pose)
 void tree_base_pose(struct tree *t, int l, struct xform *x);
 
 /* tree_parent: index of own body l's parent among own bodies; -1: it is the anchor (or the base). */

@@ -59,7 +59,6 @@ static inline void angle_sincos(real x, real *s, real *c)
 }
 
 /* angle_sincos_batch: s[i], c[i] of x[i], i = 0 .. n-1, in packed registers. s, c may not overlap x. */
-#define angle_sincos_batch REAL_NAME(angle_sincos_batch)
 void angle_sincos_batch(int n, const real *restrict x, real *restrict s, real *restrict c);
 
 #endif

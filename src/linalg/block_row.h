@@ -36,19 +36,16 @@ static inline int block_factor_size(int c, int nl, int nu) { return packed_size(
  *   Returns  false when D is not positive definite
  *   Cost     factor(c) + triangular(c,m) + for each neighbour n: triangular(c,n) + symmetric(n,c) + product(n,m,c)
  *            + product(nu,nl,c);  c = 5, m = 1: 915 with two neighbours, 385 with one */
-#define block_row_eliminate REAL_NAME(block_row_eliminate)
 bool block_row_eliminate(int c, int nl, int nu, int m, const real *D, const real *L, const real *U, const real *r,
                          real *factor, real *y, real *to_a, real *to_b, struct work *w);
 
 /* block_row_reduce: the part of block_row_eliminate that concerns further right-hand sides, with a stored factor:
  * y = D'^-1 G^-1 r, v_a (nl x m), v_b (nu x m). Cost: triangular(c,m) + product(nl,m,c) + product(nu,m,c). */
-#define block_row_reduce REAL_NAME(block_row_reduce)
 void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const real *r, real *y, real *v_a, real *v_b,
                       struct work *w);
 
 /* block_row_resubstitute: y (c x m) of the two above becomes x = G^-T (y - D'^-1 (Y_L x_a + Y_U x_b)), given
  * x_a (nl x m) and x_b (nu x m). Cost: triangular(c,m) + for each neighbour n: product(c,m,n) + c m. */
-#define block_row_resubstitute REAL_NAME(block_row_resubstitute)
 void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a, const real *x_b,
                             struct work *w);
 

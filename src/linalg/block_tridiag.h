@@ -21,19 +21,16 @@ struct block_tridiag {
 };
 
 /* block_tridiag_make: a zero system in the arena; `size` (nrow) is borrowed. */
-#define block_tridiag_make REAL_NAME(block_tridiag_make)
 struct block_tridiag block_tridiag_make(struct arena *a, int nrow, const unsigned char *size);
 
 /* block_tridiag_factor: block Cholesky (block Thomas), in place.
  *
  *   Returns  the index of the first row whose pivot block is not positive definite, -1 if all went well
  *   Cost     per row factor(c) + triangular(c,c') + symmetric(c',c) + c'(c'+1)/2, c' the order of the next row */
-#define block_tridiag_factor REAL_NAME(block_tridiag_factor)
 int block_tridiag_factor(struct block_tridiag *t, struct work *w);
 
 /* block_tridiag_solve: with the factor, x (nrow x 6 m) from r: row i has its c_i x m elements (row-major) at
  * 6 m i. In place. Cost: per row and right-hand side 2 c^2 + 4 c c' (c = 5: 150; with the factor 480). */
-#define block_tridiag_solve REAL_NAME(block_tridiag_solve)
 void block_tridiag_solve(const struct block_tridiag *t, int m, real *x, struct work *w);
 
 #endif

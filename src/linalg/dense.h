@@ -31,35 +31,27 @@ static inline int dense_symmetric_flops(int c, int k) { return k > 0 ? c * (c + 
  *
  *   Returns  false when a pivot is not positive; G is then unusable
  *   Cost     factor(c), c of them divisions, one call */
-#define dense_factor REAL_NAME(dense_factor)
 bool dense_factor(int c, const real *A, real *G, struct work *w);
 
 /* dense_forward: B <- L^-1 B, in place; B is (c x m). Cost: with dense_scale triangular(c,m). One call. */
-#define dense_forward REAL_NAME(dense_forward)
 void dense_forward(int c, int m, const real *G, real *B, struct work *w);
 
 /* dense_scale: B <- D^-1 B, in place; B is (c x m). Cost: c m. */
-#define dense_scale REAL_NAME(dense_scale)
 void dense_scale(int c, int m, const real *G, real *B, struct work *w);
 
 /* dense_backward: B <- L^-T B, in place; B is (c x m). Cost: c (c-1) m. One call. */
-#define dense_backward REAL_NAME(dense_backward)
 void dense_backward(int c, int m, const real *G, real *B, struct work *w);
 
 /* dense_solve: B <- A^-1 B with the factor G of A; B is (c x m). Cost: 2 triangular(c,m) - c m. */
-#define dense_solve REAL_NAME(dense_solve)
 void dense_solve(int c, int m, const real *G, real *B, struct work *w);
 
 /* dense_product: C = A B; A (a x k), B (k x b), C (a x b) distinct from both. Cost: product(a,b,k). One call. */
-#define dense_product REAL_NAME(dense_product)
 void dense_product(int a, int b, int k, const real *A, const real *B, real *C, struct work *w);
 
 /* dense_product_tn: C = A^T B; A (k x a), B (k x b), C (a x b). Cost: product(a,b,k). One call. */
-#define dense_product_tn REAL_NAME(dense_product_tn)
 void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C, struct work *w);
 
 /* dense_subtract: a <- a - b, n elements. Cost: n. */
-#define dense_subtract REAL_NAME(dense_subtract)
 void dense_subtract(int n, real *a, const real *b, struct work *w);
 
 /* dense_invert: A <- A^-1 in place, any A (c x c) whose leading minors do not vanish (Gauss-Jordan without
@@ -67,14 +59,12 @@ void dense_subtract(int n, real *a, const real *b, struct work *w);
  *
  *   Returns  false when a pivot is zero or not finite
  *   Cost     2 c^3, c of them divisions, as a general inverse is charged; one call */
-#define dense_invert REAL_NAME(dense_invert)
 bool dense_invert(int c, real *A, struct work *w);
 
 /* dense_solve_general: B <- A^-1 B by elimination with partial pivoting; A (n x n) is destroyed, B (n x m).
  *
  *   Returns  false when A is singular to working precision
  *   Cost     2/3 n^3 + 2 n^2 m, rounded down, n of them divisions; one call */
-#define dense_solve_general REAL_NAME(dense_solve_general)
 bool dense_solve_general(int n, int m, real *A, real *B, struct work *w);
 
 #endif

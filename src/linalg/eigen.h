@@ -15,7 +15,6 @@
  *   w  out  (n) eigenvalues, not sorted
  *
  *   Returns the number of sweeps (usually 4 to 8; it stops at 60). Cost about 6 n^3 flops a sweep. */
-#define eigen_symmetric REAL_NAME(eigen_symmetric)
 int eigen_symmetric(int n, real *a, real *v, real *w);
 
 #endif

@@ -16,7 +16,6 @@
  *
  * With d = reference^-1/2, eigenvalues of diag(d) S diag(d) above 1e-10 max(largest, 1) count (1e-4 in float). Returns
  * their number. Cost: the Jacobi rotations done, added to w. */
-#define least_norm_solve REAL_NAME(least_norm_solve)
 int least_norm_solve(int n, const real *reference, real *s, real *r, real *scratch, struct work *w);
 
 #endif

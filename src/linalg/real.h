@@ -1,9 +1,10 @@
 /* real.h - the scalar of the numerics: one source, three precisions, chosen by the build of each archive.
  *
- * Files of linalg, dynamics and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128. Their
- * public names carry the precision (REAL_NAME); a header renames them right under each prototype's comment, so that the
- * plain name always means "in this file's precision". Without REAL_BITS it is double. Answers of another precision
- * are reached through const tables of functions (dynamics_table.h, kernel.h). */
+ * Files of linalg, dynamics and kernel that compute are compiled three times, with REAL_BITS 32, 64 and 128, some of
+ * them twice more for the plane (SPACE, space.h). Their public names carry the precision and the space: the build makes
+ * real_names.h from the headers (real_names.awk), so that the plain name always means "in this file's precision and
+ * space". Without REAL_BITS it is double, without SPACE it is six components. Answers of another precision are reached
+ * through const tables of functions (dynamics_table.h, kernel.h). */
 #ifndef LINALG_REAL_H
 #define LINALG_REAL_H
 
@@ -49,5 +50,19 @@ __float128 expq(__float128);
 #else
 #error "REAL_BITS must be 32, 64 or 128"
 #endif
+
+#ifndef SPACE
+#define SPACE 6
+#endif
+
+#if SPACE == 6
+#define SPACE_NAME(name) REAL_NAME(name)
+#elif SPACE == 3
+#define SPACE_NAME(name) REAL_NAME(name##_planar)
+#else
+#error "SPACE must be 6 or 3"
+#endif
+
+#include "linalg/real_names.h" /* made by the build */
 
 #endif
