@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/check.h"
+#include "comm/collectives.h"
 #include "kernel/scan.h"
 
 enum { MOST = 4 };
@@ -18,18 +19,27 @@ real largest_size(real so_far, int n, const real *x)
     return so_far;
 }
 
+/* Comparisons are not counted as work. */
+static void take_larger(void *into, const void *with, bool before, int64_t n, void *context, struct work *w)
+{
+    real *x = into;
+    const real *y = with;
+    (void)before, (void)context, (void)w;
+    for (int64_t i = 0; i < n; i++)
+        if (y[i] > x[i]) x[i] = y[i];
+}
+
 void largest_everywhere(struct comm *c, int tag, int n, real *x)
 {
-    const int rank = comm_rank(c), P = comm_size(c);
-    const int64_t bytes = n * (int64_t)sizeof(real);
+    const struct collective_op larger = {.combine = take_larger, .commutative = true, .idempotent = true};
     real in[MOST];
     CHECK(n <= MOST);
-    for (int d = 1, round = 0; d < P; d *= 2, round++) {
-        comm_send(c, (rank + d) % P, tag + round, x, bytes);
-        comm_recv(c, (rank - d + P) % P, tag + round, in, bytes);
-        for (int i = 0; i < n; i++)
-            if (in[i] > x[i]) x[i] = in[i];
-    }
+    struct collective_call k = {.kind = COLLECTIVE_ALLREDUCE, .comm = c, .tag = tag, .count = n};
+    k.element = sizeof(real);
+    k.op = &larger;
+    k.send = k.recv = x;
+    k.scratch = in;
+    collective_run(collective_algorithm_find(COLLECTIVE_ALLREDUCE, "dissemination"), &k);
 }
 
 bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residual)

@@ -7,12 +7,12 @@
 #include "base/check.h"
 #include "sim/fiber.h"
 
-enum { STACK_BYTES = 65536, SMALL = 1024 };
+enum { STACK_BYTES = 65536, SMALL = 1024, CLOCKS = 2 /* rounds, bytes */ };
 
 struct message {
     struct message *next;
     int src, tag;
-    int64_t bytes;
+    int64_t bytes, there[CLOCKS];
     char data[];
 };
 
@@ -24,6 +24,7 @@ struct rank {
     struct comm_request *awaited; /* the receive that this rank sleeps for */
     bool in_barrier, done;
     int stage;
+    int64_t clock[CLOCKS], out_free[CLOCKS], in_free[CLOCKS];
     struct rank *next_ready;
 };
 
@@ -64,11 +65,23 @@ static void message_give(struct many_ranks *all, struct message *m)
     all->spare = m;
 }
 
-static void deliver(struct comm_request *r, const void *data, int64_t bytes)
+static int64_t later(int64_t a, int64_t b) { return a > b ? a : b; }
+
+/* When the message is there if it leaves after those before it. */
+static void depart(struct rank *self, int64_t bytes, int64_t there[CLOCKS])
+{
+    for (int k = 0; k < CLOCKS; k++)
+        there[k] = self->out_free[k] = later(self->clock[k], self->out_free[k]) + (k == 0 ? 1 : bytes);
+}
+
+static void deliver(struct rank *to, struct comm_request *r, const void *data, int64_t bytes,
+                    const int64_t there[CLOCKS])
 {
     CHECK(bytes == r->bytes);
     if (bytes > 0) memcpy(r->buffer, data, (size_t)bytes);
     r->active = 0;
+    for (int k = 0; k < CLOCKS; k++)
+        to->clock[k] = to->in_free[k] = later(later(to->clock[k], there[k]), to->in_free[k] + (k == 0 ? 1 : bytes));
 }
 
 static void send_now(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r)
@@ -82,8 +95,10 @@ static void send_now(struct comm *c, int dst, int tag, const void *data, int64_t
     all->result.stage_messages[self->stage]++;
     all->result.stage_bytes[self->stage] += bytes;
     if (r) r->active = 0;
+    int64_t there[CLOCKS];
+    depart(self, bytes, there);
     if (to->awaited && to->awaited->peer == c->rank && to->awaited->tag == tag) {
-        deliver(to->awaited, data, bytes);
+        deliver(to, to->awaited, data, bytes, there);
         to->awaited = NULL;
         make_ready(all, to);
         return;
@@ -91,6 +106,7 @@ static void send_now(struct comm *c, int dst, int tag, const void *data, int64_t
     struct message *m = message_take(all, bytes);
     m->next = NULL;
     m->src = c->rank, m->tag = tag, m->bytes = bytes;
+    memcpy(m->there, there, sizeof there);
     if (bytes > 0) memcpy(m->data, data, (size_t)bytes);
     *to->end = m;
     to->end = &m->next;
@@ -111,7 +127,7 @@ static void wait_for(struct comm *c, struct comm_request *r)
         if (m->src != r->peer || m->tag != r->tag) continue;
         *at = m->next;
         if (!m->next) self->end = at;
-        deliver(r, m->data, m->bytes);
+        deliver(self, r, m->data, m->bytes, m->there);
         message_give(self->all, m);
         return;
     }
@@ -177,12 +193,15 @@ static void start(void *argument)
 /* give_back: everything taken; counts unread messages. */
 static void give_back(struct many_ranks *all)
 {
-    for (int k = 0; k < all->n; k++)
+    for (int k = 0; k < all->n; k++) {
+        all->result.rounds = later(all->result.rounds, all->rank[k].clock[0]);
+        all->result.path = later(all->result.path, all->rank[k].clock[1]);
         for (struct message *m = all->rank[k].first, *next; m; m = next) {
             next = m->next;
             message_give(all, m);
             all->result.unread++;
         }
+    }
     for (struct message *m = all->spare, *next; m; m = next) {
         next = m->next;
         free(m);

@@ -19,6 +19,9 @@ struct many_ranks_result {
     int64_t unread;                            /* messages that nobody received */
     int blocked;                               /* ranks that wait forever: a deadlock unless 0 */
     int64_t stack_bytes;                       /* deepest stack */
+    /* When all is done if a rank sends one message and receives one at a time, each takes one round, or a unit of time
+     * for each of its bytes, and nothing else takes any. */
+    int64_t rounds, path;
 };
 
 typedef void many_ranks_program(struct comm *c, void *context);
