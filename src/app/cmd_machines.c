@@ -2,8 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/parameters.h"
 #include "app/verb.h"
 #include "base/json.h"
+#include "run/rates.h"
 
 static const char doc[] = "List the machines; with NAME, show one with the origin of every value.\n\n"
                           "Example: mimdsim machines t3e-300\n"
@@ -50,10 +52,10 @@ static void origin_json(struct json *j, const struct origin *o)
     json_end(j);
 }
 
-static void print_origin(const struct origin *o)
+static void print_origin(const struct origin *o, struct arena *a)
 {
     const char *slash = strrchr(o->file, '/');
-    printf("%-36s %-22s %-3s ", o->key, o->value, o->evidence);
+    printf("%-36s %-22s %-30s %-3s ", o->key, o->value, parameters_range(o, a), o->evidence);
     if (o->line) printf("%s:%d", slash ? slash + 1 : o->file, o->line);
     else printf("%s", slash ? slash + 1 : o->file);
     if (*o->source) printf("  %s", o->source);
@@ -61,12 +63,73 @@ static void print_origin(const struct origin *o)
     putchar('\n');
 }
 
-static void show_one(const struct common *c, const struct shown *m)
+static const struct origin *value_of(const struct shown *m, const char *key)
+{
+    for (int i = 0; i < m->n; i++)
+        if (strcmp(m->origin[i].key, key) == 0) return &m->origin[i];
+    return NULL;
+}
+
+/* How far the rate of small dense code is known, and the LINPACK benchmark of order 100 with it: at the least, the
+ * stated and the largest rate of the file [flop/s]. */
+struct sustained {
+    double rate[3], linpack[3];
+};
+
+static struct sustained sustained_rate(const struct shown *m)
+{
+    const struct origin *o = value_of(m, "node.flop_rate");
+    bool ranged = o->max > o->min;
+    struct sustained s = {.rate = {ranged ? o->min : m->spec.node.flop_rate, m->spec.node.flop_rate,
+                                   ranged ? o->max : m->spec.node.flop_rate}};
+    struct rate_count count = rate_linpack(100);
+    for (int i = 0; i < 3; i++) {
+        struct node_spec node = m->spec.node;
+        node.flop_rate = s.rate[i];
+        s.linpack[i] = rate_of(&node, &count);
+    }
+    return s;
+}
+
+static void print_sustained(const struct shown *m)
+{
+    struct sustained s = sustained_rate(m);
+    const struct origin *published = value_of(m, "published.linpack_100");
+    printf("sustained rate of small dense code: %.4g Mflop/s, known within %.4g to %.4g; LINPACK 100 with it: %.4g, "
+           "%.4g to %.4g",
+           s.rate[1] / 1e6, s.rate[0] / 1e6, s.rate[2] / 1e6, s.linpack[1] / 1e6, s.linpack[0] / 1e6,
+           s.linpack[2] / 1e6);
+    if (published) printf(", published %s", published->value);
+    putchar('\n');
+}
+
+static void json_sustained(struct json *j, const struct shown *m)
+{
+    static const char *const name[] = {"low", "value", "high"};
+    static const int sorted[] = {2, 0, 1};
+    struct sustained s = sustained_rate(m);
+    json_key(j, "sustained_rate");
+    json_object(j);
+    for (int list = 0; list < 2; list++) {
+        json_key(j, list ? "small_dense" : "linpack_100");
+        json_object(j);
+        for (int i = 0; i < 3; i++) {
+            json_key(j, name[sorted[i]]);
+            json_real(j, list ? s.rate[sorted[i]] : s.linpack[sorted[i]]);
+        }
+        json_end(j);
+    }
+    json_end(j);
+}
+
+static void show_one(const struct common *c, const struct shown *m, struct arena *a)
 {
     if (!c->json) {
-        printf("%s: %s, %lld processors\n\n%-36s %-22s %-3s %s\n", m->spec.name, m->spec.title,
-               (long long)machine_spec_processors(&m->spec), "key", "value", "ev.", "where, source");
-        for (int i = 0; i < m->n; i++) print_origin(&m->origin[i]);
+        printf("%s: %s, %lld processors\n", m->spec.name, m->spec.title,
+               (long long)machine_spec_processors(&m->spec));
+        print_sustained(m);
+        printf("\n%-36s %-22s %-30s %-3s %s\n", "key", "value", "range", "ev.", "where, source");
+        for (int i = 0; i < m->n; i++) print_origin(&m->origin[i], a);
         return;
     }
     struct json j = json_make(stdout);
@@ -75,6 +138,7 @@ static void show_one(const struct common *c, const struct shown *m)
     json_text(&j, m->spec.name);
     json_key(&j, "processors");
     json_int(&j, machine_spec_processors(&m->spec));
+    json_sustained(&j, m);
     json_key(&j, "title");
     json_text(&j, m->spec.title);
     json_key(&j, "values");
@@ -106,13 +170,6 @@ static void difference_json(struct json *j, const char *key, const struct shown 
         json_text(j, value[order[i]]);
     }
     json_end(j);
-}
-
-static const struct origin *value_of(const struct shown *m, const char *key)
-{
-    for (int i = 0; i < m->n; i++)
-        if (strcmp(m->origin[i].key, key) == 0) return &m->origin[i];
-    return NULL;
 }
 
 static void print_difference(const struct common *c, struct json *j, const char *key, const struct shown *m,
@@ -151,7 +208,7 @@ static int show(const struct common *c, struct arena *a)
         err_clear(&e);
         if (!plan_machine(&m[i].spec, c->arg[i], &o, a, &m[i].origin, &m[i].n, &e)) return common_fail(c, &e);
     }
-    if (c->narg == 1) show_one(c, &m[0]);
+    if (c->narg == 1) show_one(c, &m[0], a);
     else compare(c, m);
     return 0;
 }

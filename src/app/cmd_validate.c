@@ -30,9 +30,9 @@ static void print_row(const struct published *p, const struct outcome *o)
         snprintf(published, sizeof published, "%.5g (%.4g-%.4g)", p->value / p->scale, p->low / p->scale,
                  p->high / p->scale);
     else snprintf(published, sizeof published, "%.6g", p->value / p->scale);
-    printf("%-6s %-17s %-10s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text, published);
-    if (o->measured) printf("%11.5g %-5s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
-    else printf("%11s %-5s %9s", "-", p->unit, "");
+    printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text, published);
+    if (o->measured) printf("%11.5g %-7s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
+    else printf("%11s %-7s %9s", "-", p->unit, "");
     printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict, *p->cause ? ": " : "", p->cause);
 }
 
@@ -159,7 +159,7 @@ static void print_table(const struct common *c, const struct table *t, const str
 {
     struct json j = json_make(stdout);
     if (!c->json)
-        printf("%-6s %-17s %-10s %8s %20s %11s %-5s %9s %-3s %-5s %s\n", "id", "machine", "quantity", "at", "published",
+        printf("%-6s %-17s %-13s %8s %20s %11s %-7s %9s %-3s %-5s %s\n", "id", "machine", "quantity", "at", "published",
                "simulated", "unit", "error", "ev.", "cal.", "verdict, cause");
     for (int i = 0; i < t->n && !c->json; i++) print_row(t->row[i], &t->outcome[i]);
     if (!c->json) {

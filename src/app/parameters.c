@@ -22,8 +22,7 @@ static int machines_of(const struct plan *plan, int nplan, const char **name)
     return n;
 }
 
-/* "12 us to 20 us" in the field's unit, "" without a range. */
-static const char *range_text(const struct origin *o, struct arena *a)
+const char *parameters_range(const struct origin *o, struct arena *a)
 {
     if (!(o->max > o->min)) return "";
     struct text key = {0}, range = {0};
@@ -59,7 +58,7 @@ bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, cons
             const struct origin *o = &origin[i][k];
             if (!*o->evidence) continue;
             p[(*n)++] = (struct document_parameter){arena_text(a, name[i]), o->key,      o->value,
-                                                    range_text(o, a),       o->evidence, o->source};
+                                                    parameters_range(o, a), o->evidence, o->source};
         }
     *out = p;
     return true;

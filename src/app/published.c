@@ -14,7 +14,8 @@ static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,c
 static const struct {
     const char *name;
     double scale;
-} units[] = {{"s", 1}, {"us", 1e-6}, {"ns", 1e-9}, {"B", 1}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12}};
+} units[] = {{"s", 1}, {"us", 1e-6}, {"ns", 1e-9}, {"B", 1}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12},
+             {"Mflop/s", 1e6}, {"Gflop/s", 1e9}};
 
 static char *copied(struct arena *a, const char *s, size_t n)
 {

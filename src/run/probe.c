@@ -6,13 +6,15 @@
 
 #include "base/arena.h"
 #include "machine/topology.h"
+#include "run/rates.h"
 #include "run/run.h"
 
-enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22 };
+enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000 };
 
 static const char *const names[PROBE_QUANTITIES] = {
     "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
     "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
+    "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
 };
 
 const char *probe_name(enum probe_quantity q) { return names[q]; }
@@ -211,6 +213,20 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
     return true;
 }
 
+/* Codes of computing have a size that is an order or a length. */
+static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate, struct err *e)
+{
+    int n = q == PROBE_LINPACK || q == PROBE_INNER_PRODUCT ? (int)at : VECTOR;
+    struct rate_count c;
+    if (n < 1 || n > MEBIBYTE) return err_set(e, ERR_CONFIG, "%s: %s of %g elements", m->name, probe_name(q), at);
+    if (q == PROBE_LINPACK) c = rate_linpack(n);
+    else if (q == PROBE_INNER_PRODUCT) c = rate_inner_product(n);
+    else if (q == PROBE_MEMORY_COPY) c = rate_stream(RATE_COPY, n);
+    else c = rate_stream((enum rate_stream)(q - PROBE_STREAM_COPY), n);
+    *rate = rate_of(&m->node, &c) * (q == PROBE_MEMORY_COPY ? 0.5 : 1); /* STREAM counts a byte copied twice */
+    return true;
+}
+
 bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e)
 {
     switch (q) {
@@ -243,6 +259,14 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
         return cut(m, q, value, e);
     case PROBE_BARRIER:
         return barrier(m, (int)at, value, e);
+    case PROBE_LINPACK:
+    case PROBE_STREAM_COPY:
+    case PROBE_STREAM_SCALE:
+    case PROBE_STREAM_ADD:
+    case PROBE_STREAM_TRIAD:
+    case PROBE_INNER_PRODUCT:
+    case PROBE_MEMORY_COPY:
+        return computing(m, q, at, value, e);
     case PROBE_QUANTITIES:
         break;
     }

@@ -26,6 +26,13 @@ enum probe_quantity {
     PROBE_BISECTION,     /* links that a halving cuts, both directions; the smallest over the dimensions [B/s] */
     PROBE_GLOBAL,        /* all links between groups of a dragonfly, one direction [B/s] */
     PROBE_BARRIER,       /* [s]; at: ranks */
+    PROBE_LINPACK,       /* LINPACK benchmark of order at [flop/s] */
+    PROBE_STREAM_COPY,   /* the four kernels of STREAM [B/s] */
+    PROBE_STREAM_SCALE,
+    PROBE_STREAM_ADD,
+    PROBE_STREAM_TRIAD,
+    PROBE_INNER_PRODUCT, /* of vectors of at elements [flop/s] */
+    PROBE_MEMORY_COPY,   /* bytes copied from memory to memory [B/s] */
     PROBE_QUANTITIES
 };
 
