@@ -1,12 +1,16 @@
 /* cmd_check.c - mimdsim check: validate scenario and machine files without running. */
 #include "app/verb.h"
+#include <string.h>
+
 #include "base/json.h"
 #include "run/model_file.h"
+#include "run/probe.h"
 
 static const char doc[] =
     "Validate scenario, machine, robot (.urdf) and reference vector (.json) files, running nothing.\n\n"
     "Example: mimdsim check scenarios/speedup-t3e.yaml machines/t3e-300.yaml\n\v"
-    "Every file is looked at; the exit status is that of the first one that is wrong.";
+    "Every file is looked at; the exit status is that of the first one that is wrong. A machine on which a message is "
+    "faster than one a byte smaller, where a segment of its message software begins, is told on standard error.";
 
 /* One entry of the document: the file, and what is wrong with it. */
 static void print_verdict(struct json *j, const char *file, const struct err *e)
@@ -26,6 +30,29 @@ static void print_verdict(struct json *j, const char *file, const struct err *e)
     json_end(j);
 }
 
+/* Steps of the message software that go down: they may be meant, as where a protocol is switched too late. */
+static void tell_steps_down(const char *file)
+{
+    struct machine_spec m;
+    struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    struct err e;
+    struct arena *a = arena_create();
+    struct text path = {0};
+    err_clear(&e);
+    text_add(&path, "%s%s", strchr(file, '/') == NULL ? "./" : "", file);
+    const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e) ? software_segments(&m.software, list) : 0;
+    for (int i = 1; i < n; i++) {
+        double below, at, size = (double)list[i].from;
+        if (!probe_measure(&m, PROBE_ONE_WAY, size - 1, &below, &e) || !probe_measure(&m, PROBE_ONE_WAY, size, &at, &e))
+            break;
+        if (at < below)
+            fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B %.4g us: is the step meant?\n", file,
+                    size - 1, below * 1e6, size, at * 1e6);
+    }
+    text_free(&path);
+    arena_destroy(a);
+}
+
 int cmd_check(int argc, char **argv)
 {
     struct common c;
@@ -42,6 +69,7 @@ int cmd_check(int argc, char **argv)
         if (c.json) print_verdict(&j, c.arg[i], &e);
         else if (fine && !c.quiet) printf("%s: ok\n", c.arg[i]);
         if (!fine) err_print(&e);
+        if (fine && !c.quiet && !model_file_is(c.arg[i])) tell_steps_down(c.arg[i]);
         if (!status) status = err_exit_status(e.kind);
     }
     if (c.json) {

@@ -52,15 +52,24 @@ static void origin_json(struct json *j, const struct origin *o)
     json_end(j);
 }
 
+/* A list of segments, one a line, follows its key. */
+static void print_segments(const char *list)
+{
+    for (const char *s = strchr(list, '{'); s != NULL; s = strchr(s + 1, '{'))
+        printf("    %.*s\n", (int)strcspn(s, "}") + 1, s);
+}
+
 static void print_origin(const struct origin *o, struct arena *a)
 {
     const char *slash = strrchr(o->file, '/');
-    printf("%-36s %-22s %-30s %-3s ", o->key, o->value, parameters_range(o, a), o->evidence);
+    const bool segments = o->value[0] == '[' && o->value[1] == '{';
+    printf("%-36s %-22s %-30s %-3s ", o->key, segments ? "by size:" : o->value, parameters_range(o, a), o->evidence);
     if (o->line) printf("%s:%d", slash ? slash + 1 : o->file, o->line);
     else printf("%s", slash ? slash + 1 : o->file);
     if (*o->source) printf("  %s", o->source);
     if (*o->validate) printf("; %s%s", strncmp(o->validate, "unused", 6) == 0 ? "" : "validate: ", o->validate);
     putchar('\n');
+    if (segments) print_segments(o->value);
 }
 
 static const struct origin *value_of(const struct shown *m, const char *key)

@@ -41,6 +41,23 @@ static void link_rates_make(struct net *n, const struct network_spec *w)
     }
 }
 
+/* Segments of the software that differ in neither gap nor rate share a range. */
+static void ports_make(struct net *n, const struct machine_spec *m)
+{
+    struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    const struct network_spec *w = &m->network;
+    const double bandwidth = w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth;
+    const int nlist = software_segments(&m->software, list);
+    n->nport = 0;
+    for (int i = 0; i < nlist; i++) {
+        struct net_port p = {INT64_MAX, rate_make(w, bandwidth, list[i].gap_per_byte), sim_from_seconds(list[i].gap)};
+        struct net_port *last = n->nport > 0 ? &n->port[n->nport - 1] : NULL;
+        if (last && last->rate.flit == p.rate.flit && last->rate.byte == p.rate.byte && last->gap == p.gap) continue;
+        if (last) last->below = list[i].from;
+        n->port[n->nport++] = p;
+    }
+}
+
 static void loads_make(struct net *n)
 {
     n->load = TAKE(n->arena, n->nresource, struct link_load);
@@ -82,14 +99,12 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->tau = sim_from_seconds(w->hop_latency);
     n->end = sim_from_seconds(w->end_latency);
     n->credit = sim_from_seconds(w->credit_latency);
-    n->gap = sim_from_seconds(m->software.gap);
     n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
     n->link = rate_make(w, w->link_bandwidth, 0);
-    n->injection =
-        rate_make(w, w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth, m->software.gap_per_byte);
+    ports_make(n, m);
     n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
     link_rates_make(n, w);
-    n->port_private = m->software.eager_bytes < 0 && t->spec->processors_per_node == 1;
+    n->port_private = software_eager_most(&m->software) == INT64_MAX && t->spec->processors_per_node == 1;
     if (want_links) loads_make(n);
     return n->type->create(n, e) ? n : NULL;
 }
@@ -144,7 +159,7 @@ uint64_t net_choice(const struct net_message *m)
 int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest)
 {
     struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
-    struct net_rate slow = net_rate_slower(n->injection, n->ejection);
+    struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
     int h = 0;
     route[h++] = (struct hop){net_injection(n, m->src), 0, topology_injection_port(n->topology, m->src)};
     while (topology_next(n->topology, &c, &route[h])) {
@@ -159,7 +174,7 @@ int net_route(const struct net *n, const struct net_message *m, struct hop *rout
 
 struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop)
 {
-    struct net_rate slow = net_rate_slower(n->injection, n->ejection);
+    struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
     if (!n->link_rate && n->topology->fixed_routes) {
         *nhop = topology_distance(n->topology, m->src, m->dst);
         return *nhop > 0 ? net_rate_slower(slow, n->link) : slow;

@@ -178,7 +178,7 @@ static void admit(struct fabric *f, struct flight *w, sim_ps arrival)
     f->nadmitted++;
     w->optimistic = true;
     w->port_before = port->free;
-    port->free = later(w->pass[0].end, w->pass[0].end - w->pass[0].flit + f->net->gap);
+    port->free = later(w->pass[0].end, w->pass[0].end - w->pass[0].flit + net_port(f->net, w->m->bytes)->gap);
     w->m->injected = w->pass[0].begin;
     for (int h = 0; h <= w->nhop; h++) pass_claim(f, &w->pass[h]);
     packet_deliver_at(f, w, arrival);

@@ -206,7 +206,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
                 l->first - l->ask);
     if (l->hop == 0 && w->index == m->npacket - 1) {
         struct resource *o = &f->resource[l->resource];
-        o->free = later(o->free, now + f->net->gap);
+        o->free = later(o->free, now + net_port(f->net, m->m->bytes)->gap);
     }
     if (l->hop > 0) {
         struct vc *before = vc_before(g, l);

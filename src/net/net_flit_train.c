@@ -225,7 +225,7 @@ static void tail_known(struct train *g, struct stage *s)
     struct line *l = &g->line[s->resource];
     sim_ps free = s->last + s->flit;
     bool ends_message = w->index == w->flight->npacket - 1;
-    o->free = s->hop == 0 && ends_message ? later(free, s->last + f->net->gap) : free;
+    o->free = s->hop == 0 && ends_message ? later(free, s->last + net_port(f->net, w->flight->m->bytes)->gap) : free;
     o->free += l->debt;
     l->debt = 0;
     l->owner = NULL;

@@ -27,6 +27,13 @@ static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
 /* net_rate_slower: the slower of two rates. */
 static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b) { return a.byte >= b.byte ? a : b; }
 
+/* What an injection port does with messages of one range of sizes. */
+struct net_port {
+    int64_t below;       /* the first size of the next range, INT64_MAX: none */
+    struct net_rate rate; /* includes the interface's gap per byte */
+    sim_ps gap;          /* the software's g [ps] */
+};
+
 struct net {
     const struct net_type *type;
     const struct machine_spec *machine; /* borrowed */
@@ -36,9 +43,11 @@ struct net {
     net_deliver_fn *deliver;
     void *context;
 
-    sim_ps tau, end, credit, gap;              /* hop, end and credit latency, the software's gap g [ps] */
+    sim_ps tau, end, credit;                   /* hop, end and credit latency [ps] */
     int64_t flit_bytes;                        /* >= 1 */
-    struct net_rate injection, ejection, link; /* injection includes the interface's gap per byte */
+    struct net_rate ejection, link;
+    struct net_port port[SOFTWARE_MAX_SEGMENTS]; /* (nport) the injection ports by rising size */
+    int nport;
     struct net_rate *link_rate;                /* (nlink), NULL when all links have the rate `link` */
     int nnode, nlink, nresource;
 
@@ -61,10 +70,18 @@ static inline int net_ejection(const struct net *n, int node) { return n->nnode 
 static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }
 static inline bool net_is_ejection(const struct net *n, int resource) { return resource >= n->nnode + n->nlink; }
 
-/* net_resource_rate: the rate of a resource. */
-static inline struct net_rate net_resource_rate(const struct net *n, int resource)
+/* net_port: how the injection ports serve a message of `bytes` payload. */
+static inline const struct net_port *net_port(const struct net *n, int64_t bytes)
 {
-    if (net_is_injection(n, resource)) return n->injection;
+    const struct net_port *p = n->port;
+    while (bytes >= p->below) p++;
+    return p;
+}
+
+/* net_resource_rate: the rate of a resource for a message of `bytes` payload. */
+static inline struct net_rate net_resource_rate(const struct net *n, int resource, int64_t bytes)
+{
+    if (net_is_injection(n, resource)) return net_port(n, bytes)->rate;
     if (net_is_ejection(n, resource)) return n->ejection;
     return n->link_rate ? n->link_rate[resource - n->nnode] : n->link;
 }
@@ -88,11 +105,13 @@ struct net_rate net_slowest(const struct net *n, const struct net_message *m, in
 /* net_head_port: the input port through which a message that comes over `resource` enters the next router. */
 int net_head_port(const struct net *n, int resource);
 
-/* net_port_busy: how long the injection port of a node is taken by `flits` flits: the gap g after the last one. */
-static inline sim_ps net_port_busy(const struct net *n, int64_t flits)
+/* net_port_busy: how long the injection port of a node is taken by the `flits` flits of a message of `bytes`: the gap g
+ * after the last one. */
+static inline sim_ps net_port_busy(const struct net *n, int64_t bytes, int64_t flits)
 {
-    sim_ps flit = net_rate_time(n->injection, 1);
-    return net_rate_time(n->injection, flits - 1) + (n->gap > flit ? n->gap : flit);
+    const struct net_port *p = net_port(n, bytes);
+    sim_ps flit = net_rate_time(p->rate, 1);
+    return net_rate_time(p->rate, flits - 1) + (p->gap > flit ? p->gap : flit);
 }
 
 /* net_arrive: hand m over, its three times filled in. */

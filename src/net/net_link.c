@@ -89,7 +89,7 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
 {
     struct net *n = subject;
     struct flight *f = (struct flight *)(uintptr_t)argument;
-    sim_ps busy = net_rate_time(net_resource_rate(n, f->resource), f->flits);
+    sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->m->bytes), f->flits);
     sim_ps x = resource_take(n, f->resource, f->m, now, busy);
     if (!net_is_ejection(n, f->resource)) {
         head_sent(n, f, x);
@@ -111,7 +111,7 @@ static void link_inject(struct net *n, struct net_message *m)
     f->slow = net_slowest(n, m, &nhop);
     f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
     f->port = topology_injection_port(n->topology, m->src);
-    sim_ps busy = net_port_busy(n, f->flits), own = 0;
+    sim_ps busy = net_port_busy(n, m->bytes, f->flits), own = 0;
     if (g->nprocessor > 1) {
         sim_ps *port = &g->own_port[m->src * g->nprocessor + m->processor];
         own = m->ready > *port ? m->ready : *port;

@@ -310,7 +310,7 @@ void flight_measure(struct fabric *f, struct flight *w)
     int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
     sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
     sim_ps at = later(m->ready, *port);
-    *port = at + net_port_busy(n, flits);
+    *port = at + net_port_busy(n, m->bytes, flits);
     m->uncontended = at + w->nhop * n->tau + (flits - 1) * w->slowest + n->end;
 }
 
@@ -324,7 +324,7 @@ static void inject(struct fabric *f, struct flight *w, int channel, sim_ps now)
     p->flits = flight_packet_flits(w, p->index);
     if (w->injected++ == 0) w->m->injected = now;
     sim_ps tail = grant(f, o, p, now);
-    if (w->injected == w->npacket) o->free = later(o->free, tail + f->net->gap);
+    if (w->injected == w->npacket) o->free = later(o->free, tail + net_port(f->net, w->m->bytes)->gap);
     packet_enter(f, p);
 }
 

@@ -10,7 +10,7 @@ static bool packet_config(const struct net *n, struct err *e)
     const struct network_spec *w = &n->machine->network;
     if (w->flit_bytes < 1)
         return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit_bytes of at least 1 B", n->type->name);
-    if (n->link.flit < 1 || n->injection.flit < 1 || n->ejection.flit < 1)
+    if (n->link.flit < 1 || n->port[0].rate.flit < 1 || n->ejection.flit < 1)
         return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link_bandwidth", n->type->name);
     if (w->virtual_channels < 1 || w->virtual_channels > 1024)
         return err_set(e, ERR_CONFIG, "network.virtual_channels is %d; level %s needs 1 to 1024", w->virtual_channels,
@@ -27,7 +27,9 @@ static bool packet_config(const struct net *n, struct err *e)
 /* flit time of the fastest resource */
 static sim_ps fastest_flit(const struct net *n)
 {
-    sim_ps best = n->injection.flit < n->ejection.flit ? n->injection.flit : n->ejection.flit;
+    sim_ps best = n->ejection.flit;
+    for (int i = 0; i < n->nport; i++)
+        if (n->port[i].rate.flit < best) best = n->port[i].rate.flit;
     if (!n->link_rate) return best < n->link.flit ? best : n->link.flit;
     for (int l = 0; l < n->nlink; l++)
         if (n->link_rate[l].flit < best) best = n->link_rate[l].flit;
@@ -190,7 +192,7 @@ static void pass_init(struct fabric *f, struct flight *w, int h, const struct ho
     bool link = h > 0 && h < w->nhop;
     s->channel = (int16_t)(link ? class * f->nlane : 0);
     s->nchannel = (int16_t)(link ? f->nlane : f->nchannel);
-    s->flit = net_resource_rate(f->net, way->link).flit;
+    s->flit = net_resource_rate(f->net, way->link, w->m->bytes).flit;
 }
 
 struct flight *flight_take(struct fabric *f, struct net_message *m)

@@ -83,6 +83,53 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     return true;
 }
 
+/* What one segment says of its evidence, added to *class and *source; *class names each class once. */
+static bool add_evidence(const struct yaml_node *n, const char *key, const char *file, struct text *class,
+                         struct text *source, struct err *e)
+{
+    const struct yaml_node *from = yaml_node_child(n, "from"), *c = yaml_node_child(n, "class");
+    const struct yaml_node *s = yaml_node_child(n, "source");
+    if (c != NULL && (c->text == NULL || !is_evidence(c->text)))
+        return err_set_at(e, ERR_DATA, file, c->line, "%s: class '%.20s'; expected P, PR, D or E", key,
+                          c->text != NULL ? c->text : "");
+    if (c != NULL && (class->s == NULL || strstr(class->s, c->text) == NULL))
+        text_add(class, "%s%s", class->s != NULL ? "/" : "", c->text);
+    if (s != NULL && s->text != NULL)
+        text_add(source, "%sfrom %s: %s", source->s != NULL ? "; " : "",
+                 from != NULL && from->text != NULL ? from->text : "?", s->text);
+    return true;
+}
+
+/* Class and source of each segment of `leaf` go to *v; returns the leaf without them, NULL when a class is none. */
+static const struct yaml_node *take_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf,
+                                             const char *file, struct arena *a, struct err *e)
+{
+    struct text class = {0}, source = {0};
+    struct yaml_node *bare = TAKE(a, 1, struct yaml_node), **tail = &bare->child;
+    bool fine = true;
+    *bare = *leaf;
+    bare->child = NULL;
+    for (const struct yaml_node *n = leaf->child; n != NULL && fine; n = n->next) {
+        struct yaml_node *copy = *tail = TAKE(a, 1, struct yaml_node), **end = &copy->child;
+        *copy = *n;
+        copy->child = copy->next = NULL;
+        tail = &copy->next;
+        for (const struct yaml_node *k = n->child; k != NULL; k = k->next) {
+            if (k->key != NULL && (strcmp(k->key, "class") == 0 || strcmp(k->key, "source") == 0)) continue;
+            *end = TAKE(a, 1, struct yaml_node);
+            **end = *k;
+            (*end)->next = NULL;
+            end = &(*end)->next;
+        }
+        if (n->kind == YAML_MAPPING) fine = add_evidence(n, key, file, &class, &source, e);
+    }
+    v->evidence = class.s != NULL ? arena_text(a, class.s) : "";
+    v->source = source.s != NULL ? arena_text(a, source.s) : "";
+    text_free(&class);
+    text_free(&source);
+    return fine ? bare : NULL;
+}
+
 static bool read_leaf(void *context, const char *full, const struct yaml_node *leaf, const char *file, struct arena *a,
                       struct err *e)
 {
@@ -94,9 +141,14 @@ static bool read_leaf(void *context, const char *full, const struct yaml_node *l
     struct machine_value *v = &r->machine->value[row];
     if (v->line != 0 && strcmp(v->file, file) == 0)
         return err_set_at(e, ERR_DATA, file, leaf->line, "duplicate key '%s'; first given in line %d", key, v->line);
-    const char *text = setting_value(key, leaf, file, a, e);
-    if (text == NULL) return false;
-    *v = (struct machine_value){.text = text, .file = file, .line = leaf->line, .evidence = "", .source = ""};
+    struct machine_value fresh = {.file = file, .line = leaf->line, .evidence = "", .source = ""};
+    if (f->kind == FIELD_SEGMENTS && leaf->kind == YAML_SEQUENCE &&
+        (leaf = take_evidence(&fresh, key, leaf, file, a, e)) == NULL)
+        return false;
+    fresh.text = setting_value(key, leaf, file, a, e);
+    if (fresh.text == NULL) return false;
+    const char *text = fresh.text;
+    *v = fresh;
     char why[512];
     if (!field_set(f, &r->machine->spec, text, a, why, (int)sizeof why))
         return err_set_at(e, ERR_DATA, file, leaf->line, "%s: '%.80s': %s", key, text, why);

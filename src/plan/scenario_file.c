@@ -14,7 +14,8 @@ static bool is_list_field(const char *key)
     const struct field_table *t;
     const struct field *f = field_find_full(key, &t);
     if (f == NULL) return false;
-    return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST || f->kind == FIELD_PAIR_LIST;
+    return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST || f->kind == FIELD_PAIR_LIST ||
+           f->kind == FIELD_SEGMENTS;
 }
 
 static bool is_pair_list(const char *key)
@@ -67,7 +68,8 @@ static bool read_point(struct setting_list *point, const char *key, const char *
                           "sweep: each variant is a mapping such as {kernel.solver: cr}");
     if (node->kind == YAML_SEQUENCE && !is_list_field(key))
         return err_set_at(e, ERR_DATA, file, node->line, "%s: a list within a list", key);
-    return add_setting(point, key, yaml_node_flow(node, a), file, node->line, a, e);
+    const char *text = setting_value(key, node, file, a, e);
+    return text != NULL && add_setting(point, key, text, file, node->line, a, e);
 }
 
 /* The group below which an axis's mappings set: kernel, model, machine; all for `variant`; NULL: values only. */

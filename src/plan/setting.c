@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "spec/spec_fields.h"
 
 enum { KEY_LENGTH = 256, MAX_CANDIDATES = 256 };
 
@@ -28,6 +29,15 @@ bool setting_is_key(const char *key)
 {
     const struct field_table *t;
     return strcmp(key, "n_over_p") == 0 || settable(key, &t) != NULL;
+}
+
+bool setting_takes_maps(const char *key)
+{
+    const struct field_table *t;
+    const struct field *f = field_find_full(key, &t);
+    const int row = f == NULL ? field_find(&machine_table, key) : -1; /* machine files name it without "machine." */
+    if (row >= 0) f = &machine_table.field[row];
+    return f != NULL && f->kind == FIELD_SEGMENTS;
 }
 
 bool setting_is_group(const char *key)
@@ -147,7 +157,11 @@ const char *setting_value(const char *key, const struct yaml_node *leaf, const c
     const struct yaml_node *value = leaf;
     if (leaf->kind == YAML_MAPPING) value = yaml_node_child(leaf, "value");
     const char *text = value != NULL ? yaml_node_flow(value, a) : NULL;
-    if (text == NULL)
+    if (text == NULL && value != NULL && setting_takes_maps(key)) text = yaml_node_flow_maps(value, a);
+    if (text == NULL && setting_takes_maps(key))
+        err_set_at(e, ERR_DATA, file, leaf->line,
+                   "%s: expected a list of mappings such as '- {from: 0 B, send.overhead: 1 us}'", key);
+    else if (text == NULL)
         err_set_at(e, ERR_DATA, file, leaf->line, "%s: expected a value or {value: ..., class: ..., source: ...}", key);
     return text;
 }

@@ -36,6 +36,9 @@ const char *setting_key(const char *key);
 bool setting_is_key(const char *key);
 bool setting_is_group(const char *key);
 
+/* setting_takes_maps: whether the value of `key`, in full or as in machine files, is a list of mappings. */
+bool setting_takes_maps(const char *key);
+
 /* setting_make: check `text` as the value of `key`; strings are borrowed. Returns false with ERR_DATA, file and line.
  */
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,

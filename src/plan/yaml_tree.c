@@ -225,3 +225,30 @@ const char *yaml_node_flow(const struct yaml_node *node, struct arena *a)
     text_free(&t);
     return flow;
 }
+
+static bool add_flow_map(const struct yaml_node *map, struct text *out)
+{
+    if (map->kind != YAML_MAPPING) return false;
+    text_add(out, "{");
+    for (const struct yaml_node *n = map->child; n != NULL; n = n->next) {
+        if (n->kind != YAML_SCALAR) return false;
+        text_add(out, "%s%s: %s", n != map->child ? ", " : "", n->key, n->text);
+    }
+    text_add(out, "}");
+    return true;
+}
+
+const char *yaml_node_flow_maps(const struct yaml_node *node, struct arena *a)
+{
+    struct text t = {0};
+    bool fine = node->kind == YAML_SEQUENCE;
+    text_add(&t, "[");
+    for (const struct yaml_node *n = fine ? node->child : NULL; n != NULL && fine; n = n->next) {
+        if (n != node->child) text_add(&t, ", ");
+        fine = add_flow_map(n, &t);
+    }
+    text_add(&t, "]");
+    const char *flow = fine ? arena_text(a, t.s) : NULL;
+    text_free(&t);
+    return flow;
+}

@@ -40,4 +40,7 @@ struct yaml_node *yaml_node_child(const struct yaml_node *mapping, const char *k
  * there is a mapping in it. */
 const char *yaml_node_flow(const struct yaml_node *node, struct arena *a);
 
+/* yaml_node_flow_maps: the same of a sequence of mappings of scalars: "[{a: 1, b: 2}, {a: 3}]"; NULL for others. */
+const char *yaml_node_flow_maps(const struct yaml_node *node, struct arena *a);
+
 #endif

@@ -84,7 +84,9 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
     for (int i = 1; i < P && i < t->nnode; i++) hops += topology_distance(t, 0, i);
     hops /= P > 1 ? P - 1 : 1;
     const struct network_spec *n = &m->network;
-    const struct software_spec *s = &m->software;
+    struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    const int nlist = software_segments(&m->software, list);
+    const struct software_segment *s = software_segment_of(list, nlist, (int64_t)bytes);
     double per_byte = fmax(s->gap_per_byte, n->link_bandwidth > 0 ? 1 / n->link_bandwidth : 0);
     double message = s->send_overhead + s->recv_overhead + bytes * (s->send_copy + s->recv_copy + per_byte) +
                      (hops + 1) * n->hop_latency + n->end_latency;

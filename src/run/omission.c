@@ -161,9 +161,11 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
 static void list_starts(const struct kernel_job *job, const struct kernel_type *kernel, struct list *l)
 {
     const enum network_level level = job->spec->machine.network.level;
-    const int64_t eager = job->spec->machine.software.eager_bytes, largest = launch_largest_message(kernel, job);
+    const int64_t eager = software_eager_most(&job->spec->machine.software);
+    const int64_t largest = launch_largest_message(kernel, job);
     if (level != LEVEL_LINK && level != LEVEL_PACKET && level != LEVEL_AUTO) return;
-    if (eager < 0) add(l, 0, 0, "events that start messages", "the machine sends every message at once, in order");
+    if (eager == INT64_MAX)
+        add(l, 0, 0, "events that start messages", "the machine sends every message at once, in order");
     else if (largest >= 0 && largest <= eager)
         add(l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
 }

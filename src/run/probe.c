@@ -29,6 +29,7 @@ enum probe_quantity probe_find(const char *name)
 /* What one micro-benchmark tells. */
 struct measured {
     double time, send, recv; /* of the kernel; of rank 0 per message [s] */
+    double last_send;        /* of the last rank per message [s] */
 };
 
 /* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where two ranks talk, so
@@ -47,10 +48,11 @@ static bool bench(const struct machine_spec *m, const char *kernel, int nrank, i
     bool ok = run_one(&spec, a, &r, e);
     if (ok && r.status != RUN_OK) ok = err_set(e, ERR_CONFIG, "%s: %s", m->name, r.text);
     if (ok) {
-        const struct stage_time *s = &r.stage[0];
+        const struct stage_time *s = &r.stage[0], *last = &r.stage[(nrank - 1) * r.nstage];
         double messages = s->messages > 0 ? (double)s->messages : 1;
+        double of_last = last->messages > 0 ? (double)last->messages : 1;
         *out = (struct measured){r.measured_s, (double)s->send_ps * 1e-12 / messages,
-                                 (double)s->recv_ps * 1e-12 / messages};
+                                 (double)s->recv_ps * 1e-12 / messages, (double)last->send_ps * 1e-12 / of_last};
     }
     arena_destroy(a);
     return ok;
@@ -102,11 +104,22 @@ static bool flood_gap(const struct machine_spec *m, double *gap, struct err *e)
     return true;
 }
 
-static bool overheads(const struct machine_spec *m, enum probe_quantity q, double *value, struct err *e)
+/* What one message costs its sender until the send is complete, held by a synchronous one: rank 1 sends and waits. */
+static bool send_overhead(const struct machine_spec *m, int64_t bytes, double *value, struct err *e)
 {
     struct measured x;
-    if (!bench(m, "pingpong", 2, SMALL_BYTES, 1, &x, e)) return false;
-    *value = q == PROBE_SEND_OVERHEAD ? x.send : q == PROBE_RECV_OVERHEAD ? x.recv : x.time - x.send - x.recv;
+    if (!bench(m, "hot-spot", 2, bytes, 1, &x, e)) return false;
+    *value = x.last_send;
+    return true;
+}
+
+static bool overheads(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e)
+{
+    struct measured x;
+    const int64_t bytes = at > 0 ? (int64_t)at : SMALL_BYTES;
+    if (q == PROBE_SEND_OVERHEAD) return send_overhead(m, bytes, value, e);
+    if (!bench(m, "pingpong", 2, bytes, 1, &x, e)) return false;
+    *value = q == PROBE_RECV_OVERHEAD ? x.recv : x.time - x.send - x.recv;
     return true;
 }
 
@@ -247,7 +260,7 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
     case PROBE_SEND_OVERHEAD:
     case PROBE_RECV_OVERHEAD:
     case PROBE_LATENCY:
-        return overheads(m, q, value, e);
+        return overheads(m, q, at, value, e);
     case PROBE_GAP:
         return flood_gap(m, value, e);
     case PROBE_WIRE:

@@ -17,9 +17,9 @@ enum probe_quantity {
     PROBE_BANDWIDTH,     /* bytes / one way [B/s]; at: bytes */
     PROBE_R_INF,         /* asymptotic rate: from 4 to 8 MiB [B/s] */
     PROBE_N_HALF,        /* smallest size that reaches half of r_inf [B] */
-    PROBE_SEND_OVERHEAD, /* LogGP o_s of 8 bytes [s] */
-    PROBE_RECV_OVERHEAD, /* LogGP o_r of 8 bytes [s] */
-    PROBE_LATENCY,       /* LogGP L: one way of 8 bytes less o_s and o_r [s] */
+    PROBE_SEND_OVERHEAD, /* LogGP o_s: a send until it is complete [s]; at: bytes, 0: 8 */
+    PROBE_RECV_OVERHEAD, /* LogGP o_r [s]; at: bytes, 0: 8 */
+    PROBE_LATENCY,       /* LogGP L: one way less o_s and o_r [s]; at: bytes, 0: 8 */
     PROBE_GAP,           /* LogGP g: between 8-byte messages of one sender [s] */
     PROBE_WIRE,          /* one way without software, empty message [s]; at: links on the way */
     PROBE_READ,          /* a remote read: request and reply over the wire, beside what memory takes [s]; at: routers */

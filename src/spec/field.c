@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "spec/field_list.h"
+#include "spec/field_segments.h"
 
 bool field_int_parse(const char *text, int64_t *value, char *why, int size)
 {
@@ -134,6 +135,8 @@ bool field_set(const struct field *f, void *base, const char *text, struct arena
         return field_int_list_set(f, base, text, a, why, size);
     case FIELD_PAIR_LIST:
         return field_pair_list_set(f, base, text, a, why, size);
+    case FIELD_SEGMENTS:
+        return field_segments_set(f, base, text, field_set, a, why, size);
     }
     CHECK(false); /* a kind without a reader */
     return false;
@@ -193,6 +196,9 @@ void field_print(const struct field *f, const void *base, struct text *out)
     case FIELD_INT_LIST:
     case FIELD_PAIR_LIST:
         field_list_print(f, base, out);
+        return;
+    case FIELD_SEGMENTS:
+        field_segments_print(f, base, field_print, out);
         return;
     }
     CHECK(false); /* a kind without a printer */

@@ -27,7 +27,8 @@ enum field_kind {
     FIELD_INTS,     /* int[capacity], number of entries in the int at offset `count` */
     FIELD_REALS,    /* double[capacity] */
     FIELD_INT_LIST, /* int *, length in the int at offset `count`, borrowed from an arena */
-    FIELD_PAIR_LIST /* int (*)[2], as FIELD_INT_LIST */
+    FIELD_PAIR_LIST, /* int (*)[2], as FIELD_INT_LIST */
+    FIELD_SEGMENTS  /* struct software_segment[capacity], number of entries in the int at offset `count` */
 };
 
 /* Why a setting cannot act in `run` (a clause), NULL when it acts. */
@@ -39,7 +40,7 @@ struct field {
     enum unit unit;            /* of reals and sizes */
     size_t offset;             /* in the table's struct */
     size_t count;              /* offset of the number of entries of a list, 0: none */
-    int capacity;              /* of FIELD_TEXT (bytes), FIELD_INTS and FIELD_REALS (entries) */
+    int capacity;              /* of FIELD_TEXT (bytes), FIELD_INTS, FIELD_REALS, FIELD_SEGMENTS (entries) */
     int at_least;              /* FIELD_REALS: entries that have to be given; the others are 0 */
     double min, max;           /* inclusive, of every entry, SI */
     const char *const *choice; /* NULL-terminated */

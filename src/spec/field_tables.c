@@ -77,6 +77,8 @@ static const char *kind_name(const struct field *f)
         return "a list, each";
     case FIELD_PAIR_LIST:
         return "a list of pairs";
+    case FIELD_SEGMENTS:
+        return "a list of segments";
     }
     return "";
 }

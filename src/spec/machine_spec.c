@@ -70,13 +70,65 @@ static const char *idle_unless_server(const struct run_spec *r)
     return r->machine.software.kernel_server ? NULL : "software.kernel.server is off";
 }
 
+static const char *idle_with_segments(const struct run_spec *r)
+{
+    return r->machine.software.nsegment > 0 ? "software.segments says it by size" : NULL;
+}
+
+/* Numbers that every segment gives itself. */
+static const char *idle_if_given(const struct run_spec *r, size_t number)
+{
+    const struct software_spec *s = &r->machine.software;
+    for (int i = 0; i < s->nsegment; i++)
+        if (*(const double *)(const void *)((const char *)&s->segment[i] + number) < 0) return NULL;
+    return s->nsegment > 0 ? "every segment of software.segments gives its own" : NULL;
+}
+
+static const char *idle_send_overhead(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, send_overhead));
+}
+
+static const char *idle_send_copy(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, send_copy));
+}
+
+static const char *idle_recv_overhead(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, recv_overhead));
+}
+
+static const char *idle_recv_copy(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, recv_copy));
+}
+
+static const char *idle_gap(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, gap));
+}
+
+static const char *idle_gap_per_byte(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, gap_per_byte));
+}
+
 static const char *idle_unless_eager_limit(const struct run_spec *r)
 {
+    if (r->machine.software.nsegment > 0) {
+        const struct software_segment *s = r->machine.software.segment;
+        bool used = false;
+        for (int i = 0; i < r->machine.software.nsegment; i++)
+            used = used || (s[i].protocol != PROTOCOL_EAGER && s[i].rendezvous_latency < 0);
+        return used ? NULL : "no segment of software.segments takes it";
+    }
     return r->machine.software.eager_bytes >= 0 ? NULL : "software.eager.limit is unlimited: no message shakes hands";
 }
 
 static const char *idle_unless_short(const struct run_spec *r)
 {
+    if (r->machine.software.nsegment > 0) return idle_with_segments(r);
     return r->machine.software.short_bytes > 0 ? NULL : "software.short.limit is 0: no message is short";
 }
 
@@ -204,33 +256,40 @@ static const struct field fields[] = {
      .fallback = "round-robin", .idle = idle_above_packets, .doc = "who gets a link that several wait for"},
 
     {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.send_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .doc = "processor time to send a message (LogGP's o)"},
+     .max = 10, .fallback = "0 s", .idle = idle_send_overhead, .doc = "processor time to send a message (LogGP's o)"},
     {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.send_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .doc = "processor time per byte sent"},
+     .max = 1, .fallback = "0 s/B", .idle = idle_send_copy, .doc = "processor time per byte sent"},
     {.key = "software.recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.recv_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .doc = "processor time to receive a message"},
+     .max = 10, .fallback = "0 s", .idle = idle_recv_overhead, .doc = "processor time to receive a message"},
     {.key = "software.recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.recv_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .doc = "processor time per byte received"},
+     .max = 1, .fallback = "0 s/B", .idle = idle_recv_copy, .doc = "processor time per byte received"},
     {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0, .max = 10,
-     .fallback = "0 s", .doc = "least time between two messages of one node (LogGP's g)"},
+     .fallback = "0 s", .idle = idle_gap, .doc = "least time between two messages of one node (LogGP's g)"},
     {.key = "software.gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.gap_per_byte),
      .min = 0, .max = 1, .fallback = "0 s/B",
-     .doc = "G of interface and protocol (LogGP); the slower of this and the wire rules"},
+     .idle = idle_gap_per_byte, .doc = "G of interface and protocol (LogGP); the slower of this and the wire rules"},
     {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.short_bytes), .min = 0,
-     .max = 1 << 30, .fallback = "0 B", .doc = "messages up to this size are short"},
+     .max = 1 << 30, .fallback = "0 B", .idle = idle_with_segments, .doc = "messages up to this size are short"},
     {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.short_saving), .min = 0,
      .max = 1, .fallback = "0 s", .idle = idle_unless_short, .doc = "send overhead that a short message is spared"},
     {.key = "software.short.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.short_copy), .min = 0,
      .max = 1, .fallback = "0 s/B", .idle = idle_unless_short,
      .doc = "receiver's time per byte of a short message, beside software.recv.copy"},
     {.key = "software.eager.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.eager_bytes), .min = -1,
-     .max = 1e15, .fallback = "unlimited", .doc = "longer messages shake hands first (rendezvous)"},
+     .max = 1e15, .fallback = "unlimited", .idle = idle_with_segments,
+     .doc = "longer messages shake hands first (rendezvous)"},
     {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.eager_copy), .min = 0,
      .max = 1, .fallback = "0 s/B",
+     .idle = idle_with_segments,
      .doc = "receiver's time per byte of an eager message that is not short, beside software.recv.copy"},
     {.key = "software.rendezvous.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.rendezvous_latency),
      .min = 0, .max = 10, .fallback = "0 s", .idle = idle_unless_eager_limit,
      .doc = "software time that a hand-shake adds"},
+    {.key = "software.segments", .kind = FIELD_SEGMENTS, AT(software.segment), COUNT(software.nsegment),
+     .capacity = SOFTWARE_MAX_SEGMENTS, .fallback = "[]",
+     .doc = "message software by size, in place of short and eager: each segment {from: 8 KiB, ...} may give "
+            "send.overhead, send.copy, recv.overhead, recv.copy, gap, gap_per_byte, protocol (eager, rendezvous, "
+            "synchronous) and rendezvous.latency; what it does not give is software's"},
     {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server), .fallback = "false",
      .doc = "every message end passes one server of the whole machine (TCP loopback)"},
     {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time), .min = 0,

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spec/software_spec.h"
+
 enum { MACHINE_MAX_DIMS = 8 };
 
 enum topology_family {
@@ -81,31 +83,6 @@ struct network_spec {
     int virtual_channels;       /* per link and direction, all classes together */
     int buffer_flits;           /* per virtual channel [flits] */
     enum arbitration arbitration;
-};
-
-enum barrier_kind { BARRIER_SOFTWARE, BARRIER_HARDWARE };
-
-/* Message software, separate from the wire (LogGP's o and g live here). */
-struct software_spec {
-    double send_overhead;      /* o_s: processor time to send [s] */
-    double recv_overhead;      /* o_r: processor time to receive [s] */
-    double send_copy;          /* processor time per byte sent [s/B] */
-    double recv_copy;          /* processor time per byte received [s/B] */
-    double gap;                /* g: least time between two injections of one node [s] */
-    double gap_per_byte;       /* G of the network interface [s/B]; the slower of this and the wire rules */
-    int64_t eager_bytes;       /* larger messages use rendezvous [B]; -1: all eager */
-    double rendezvous_latency; /* software time added per hand-shake [s] */
-    double eager_copy;         /* receiver's time per byte of a message that came eagerly, beside recv_copy [s/B] */
-    int64_t short_bytes;       /* messages up to this size are short [B]; 0: none is */
-    double short_saving;       /* short: part of send_overhead that is not paid [s] */
-    double short_copy;         /* short: as eager_copy and in its place [s/B] */
-    bool kernel_server;        /* one shared server per machine handles every message (TCP loopback) */
-    double kernel_time;        /* its service time per message end [s] */
-    double kernel_per_byte;    /* and per byte [s/B] */
-    enum barrier_kind barrier;
-    double barrier_time;       /* hardware barrier, last arrival to release [s] */
-    double shared_latency;     /* channel within a node: latency [s] */
-    double shared_bandwidth;   /* and rate [B/s]; 0: messages within a node use the network's software path */
 };
 
 enum placement_kind {

@@ -1,5 +1,6 @@
 /* rendezvous.c - large messages: request to send, clear to send, data. Both ends' software reacts without waiting for
- * its kernel (asynchronous progress), so a hand-shake costs two zero-byte trips and the machine's software time. */
+ * its kernel (asynchronous progress), so a hand-shake costs two zero-byte trips and the machine's software time. The
+ * sender's request is complete when the clear to send is there, that of a synchronous message when its data arrived. */
 #include "base/check.h"
 #include "vp/vp.h"
 
@@ -29,19 +30,26 @@ void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
     (void)r;
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_CLEAR_TO_SEND;
-    travel(m, m->to, m->from, 0, now + m->to->world->software.rendezvous);
+    travel(m, m->to, m->from, 0, now + message_cost(&m->to->world->software, m->bytes)->rendezvous);
+}
+
+/* the sender's request ends in `state` at the message's arrival; nobody may wait for it */
+static void release_sender(struct message *m, int state)
+{
+    struct comm_request *s = m->send;
+    if (!s) return;
+    s->active = state;
+    s->detail = (void *)(intptr_t)m->net.arrival;
+    m->send = NULL;
+    if (m->from->waiting == s) world_wake(m->from->world, m->from);
 }
 
 static void cleared(struct message *m)
 {
-    struct comm_request *s = m->send;
+    bool held = message_cost(&m->from->world->software, m->bytes)->protocol == PROTOCOL_SYNCHRONOUS;
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_DATA;
-    if (s) {
-        s->active = REQUEST_SENT;
-        s->detail = (void *)(intptr_t)m->net.arrival;
-        if (m->from->waiting == s) world_wake(m->from->world, m->from);
-    }
+    if (!held) release_sender(m, REQUEST_SENT);
     travel(m, m->from, m->to, m->bytes, m->net.arrival);
 }
 
@@ -54,6 +62,7 @@ void rendezvous_deliver(struct message *m)
     CHECK(m->kind == MESSAGE_DATA && m->receive);
     struct comm_request *r = m->receive;
     m->net.uncontended -= m->delay;
+    release_sender(m, REQUEST_DELIVERED);
     r->active = REQUEST_MATCHED;
     r->detail = m;
     if (m->to->waiting == r) world_wake(m->to->world, m->to);

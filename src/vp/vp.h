@@ -20,6 +20,7 @@
 #include "sim/fiber.h"
 #include "sim/sim.h"
 #include "spec/run_spec.h"
+#include "vp/cost.h"
 #include "vp/message.h"
 #include "vp/world.h"
 
@@ -48,13 +49,6 @@ struct vp {
     sim_ps finish;       /* clock at its end */
     struct fiber *fiber;
     struct random noise;
-};
-
-/* Durations of the message software [ps], from software_spec. */
-struct software_cost {
-    sim_ps send_overhead, short_saving, recv_overhead, rendezvous, kernel_time, barrier, shared_latency;
-    double send_byte, recv_byte, eager_byte, short_byte, kernel_byte, shared_byte; /* [ps/B] */
-    int64_t short_bytes; /* largest short message, -1: none is */
 };
 
 struct world {

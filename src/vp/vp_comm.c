@@ -39,9 +39,8 @@ void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
-    const struct software_cost *s = &w->software;
-    sim_ps fixed = s->send_overhead - (m->bytes <= s->short_bytes ? s->short_saving : 0);
-    sim_ps begin = v->clock, cost = byte_cost(fixed, s->send_byte, m->bytes);
+    const struct message_cost *s = message_cost(&w->software, m->bytes);
+    sim_ps begin = v->clock, cost = byte_cost(s->send, s->send_byte, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -54,9 +53,8 @@ static void charge_send(struct vp *v, const struct message *m)
 static void charge_receive(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
-    const struct software_cost *s = &w->software;
-    double more = m->kind == MESSAGE_DATA ? 0 : m->bytes <= s->short_bytes ? s->short_byte : s->eager_byte;
-    sim_ps begin = v->clock, cost = byte_cost(s->recv_overhead, s->recv_byte + more, m->bytes);
+    const struct message_cost *s = message_cost(&w->software, m->bytes);
+    sim_ps begin = v->clock, cost = byte_cost(s->recv, s->recv_byte, m->bytes);
     if (w->machine->software.kernel_server) {
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
@@ -99,7 +97,7 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     charge_send(v, m);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
-    if (!w->eager_only && bytes > w->machine->software.eager_bytes) {
+    if (!w->eager_only && message_cost(&w->software, bytes)->protocol != PROTOCOL_EAGER) {
         rendezvous_send(v, m, r);
         return;
     }
@@ -132,6 +130,17 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     r->detail = NULL;
 }
 
+/* What holds the sender of a synchronous message is its software: it counts as sending, whatever delays the data. */
+static void finish_synchronous(struct vp *v, struct comm_request *r)
+{
+    const sim_ps time = (sim_ps)(intptr_t)r->detail, held = time > v->clock ? time - v->clock : 0;
+    if (held && v->world->record->spans) world_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
+    stage_of(v)->send_ps += held;
+    v->clock += held;
+    r->active = REQUEST_DONE;
+    r->detail = NULL;
+}
+
 static void vp_wait(struct comm *c, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
@@ -139,6 +148,10 @@ static void vp_wait(struct comm *c, struct comm_request *r)
     r->file = c->file;
     r->line = c->line;
     if (r->active == REQUEST_SENDING) vp_block(v, WAITING_SEND, r);
+    if (r->active == REQUEST_DELIVERED) {
+        finish_synchronous(v, r);
+        return;
+    }
     if (r->active == REQUEST_SENT) {
         sim_ps time = (sim_ps)(intptr_t)r->detail;
         vp_wait_until(v, time, time);

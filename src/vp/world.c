@@ -62,26 +62,6 @@ static void deliver(void *context, struct net_message *m)
     vp_arrived((struct message *)m);
 }
 
-static struct software_cost software_cost_make(const struct software_spec *s)
-{
-    return (struct software_cost){
-        .send_overhead = sim_from_seconds(s->send_overhead),
-        .short_saving = sim_from_seconds(s->short_saving < s->send_overhead ? s->short_saving : s->send_overhead),
-        .recv_overhead = sim_from_seconds(s->recv_overhead),
-        .rendezvous = sim_from_seconds(s->rendezvous_latency),
-        .kernel_time = sim_from_seconds(s->kernel_time),
-        .barrier = sim_from_seconds(s->barrier_time),
-        .shared_latency = sim_from_seconds(s->shared_latency),
-        .send_byte = s->send_copy * SIM_PS_PER_S,
-        .recv_byte = s->recv_copy * SIM_PS_PER_S,
-        .eager_byte = s->eager_copy * SIM_PS_PER_S,
-        .short_byte = s->short_copy * SIM_PS_PER_S,
-        .short_bytes = s->short_bytes > 0 ? s->short_bytes : -1,
-        .kernel_byte = s->kernel_per_byte * SIM_PS_PER_S,
-        .shared_byte = s->shared_bandwidth > 0 ? SIM_PS_PER_S / s->shared_bandwidth : 0,
-    };
-}
-
 static void rank_main(void *argument)
 {
     struct vp *v = argument;
@@ -260,7 +240,8 @@ static void run(struct world *w, uint64_t seed)
 
 static bool all_eager(const struct software_spec *s, int64_t largest)
 {
-    return s->eager_bytes < 0 || (largest >= 0 && largest <= s->eager_bytes);
+    const int64_t most = software_eager_most(s);
+    return most == INT64_MAX || (largest >= 0 && largest <= most);
 }
 
 bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,

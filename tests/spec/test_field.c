@@ -51,6 +51,8 @@ static size_t entry_size(const struct field *f)
     case FIELD_INT_LIST:
     case FIELD_PAIR_LIST:
         return sizeof(void *);
+    case FIELD_SEGMENTS:
+        return (size_t)f->capacity * sizeof(struct software_segment);
     }
     return 0;
 }
@@ -144,6 +146,10 @@ static void random_value(const struct field *f, struct random *r, char *text, si
         break;
     case FIELD_PAIR_LIST:
         snprintf(text, size, "[[0, %llu], [2, 1]]", (unsigned long long)random_below(r, 50));
+        break;
+    case FIELD_SEGMENTS:
+        snprintf(text, size, "[{from: 0 B, send.copy: %.17g s/B}, {from: %llu B, gap: 1 us, protocol: synchronous}]",
+                 random_uniform(r, 0, 1), (unsigned long long)random_below(r, 1 << 20) + 1);
         break;
     case FIELD_REALS: {
         size_t n = (size_t)snprintf(text, size, "[");

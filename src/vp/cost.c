@@ -1,0 +1,31 @@
+/* cost.c - seconds of the machine to picoseconds, once (cost.h). */
+#include "vp/cost.h"
+
+static struct message_cost message_cost_make(const struct software_segment *s, int64_t below)
+{
+    return (struct message_cost){
+        .below = below,
+        .send = sim_from_seconds(s->send_overhead) - sim_from_seconds(s->send_saving),
+        .recv = sim_from_seconds(s->recv_overhead),
+        .rendezvous = sim_from_seconds(s->rendezvous_latency),
+        .send_byte = s->send_copy * SIM_PS_PER_S,
+        .recv_byte = s->recv_copy * SIM_PS_PER_S + s->recv_extra * SIM_PS_PER_S,
+        .protocol = s->protocol,
+    };
+}
+
+struct software_cost software_cost_make(const struct software_spec *s)
+{
+    struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    const int n = software_segments(s, list);
+    struct software_cost cost = {
+        .kernel_time = sim_from_seconds(s->kernel_time),
+        .barrier = sim_from_seconds(s->barrier_time),
+        .shared_latency = sim_from_seconds(s->shared_latency),
+        .kernel_byte = s->kernel_per_byte * SIM_PS_PER_S,
+        .shared_byte = s->shared_bandwidth > 0 ? SIM_PS_PER_S / s->shared_bandwidth : 0,
+    };
+    for (int i = 0; i < n; i++)
+        cost.message[i] = message_cost_make(&list[i], i + 1 < n ? list[i + 1].from : INT64_MAX);
+    return cost;
+}

@@ -1,0 +1,34 @@
+/* cost.h - how long the message software takes, by size, in picoseconds. */
+#ifndef VP_COST_H
+#define VP_COST_H
+
+#include "sim/sim.h"
+#include "spec/software_spec.h"
+
+/* Durations of the message software for one range of sizes [ps], from software_segments. */
+struct message_cost {
+    int64_t below;       /* the first size of the next range, INT64_MAX: none */
+    sim_ps send, recv, rendezvous;
+    double send_byte, recv_byte; /* [ps/B] */
+    enum message_protocol protocol;
+};
+
+/* Durations of the message software [ps], from software_spec. */
+struct software_cost {
+    struct message_cost message[SOFTWARE_MAX_SEGMENTS]; /* by rising size */
+    sim_ps kernel_time, barrier, shared_latency;
+    double kernel_byte, shared_byte; /* [ps/B] */
+};
+
+/* message_cost: that of messages of `bytes`. */
+static inline const struct message_cost *message_cost(const struct software_cost *s, int64_t bytes)
+{
+    const struct message_cost *m = s->message;
+    while (bytes >= m->below) m++;
+    return m;
+}
+
+/* software_cost_make: from a machine's message software. */
+struct software_cost software_cost_make(const struct software_spec *s);
+
+#endif
