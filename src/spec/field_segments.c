@@ -92,17 +92,23 @@ static const char *take_segment(const char *s, int number, struct software_segme
 {
     bool seen[NROW] = {false};
     memset(out, 0, sizeof *out);
-    *out = (struct software_segment){.send_overhead = -1, .send_copy = -1, .recv_overhead = -1, .recv_copy = -1,
-                                     .gap = -1, .gap_per_byte = -1, .rendezvous_latency = -1};
+    *out = (struct software_segment){.send_overhead = -1,
+                                     .send_copy = -1,
+                                     .recv_overhead = -1,
+                                     .recv_copy = -1,
+                                     .gap = -1,
+                                     .gap_per_byte = -1,
+                                     .rendezvous_latency = -1};
     if (*s != '{') return field_refuse(why, size, "%s", expected), NULL;
     for (s = skip_blanks(s + 1); *s != '}'; s = skip_blanks(s))
         if ((s = take_entry(s, number, seen, out, read, a, why, size)) == NULL) return NULL;
-    if (!seen[0]) return field_refuse(why, size, "segment %d has no 'from'; expected its smallest message", number), NULL;
+    if (!seen[0])
+        return field_refuse(why, size, "segment %d has no 'from'; expected its smallest message", number), NULL;
     if (seen[NROW - 1] && out->protocol == PROTOCOL_EAGER)
         return field_refuse(why, size,
-                      "segment %d: rendezvous.latency of an eager segment; expected 'protocol: rendezvous' or "
-                      "'protocol: synchronous' beside it",
-                      number),
+                            "segment %d: rendezvous.latency of an eager segment; expected 'protocol: rendezvous' or "
+                            "'protocol: synchronous' beside it",
+                            number),
                NULL;
     return s + 1;
 }
@@ -116,8 +122,8 @@ static bool in_order(const struct software_segment *list, int n, char *why, int 
     if (n > 1 && from == before)
         return field_refuse(why, size, "segments %d and %d both begin at %lld B", n - 1, n, from);
     if (n > 1 && from < before)
-        return field_refuse(why, size, "segment %d begins at %lld B, after one from %lld B; expected rising sizes", n, from,
-                      before);
+        return field_refuse(why, size, "segment %d begins at %lld B, after one from %lld B; expected rising sizes", n,
+                            from, before);
     return true;
 }
 
