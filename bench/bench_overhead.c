@@ -49,12 +49,12 @@ static double bare_seconds(const struct run_spec *spec, bool watch, struct err *
     system_prepare(m);
     b.job =
         (struct kernel_job){.spec = spec, .model = m, .state = state_make(m, &spec->model, a), .nrank = spec->nrank};
-    b.job.tau = TAKE(a, m->nu, double);
-    b.job.qdd = TAKE(a, m->nu, double);
+    job_want(&b.job, OUTPUT_TAU, m->nu, a);
+    job_want(&b.job, OUTPUT_QDD, m->nu, a);
     if (watch) {
-        b.job.residual = TAKE(a, spec->nrank, double);
-        b.job.residual_scale = TAKE(a, spec->nrank, double);
-        b.job.condition = TAKE(a, spec->nrank, double);
+        job_want(&b.job, OUTPUT_RESIDUAL, spec->nrank, a);
+        job_want(&b.job, OUTPUT_RESIDUAL_SCALE, spec->nrank, a);
+        job_want(&b.job, OUTPUT_CONDITION, spec->nrank, a);
     }
     if (!b.kernel->accepts(spec, m, e) || !b.kernel->prepare(&b.job, a, e)) return 0;
     b.workspace = TAKE(a, spec->nrank, char *);
@@ -63,7 +63,7 @@ static double bare_seconds(const struct run_spec *spec, bool watch, struct err *
     for (int round = 0; round < rounds_for(spec->nrank); round++) {
         for (int k = 0; k < spec->nrank; k++) memset(b.workspace[k], 0, b.kernel->workspace_bytes(&b.job, k));
         const double begin = host_seconds();
-        many_ranks_run(spec->nrank, program, &b);
+        many_ranks_publishing(spec->nrank, program, &b, b.job.output, KERNEL_OUTPUTS);
         const double took = host_seconds() - begin;
         if (took < best) best = took;
     }

@@ -25,6 +25,12 @@ struct comm_request {
     int line;
 };
 
+/* Where the numbers of one output gather on this host; x NULL: nobody wants them. */
+struct comm_output {
+    double *x;                   /* (n) */
+    int64_t n;
+};
+
 struct comm_type {
     const char *name;
     void (*isend)(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r);
@@ -34,12 +40,15 @@ struct comm_type {
     void (*work)(struct comm *c, const struct work *w);
     void (*stage)(struct comm *c, int stage);
     int64_t (*now_ps)(struct comm *c);
+    void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data);
 };
 
 /* Every implementation's struct begins with this. */
 struct comm {
     const struct comm_type *type;
     int rank, size;
+    int noutput;
+    const struct comm_output *output; /* (noutput) where comm_publish_here puts what is published; borrowed */
     const char *file;            /* call site of the operation in progress, set by the macros below */
     int line;
 };
@@ -86,5 +95,21 @@ static inline void comm_stage(struct comm *c, int stage) { c->type->stage(c, sta
 
 /* comm_now_ps: this rank's clock [ps]; 0 where nothing is simulated. For micro-benchmarks. */
 static inline int64_t comm_now_ps(struct comm *c) { return c->type->now_ps(c); }
+
+/* comm_publish: hand the elements first .. first + n - 1 of output number `output` (the program's list) to whoever
+ * started the program; costs no simulated time. Each element is published by one rank. */
+static inline void comm_publish(struct comm *c, int output, int64_t first, int64_t n, const double *data)
+{
+    c->type->publish(c, output, first, n, data);
+}
+
+/* comm_wanted: whether anybody asks for that output; what nobody wants need not be published. */
+static inline int comm_wanted(const struct comm *c, int output)
+{
+    return output < c->noutput && c->output[output].x != NULL;
+}
+
+/* comm_publish_here: comm_publish where ranks share the memory of c->output. */
+void comm_publish_here(struct comm *c, int output, int64_t first, int64_t n, const double *data);
 
 #endif

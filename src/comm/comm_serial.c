@@ -52,6 +52,7 @@ static const struct comm_type serial_type = {
     .work = count_work,
     .stage = set_stage,
     .now_ps = no_clock,
+    .publish = comm_publish_here,
 };
 
 struct comm_serial comm_serial_make(void)

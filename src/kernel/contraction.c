@@ -9,6 +9,7 @@
 #include "kernel/compound.h"
 #include "kernel/extremes.h"
 #include "kernel/implicit.h"
+#include "kernel/publish.h"
 #include "kernel/tags.h"
 
 enum { TAG_ANCHOR = TAG_TREE + 2 };
@@ -347,22 +348,22 @@ static void evaluate(struct contraction *k)
     refine_outside(k);
 }
 
-/* store: the answer and the loop forces into the job's arrays. */
-static void store(const struct contraction *k)
+/* publish: the answer and the loop forces. */
+static void publish(const struct contraction *k)
 {
     const struct tree *t = &k->tree;
-    const struct kernel_job *job = t->job;
-    const int rank = comm_rank(t->comm);
-    for (int l = 0; l < t->n && job->qdd; l++) {
+    for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
+        real answer[SPACE];
         for (int i = 0; i < b->d; i++)
-            job->qdd[b->u_at + i] = k->broken ? __builtin_nan("") : (double)k->answer[t->u_at[l] + i];
+            answer[i] = k->broken ? (real)__builtin_nan("") : k->answer[t->u_at[l] + i];
+        publish_reals(t->comm, OUTPUT_QDD, b->u_at, b->d, answer);
     }
-    if (rank != 0) return;
-    if (job->refined) *job->refined = k->refined;
-    for (int j = 0; j + 1 < k->room && job->lambda; j++)
-        job->lambda[k->closure.shared->place[j]] = (double)k->lambda[j];
-    if (job->loop_rank && has_loops(k)) *job->loop_rank = k->closure.rank;
+    if (comm_rank(t->comm) != 0) return;
+    publish_number(t->comm, OUTPUT_REFINED, 0, k->refined);
+    for (int j = 0; j + 1 < k->room; j++)
+        publish_number(t->comm, OUTPUT_LAMBDA, k->closure.shared->place[j], (double)k->lambda[j]);
+    if (has_loops(k)) publish_number(t->comm, OUTPUT_LOOP_RANK, 0, k->closure.rank);
 }
 
 /* evaluate_once: for the time steps; only the first answer is kept. */
@@ -370,9 +371,9 @@ static void evaluate_once(void *program)
 {
     struct contraction *k = program;
     evaluate(k);
-    if (!k->stored) store(k);
-    motion_watch(k->tree.job, comm_rank(k->tree.comm), k->residual, k->residual_scale, 0);
-    k->stored = true;
+    if (!k->published) publish(k);
+    motion_watch(&k->motion.seen, k->residual, k->residual_scale, 0);
+    k->published = true;
 }
 
 void contraction_run(struct contraction *k)
@@ -380,6 +381,7 @@ void contraction_run(struct contraction *k)
     struct tree *t = &k->tree;
     struct motion *m = &k->motion;
     tree_load(t);
+    m->comm = t->comm;
     m->body = t->shared->body;
     m->bodies = t->bodies, m->n = t->n;
     m->q = t->q, m->u = t->u, m->ud = k->answer;

@@ -50,7 +50,7 @@ struct contraction {
     real *lambda; /* (nrow) loop forces, summed over refinements */
     struct motion motion;
     int refined; /* corrections applied */
-    bool stored; /* the first evaluation's answer is in the job's arrays */
+    bool published; /* the first evaluation's answer is out */
     real residual, residual_scale; /* largest constraint residual over this */
     bool broken;
 };

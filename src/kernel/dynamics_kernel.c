@@ -6,6 +6,7 @@
 #include "kernel/contraction.h"
 #include "kernel/estimate.h"
 #include "kernel/forward.h"
+#include "kernel/publish.h"
 
 static const char *const stage_name[] = {"Pre-processing", "NE[1]", "NE[2]", "NE[3]", "CFA[1]", "CFA[2]", "CFA[3]"};
 enum { INVERSE_STAGES = 4, FORWARD_STAGES = 7 };
@@ -141,7 +142,7 @@ static void chain_inverse_run(struct comm *c, const struct kernel_job *job, stru
     chain_acceleration(ch, v->ud);
     comm_stage(c, STAGE_FORCE);
     chain_force(ch, v->tau);
-    for (int k = 0; k < nu && job->tau; k++) job->tau[first + k] = (double)v->tau[k];
+    publish_reals(c, OUTPUT_TAU, first, nu, v->tau);
 }
 
 static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struct tree_inverse *v)
@@ -163,9 +164,8 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
     tree_acceleration(t, v->ud);
     comm_stage(c, STAGE_FORCE);
     tree_force(t, v->tau, NULL);
-    for (int l = 0; l < t->n && job->tau; l++)
-        for (int k = 0; k < tree_body(t, l)->d; k++)
-            job->tau[tree_body(t, l)->u_at + k] = (double)v->tau[t->u_at[l] + k];
+    for (int l = 0; l < t->n; l++)
+        publish_reals(c, OUTPUT_TAU, tree_body(t, l)->u_at, tree_body(t, l)->d, v->tau + t->u_at[l]);
 }
 
 static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)

@@ -8,6 +8,7 @@
 #include "kernel/extremes.h"
 #include "kernel/forward_exact.h"
 #include "kernel/forward_rows.h"
+#include "kernel/publish.h"
 #include "kernel/tags.h"
 
 void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank)
@@ -17,7 +18,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     struct chain *ch = &f->chain;
     const bool refine = spec->outer_refinements > 0;
     f->direct = spec->formulation == FORMULATION_DIRECT;
-    f->watch = job->residual || refine;
+    f->watch = job_output(job, OUTPUT_RESIDUAL) || refine;
     f->step = implicit_step(job);
     chain_carve(ch, c, job, rank, true, refine || !f->direct);
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);
@@ -460,14 +461,13 @@ static void evaluate(struct forward *f)
     refine_outside(f);
 }
 
-/* store: the answer into the job's arrays. */
-static void store(const struct forward *f)
+/* publish: the answer. */
+static void publish(const struct forward *f)
 {
     const struct chain *ch = &f->chain;
-    const struct kernel_job *job = ch->job;
     const int k = comm_rank(ch->comm), first = forward_body(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
-    for (int i = 0; i < nu && job->qdd; i++) job->qdd[first + i] = (double)f->ud[i];
-    if (job->refined && k == 0) *job->refined = f->refined;
+    publish_reals(ch->comm, OUTPUT_QDD, first, nu, f->ud);
+    if (k == 0) publish_number(ch->comm, OUTPUT_REFINED, 0, f->refined);
 }
 
 /* evaluate_once: for the time steps; only the first answer is kept. */
@@ -475,9 +475,9 @@ static void evaluate_once(void *program)
 {
     struct forward *f = program;
     evaluate(f);
-    if (!f->stored) store(f);
-    motion_watch(f->chain.job, comm_rank(f->chain.comm), f->residual, f->residual_scale, f->blocks.reduction.condition);
-    f->stored = true;
+    if (!f->published) publish(f);
+    motion_watch(&f->motion.seen, f->residual, f->residual_scale, f->blocks.reduction.condition);
+    f->published = true;
 }
 
 void forward_run(struct forward *f)
@@ -485,6 +485,7 @@ void forward_run(struct forward *f)
     struct chain *ch = &f->chain;
     struct motion *m = &f->motion;
     chain_load(ch);
+    m->comm = ch->comm;
     m->body = ch->shared->body;
     m->first = ch->lo, m->n = ch->hi - ch->lo;
     m->q = ch->q, m->u = ch->u, m->ud = f->ud;

@@ -39,7 +39,7 @@ struct forward {
     real *message;                  /* coordinates or forces of an edge joint */
     struct motion motion;
     int refined;   /* corrections applied */
-    bool stored;   /* the first evaluation's answer is in the job's arrays */
+    bool published;   /* the first evaluation's answer is out */
     real residual; /* largest |W^T z| over the largest term in it */
     real residual_scale; /* that term */
 };

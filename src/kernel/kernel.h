@@ -1,8 +1,7 @@
 /* kernel.h - the table of kernels: parallel programs written against comm.h alone.
  *
- * A job is one evaluation shared by all ranks: what is given is read-only, each rank writes only its own bodies'
- * answers into the output arrays. (The gathering of answers for the check costs no simulated time; neither do
- * `residual` and `condition`, which the answer does not need.) */
+ * A job is one evaluation shared by all ranks and read-only to them; their answers leave by comm_publish, which costs
+ * no simulated time. */
 #ifndef KERNEL_KERNEL_H
 #define KERNEL_KERNEL_H
 
@@ -29,6 +28,27 @@ struct job_omit {
     int fixed;     /* bodies on fixed joints that have become part of others in job->model */
 };
 
+/* What a program of multibody dynamics publishes. */
+enum dynamics_output {
+    OUTPUT_TAU,            /* (nu) inverse dynamics: joint forces, model order */
+    OUTPUT_QDD,            /* (nu) forward dynamics: joint accelerations */
+    OUTPUT_Q_END,          /* (nq) state after the last time step */
+    OUTPUT_QD_END,         /* (nu) */
+    OUTPUT_LAMBDA,         /* (nrow) loop forces */
+    OUTPUT_RESIDUAL,       /* (nrank) largest constraint residual that each rank saw in all evaluations, relative */
+    OUTPUT_RESIDUAL_SCALE, /* (nrank) what each rank's residual is relative to */
+    OUTPUT_CONDITION,      /* (nrank) largest diagonal element over its last pivot, a lower bound of the condition of
+                              the block-scaled system; 0: not seen by the solver */
+    OUTPUT_REFINED,        /* (1) corrections applied by the first evaluation, inner and outer */
+    OUTPUT_LOOP_RANK,      /* (1) rank of the loops' constraint matrix */
+    DYNAMICS_OUTPUTS
+};
+
+/* What a micro-benchmark publishes. */
+enum micro_output { OUTPUT_SECONDS /* (nrank) what each rank measured, simulated [s] */, MICRO_OUTPUTS };
+
+enum { KERNEL_OUTPUTS = DYNAMICS_OUTPUTS };
+
 struct kernel_job {
     const struct run_spec *spec;
     const struct model *model; /* NULL for kernels that need none (micro-benchmarks) */
@@ -36,18 +56,7 @@ struct kernel_job {
     struct job_omit omit;
     int nrank;
     const void *shared;     /* what prepare made: partition tables, constant inertias; read-only */
-    double *tau;            /* out (nu): inverse dynamics, model order; NULL if the task has none */
-    double *qdd;            /* out (nu): forward dynamics; NULL if the task has none */
-    double *q_end, *qd_end; /* out: state after the last time step; NULL when steps = 0 */
-    double *lambda;         /* out: loop forces; NULL without loops */
-    double *measured;       /* out (nrank): micro-benchmarks: one number per rank [s]; NULL otherwise */
-    double *residual;       /* out (nrank): largest constraint residual seen by each rank in all evaluations, relative;
-                               may be NULL */
-    double *residual_scale; /* out (nrank): what each rank's residual is relative to; may be NULL */
-    double *condition;      /* out (nrank): largest diagonal element over its last pivot, a lower bound of the
-                               condition of the block-scaled system; 0: not seen by the solver; may be NULL */
-    int *refined;           /* out (1): corrections applied by the first evaluation, inner and outer; may be NULL */
-    int *loop_rank;         /* out (1): rank of the loops' constraint matrix; may be NULL */
+    struct comm_output output[KERNEL_OUTPUTS]; /* what the ranks are to publish; x NULL: not wanted */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
@@ -95,6 +104,13 @@ const struct kernel_type *kernel_find_precision(const char *name, enum precision
 /* kernel_find_planar: the same kernel in three components instead of six, for planar scenes (dynamics/planar.h). NULL
  * when there is none. */
 const struct kernel_type *kernel_find_planar(const char *name, enum precision precision);
+
+/* job_output: the numbers of an output of the job, NULL where it is not wanted. job_want: n of them, zero, from `a`. */
+static inline double *job_output(const struct kernel_job *job, int output) { return job->output[output].x; }
+static inline void job_want(struct kernel_job *job, int output, int64_t n, struct arena *a)
+{
+    job->output[output] = (struct comm_output){TAKE(a, n > 0 ? n : 1, double), n};
+}
 
 /* kernel_list: all of them, (*n) pointers, in double precision. */
 const struct kernel_type *const *kernel_list(int *n);

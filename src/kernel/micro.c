@@ -47,9 +47,10 @@ static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 }
 
 /* note: seconds per repetition since `begin`. */
-static void note(struct comm *c, const struct kernel_job *job, int64_t begin_ps, double divisor)
+static void note(struct comm *c, int64_t begin_ps, double divisor)
 {
-    if (job->measured) job->measured[comm_rank(c)] = (double)(comm_now_ps(c) - begin_ps) * 1e-12 / divisor;
+    const double seconds = (double)(comm_now_ps(c) - begin_ps) * 1e-12 / divisor;
+    comm_publish(c, OUTPUT_SECONDS, comm_rank(c), 1, &seconds);
 }
 
 static void pingpong_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -63,7 +64,7 @@ static void pingpong_run(struct comm *c, const struct kernel_job *job, void *wor
         comm_recv(c, rank == 0 ? last : 0, TAG_BENCH, in, bytes);
         if (rank == last) comm_send(c, 0, TAG_BENCH, workspace, bytes);
     }
-    note(c, job, begin, 2.0 * repeat);
+    note(c, begin, 2.0 * repeat);
 }
 
 /* exchange: send to `dst`, receive from `src`, and wait for both. */
@@ -82,7 +83,7 @@ static void shift_run(struct comm *c, const struct kernel_job *job, void *worksp
     const int64_t begin = comm_now_ps(c);
     for (int k = 0; k < repeat && distance != 0; k++)
         exchange(c, (rank + distance) % P, (rank - distance + P) % P, workspace, message_bytes(job));
-    note(c, job, begin, repeat);
+    note(c, begin, repeat);
 }
 
 static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -91,7 +92,7 @@ static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *w
     const int64_t begin = comm_now_ps(c);
     for (int k = 0; k < repeat; k++)
         for (int d = 1; d < P; d++) exchange(c, (rank + d) % P, (rank - d + P) % P, workspace, message_bytes(job));
-    note(c, job, begin, repeat);
+    note(c, begin, repeat);
 }
 
 static void bisection_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -99,7 +100,7 @@ static void bisection_run(struct comm *c, const struct kernel_job *job, void *wo
     const int P = comm_size(c), peer = (comm_rank(c) + P / 2) % P, repeat = repetitions(job);
     const int64_t begin = comm_now_ps(c);
     for (int k = 0; k < repeat; k++) exchange(c, peer, peer, workspace, message_bytes(job));
-    note(c, job, begin, repeat);
+    note(c, begin, repeat);
 }
 
 static void hot_spot_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -115,7 +116,7 @@ static void hot_spot_run(struct comm *c, const struct kernel_job *job, void *wor
         }
         for (int src = 1; src < P; src++) comm_recv(c, src, TAG_BENCH, (char *)workspace + bytes, bytes);
     }
-    note(c, job, begin, repeat);
+    note(c, begin, repeat);
 }
 
 static void barrier_run(struct comm *c, const struct kernel_job *job, void *workspace)
@@ -124,7 +125,7 @@ static void barrier_run(struct comm *c, const struct kernel_job *job, void *work
     const int repeat = repetitions(job);
     const int64_t begin = comm_now_ps(c);
     for (int k = 0; k < repeat; k++) comm_barrier(c);
-    note(c, job, begin, repeat);
+    note(c, begin, repeat);
 }
 
 /* estimate_messages: `messages` of the spec's size a repetition. */

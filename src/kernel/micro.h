@@ -1,4 +1,4 @@
-/* micro.h - micro-benchmarks of a machine's messages; each writes one time per rank to job->measured [s].
+/* micro.h - micro-benchmarks of a machine's messages; each publishes one time per rank [s].
  *
  * kernel_spec.repeat repetitions (at least 1) of messages of kernel_spec.message_bytes. Nothing is computed. */
 #ifndef KERNEL_MICRO_H

@@ -2,6 +2,8 @@
 #include "kernel/motion.h"
 
 #include <math.h>
+
+#include "kernel/publish.h"
 #include <string.h>
 
 #include "model/model.h"
@@ -103,16 +105,24 @@ static void runge_kutta(struct motion *m, real h)
     drift(m, 0);
 }
 
-/* store: own parts of model-ordered arrays. */
-static void store(const struct motion *m, bool coordinates, const real *from, double *to)
+/* publish_state: own coordinates or rates, body by body in model order. */
+static void publish_state(const struct motion *m, bool coordinates, const real *from, int output)
 {
     int at = 0;
-    for (int l = 0; l < m->n && to; l++) {
+    for (int l = 0; l < m->n; l++) {
         const struct body *b = body_of(m, l);
         const int n = coordinates ? b->nq : b->d, first = coordinates ? b->q_at : b->u_at;
-        for (int i = 0; i < n; i++) to[first + i] = (double)from[at + i];
+        publish_reals(m->comm, output, first, n, from + at);
         at += n;
     }
+}
+
+static void publish_seen(const struct motion *m)
+{
+    const int rank = comm_rank(m->comm);
+    publish_number(m->comm, OUTPUT_RESIDUAL, rank, m->seen.residual);
+    publish_number(m->comm, OUTPUT_RESIDUAL_SCALE, rank, m->seen.scale);
+    publish_number(m->comm, OUTPUT_CONDITION, rank, m->seen.condition);
 }
 
 void motion_run(struct motion *m)
@@ -126,27 +136,23 @@ void motion_run(struct motion *m)
     }
     if (spec->steps == 0) {
         m->evaluate(m->program);
-        return;
+    } else {
+        publish_state(m, true, m->q, OUTPUT_Q_END);
+        publish_state(m, false, m->u, OUTPUT_QD_END);
     }
-    store(m, true, m->q, m->job->q_end);
-    store(m, false, m->u, m->job->qd_end);
+    publish_seen(m);
 }
 
-void motion_watch(const struct kernel_job *job, int rank, real residual, real scale, real condition)
+void motion_watch(struct motion_seen *seen, real residual, real scale, real condition)
 {
-    double *x = job->residual, *of = job->residual_scale, *most = job->condition;
     const double size = (double)scale, violation = (double)residual * size;
-    if (most && !isnan(most[rank]) && !((double)condition <= most[rank])) most[rank] = (double)condition;
-    if (!x || isnan(x[rank])) return;
-    if (!of) {
-        if (!((double)residual <= x[rank])) x[rank] = (double)residual;
+    if (!isnan(seen->condition) && !((double)condition <= seen->condition)) seen->condition = (double)condition;
+    if (isnan(seen->residual)) return;
+    if (!seen->any) {
+        *seen = (struct motion_seen){(double)residual, size, seen->condition, true};
         return;
     }
-    if (x[rank] == 0 && of[rank] == 0) { /* the first */
-        x[rank] = (double)residual, of[rank] = size;
-        return;
-    }
-    const double worst = violation <= x[rank] * of[rank] ? x[rank] * of[rank] : violation;
-    of[rank] = fmax(of[rank], size);
-    x[rank] = of[rank] > 0 ? worst / of[rank] : (double)residual;
+    const double before = seen->residual * seen->scale, worst = violation <= before ? before : violation;
+    seen->scale = fmax(seen->scale, size);
+    seen->residual = seen->scale > 0 ? worst / seen->scale : (double)residual;
 }

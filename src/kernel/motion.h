@@ -10,8 +10,16 @@
 #include "kernel/carve.h"
 #include "kernel/kernel.h"
 
+/* The worst of all evaluations that a rank has seen. */
+struct motion_seen {
+    double residual, scale; /* largest violation, relative to the largest term */
+    double condition;
+    bool any;
+};
+
 struct motion {
     const struct kernel_job *job;
+    struct comm *comm;
     const struct body *body; /* of all bodies */
     const int *bodies;       /* (n) own bodies; NULL: first, first + 1, .. */
     int first, n, nq, nu;
@@ -20,17 +28,19 @@ struct motion {
     void (*evaluate)(void *program); /* ud from q and u; every rank must call it */
     void *program;
     struct work *work;
+    struct motion_seen seen;
     real *q0, *u0, *dq, *qsum, *usum, *a; /* q, u at the beginning of the step; sums of slopes; last accelerations */
 };
 
 /* motion_carve: room for stepping nq coordinates and nu rates. */
 void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu);
 
-/* motion_run: all time steps of the job, the last state into job->q_end, qd_end; without time steps one evaluation. */
+/* motion_run: all time steps of the job; publishes the last state and what was seen on the way. Without time steps one
+ * evaluation. */
 void motion_run(struct motion *m);
 
-/* motion_watch: what this rank saw in one more evaluation, a residual relative to `scale` and a condition, into the
- * job's arrays: the largest of all evaluations so far. */
-void motion_watch(const struct kernel_job *job, int rank, real residual, real scale, real condition);
+/* motion_watch: what this rank saw in one more evaluation, a residual relative to `scale` and a condition: *seen keeps
+ * the largest of all evaluations so far. A number that is none stays. */
+void motion_watch(struct motion_seen *seen, real residual, real scale, real condition);
 
 #endif

@@ -33,6 +33,8 @@ bool launch_job(const struct kernel_type *kernel, const struct kernel_job *job, 
                 struct arena *a, struct run_result *out, struct err *e)
 {
     struct launch l = {kernel, job, make_workspaces(job, kernel, scratch)};
-    struct world_load load = {job->nrank, program, &l, kernel->nstage, kernel->stage_name, largest, job->spec->pulse};
+    const struct world_load load = {.nrank = job->nrank, .program = program, .context = &l, .nstage = kernel->nstage,
+                                    .stage_name = kernel->stage_name, .largest_message = largest,
+                                    .output = job->output, .noutput = KERNEL_OUTPUTS, .pulse = job->spec->pulse};
     return world_run(m, &load, record, seed, a, out, e);
 }

@@ -42,7 +42,7 @@ static void record(struct run_result *out, const char *quantity, const char *ref
 
 static void check_inverse(const struct kernel_job *job, struct scene *scene, struct run_result *out)
 {
-    record(out, "tau", "rnea", relative_error(job->tau, scene_inverse(scene)->x, job->model->nu),
+    record(out, "tau", "rnea", relative_error(job_output(job, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu),
            references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
 }
 
@@ -64,7 +64,7 @@ static void check_forward(const struct kernel_job *job, struct scene *scene, str
                           struct run_result *out)
 {
     const struct serial_answer *aba = scene_forward(scene, FORWARD_ABA);
-    const double error = aba->found ? relative_error(job->qdd, aba->x, job->model->nu) : NAN;
+    const double error = aba->found ? relative_error(job_output(job, OUTPUT_QDD), aba->x, job->model->nu) : NAN;
     double tolerance = references_tolerance(&job->spec->kernel, job->model->nbody);
     if (error > tolerance) tolerance = fmax(tolerance, rounding_of(job, aba->x, scratch));
     record(out, "qdd", "aba", error, tolerance);
@@ -95,8 +95,8 @@ static void check_steps(const struct kernel_job *job, struct arena *scratch, str
     if (found)
         growth = fmax(growth, fmax(relative_error(other.q, end.q, nq), relative_error(other.qd, end.qd, nu)) / change);
     const double tolerance = fmin(references_tolerance(&job->spec->kernel, job->model->nbody) * growth, 1e-2);
-    record(out, "q", "steps", found ? relative_error(job->q_end, end.q, nq) : NAN, tolerance);
-    record(out, "qd", "steps", found ? relative_error(job->qd_end, end.qd, nu) : NAN, tolerance);
+    record(out, "q", "steps", found ? relative_error(job_output(job, OUTPUT_Q_END), end.q, nq) : NAN, tolerance);
+    record(out, "qd", "steps", found ? relative_error(job_output(job, OUTPUT_QD_END), end.qd, nu) : NAN, tolerance);
 }
 
 void references_loops(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
@@ -104,11 +104,11 @@ void references_loops(const struct kernel_job *job, struct arena *scratch, struc
     if (!job->model || job->model->nrow == 0) return;
     struct arena_mark mark = arena_mark(scratch);
     struct state end = *job->state;
-    if (job->q_end) end.q = job->q_end;
-    if (job->qd_end) end.qd = job->qd_end;
+    if (job_output(job, OUTPUT_Q_END)) end.q = job_output(job, OUTPUT_Q_END);
+    if (job_output(job, OUTPUT_QD_END)) end.qd = job_output(job, OUTPUT_QD_END);
     dynamics_type_of(PRECISION_DOUBLE)->drift(job->model, &end, scratch, &out->drift_position, &out->drift_velocity);
     out->loop_rows = job->model->nrow;
-    out->loop_rank = *job->loop_rank;
+    out->loop_rank = (int)*job_output(job, OUTPUT_LOOP_RANK);
     arena_release(scratch, mark);
 }
 
@@ -117,9 +117,9 @@ void references_check(const struct kernel_job *job, struct scene *scene, struct 
 {
     if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
-    if (job->tau) check_inverse(job, scene, out);
-    if (job->qdd && job->spec->kernel.steps == 0) check_forward(job, scene, scratch, out);
-    if (job->qdd && job->q_end) check_steps(job, scratch, out);
+    if (job_output(job, OUTPUT_TAU)) check_inverse(job, scene, out);
+    if (job_output(job, OUTPUT_QDD) && job->spec->kernel.steps == 0) check_forward(job, scene, scratch, out);
+    if (job_output(job, OUTPUT_QDD) && job_output(job, OUTPUT_Q_END)) check_steps(job, scratch, out);
     arena_release(scratch, mark);
 }
 

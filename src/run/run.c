@@ -26,28 +26,29 @@ static bool make_job(struct kernel_job *job, const struct kernel_type *kernel, c
         job->state = scene->state;
         job->omit = omission_job(spec, m, scene->state);
         job->omit.fixed = scene->fixed;
-        if (kernel->does_inverse) job->tau = TAKE(a, m->nu, double);
-        if (kernel->does_forward) job->qdd = TAKE(a, m->nu, double);
-        if (m->nrow) job->lambda = TAKE(a, m->nrow, double);
-        job->loop_rank = TAKE(a, 1, int);
-        *job->loop_rank = -1;
+        if (kernel->does_inverse) job_want(job, OUTPUT_TAU, m->nu, a);
+        if (kernel->does_forward) job_want(job, OUTPUT_QDD, m->nu, a);
+        if (m->nrow) job_want(job, OUTPUT_LAMBDA, m->nrow, a);
+        job_want(job, OUTPUT_LOOP_RANK, 1, a);
+        *job_output(job, OUTPUT_LOOP_RANK) = -1;
         if (spec->kernel.steps > 0) {
-            job->q_end = TAKE(a, m->nq, double);
-            job->qd_end = TAKE(a, m->nu, double);
+            job_want(job, OUTPUT_Q_END, m->nq, a);
+            job_want(job, OUTPUT_QD_END, m->nu, a);
         }
-        job->residual = TAKE(a, spec->nrank, double);
-        job->residual_scale = TAKE(a, spec->nrank, double);
-        job->condition = TAKE(a, spec->nrank, double);
+        job_want(job, OUTPUT_RESIDUAL, spec->nrank, a);
+        job_want(job, OUTPUT_RESIDUAL_SCALE, spec->nrank, a);
+        job_want(job, OUTPUT_CONDITION, spec->nrank, a);
     } else {
-        job->measured = TAKE(a, spec->nrank, double);
+        job_want(job, OUTPUT_SECONDS, spec->nrank, a);
     }
     return kernel->accepts(spec, job->model, e) && kernel->prepare(job, a, e);
 }
 
 static double largest_measured(const struct kernel_job *job)
 {
-    double largest = job->measured ? 0 : NAN;
-    for (int i = 0; job->measured && i < job->nrank; i++) largest = fmax(largest, job->measured[i]);
+    const double *seconds = job->model ? NULL : job_output(job, OUTPUT_SECONDS);
+    double largest = seconds ? 0 : NAN;
+    for (int i = 0; seconds && i < job->nrank; i++) largest = fmax(largest, seconds[i]);
     return largest;
 }
 
@@ -86,7 +87,8 @@ static bool refine(struct run_spec *spec, const struct kernel_type *kernel, stru
     struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;
     const double before = out->residual;
-    while (job->qdd && out->status != RUN_DEADLOCK && trust_refine(spec, job->model, out)) {
+    const bool solves = job->model && job_output(job, OUTPUT_QDD);
+    while (solves && out->status != RUN_DEADLOCK && trust_refine(spec, job->model, out)) {
         arena_release(scratch, work);
         arena_release(a, results);
         if (!attempt(spec, kernel, job, scene, scratch, a, out, e)) return false;

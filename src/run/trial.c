@@ -49,15 +49,13 @@ static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, c
 {
     *job = (struct kernel_job){.spec = spec, .model = m, .state = s, .nrank = spec->nrank};
     job->omit = omission_job(spec, m, s);
-    job->residual = TAKE(a, spec->nrank, double);
-    job->residual_scale = TAKE(a, spec->nrank, double);
-    job->condition = TAKE(a, spec->nrank, double);
-    job->loop_rank = TAKE(a, 1, int);
-    job->refined = TAKE(a, 1, int);
-    if (!kernel->needs_model) job->measured = TAKE(a, spec->nrank, double);
-    if (m && kernel->does_inverse) job->tau = TAKE(a, m->nu + 1, double);
-    if (m && kernel->does_forward) job->qdd = TAKE(a, m->nu + 1, double);
-    if (m && m->nrow > 0) job->lambda = TAKE(a, m->nrow, double);
+    job_want(job, OUTPUT_RESIDUAL, spec->nrank, a);
+    job_want(job, OUTPUT_RESIDUAL_SCALE, spec->nrank, a);
+    job_want(job, OUTPUT_CONDITION, spec->nrank, a);
+    job_want(job, OUTPUT_REFINED, 1, a);
+    if (m && kernel->does_inverse) job_want(job, OUTPUT_TAU, m->nu, a);
+    if (m && kernel->does_forward) job_want(job, OUTPUT_QDD, m->nu, a);
+    if (m && m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, a);
     return kernel->accepts(spec, m, e) && kernel->prepare(job, a, e);
 }
 
@@ -65,11 +63,11 @@ static void answer(struct trial *t, const struct kernel_job *job, const struct r
 {
     t->answered = r->status == RUN_OK;
     text_copy(t->text, sizeof t->text, r->text);
-    t->tau = job->tau;
-    t->qdd = job->qdd;
+    t->tau = job_output(job, OUTPUT_TAU);
+    t->qdd = job_output(job, OUTPUT_QDD);
     t->residual = trust_residual(job);
     t->condition = trust_condition(job);
-    t->refined = *job->refined;
+    t->refined = (int)*job_output(job, OUTPUT_REFINED);
     t->makespan_ps = r->makespan_ps;
     t->finish_ps = r->finish_ps;
     t->host_s = r->host_s;

@@ -20,17 +20,18 @@ static double worst(const double *x, int n)
 
 double trust_residual(const struct kernel_job *job)
 {
+    const double *x = job_output(job, OUTPUT_RESIDUAL), *of = job_output(job, OUTPUT_RESIDUAL_SCALE);
     double residual = 0, scale = 0;
-    if (!job->residual_scale) return worst(job->residual, job->nrank);
+    if (!of) return worst(x, job->nrank);
     for (int i = 0; i < job->nrank; i++) {
-        if (isnan(job->residual[i])) return job->residual[i];
-        residual = fmax(residual, job->residual[i] * job->residual_scale[i]);
-        scale = fmax(scale, job->residual_scale[i]);
+        if (isnan(x[i])) return x[i];
+        residual = fmax(residual, x[i] * of[i]);
+        scale = fmax(scale, of[i]);
     }
     return scale > 0 ? residual / scale : residual;
 }
 
-double trust_condition(const struct kernel_job *job) { return worst(job->condition, job->nrank); }
+double trust_condition(const struct kernel_job *job) { return worst(job_output(job, OUTPUT_CONDITION), job->nrank); }
 
 /* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. What the run has
  * tried by itself is not named again. */
@@ -95,7 +96,7 @@ bool trust_refine(struct run_spec *spec, const struct model *m, const struct run
 void trust_check(const struct kernel_job *job, struct run_result *out)
 {
     out->residual = NAN;
-    if (!job->qdd || !job->residual) return;
+    if (!job->model || !job_output(job, OUTPUT_QDD) || !job_output(job, OUTPUT_RESIDUAL)) return;
     const struct kernel_spec *k = &job->spec->kernel;
     bool single = k->precision == PRECISION_FLOAT;
     double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;

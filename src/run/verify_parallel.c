@@ -74,13 +74,14 @@ static bool job_make(struct verify_case *v, const struct kernel_type *kernel, co
 {
     const struct model *m = lumped ? v->lumped : v->model;
     *job = (struct kernel_job){.spec = spec, .model = m, .state = lumped ? v->lumped_state : v->state,
-                               .nrank = spec->nrank, .residual = TAKE(v->arena, spec->nrank, double),
-                               .condition = TAKE(v->arena, spec->nrank, double),
-                               .loop_rank = TAKE(v->arena, 1, int)};
+                               .nrank = spec->nrank};
+    job_want(job, OUTPUT_RESIDUAL, spec->nrank, v->arena);
+    job_want(job, OUTPUT_CONDITION, spec->nrank, v->arena);
+    job_want(job, OUTPUT_LOOP_RANK, 1, v->arena);
     job->omit = omission_job(spec, m, job->state);
-    if (kernel->does_inverse) job->tau = TAKE(v->arena, m->nu + 1, double);
-    if (kernel->does_forward) job->qdd = TAKE(v->arena, m->nu + 1, double);
-    if (m->nrow > 0) job->lambda = TAKE(v->arena, m->nrow, double);
+    if (kernel->does_inverse) job_want(job, OUTPUT_TAU, m->nu, v->arena);
+    if (kernel->does_forward) job_want(job, OUTPUT_QDD, m->nu, v->arena);
+    if (m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, v->arena);
     return kernel->accepts(spec, m, e) && kernel->prepare(job, v->arena, e);
 }
 
@@ -122,10 +123,10 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
                     v->arena, result, e))
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
-                            .x = kernel->does_forward ? job.qdd : job.tau,
-                            .lambda = job.lambda,
-                            .loop_rank = *job.loop_rank};
-    for (int i = 0; i < nrank; i++) out->condition = fmax(out->condition, job.condition[i]);
+                            .x = job_output(&job, kernel->does_forward ? OUTPUT_QDD : OUTPUT_TAU),
+                            .lambda = job_output(&job, OUTPUT_LAMBDA),
+                            .loop_rank = (int)*job_output(&job, OUTPUT_LOOP_RANK)};
+    for (int i = 0; i < nrank; i++) out->condition = fmax(out->condition, job_output(&job, OUTPUT_CONDITION)[i]);
     text_copy(out->text, sizeof out->text, result->text);
     return true;
 }

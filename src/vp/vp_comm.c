@@ -226,4 +226,5 @@ const struct comm_type vp_comm_type = {
     .work = vp_work,
     .stage = vp_stage,
     .now_ps = vp_now,
+    .publish = comm_publish_here,
 };

@@ -80,7 +80,8 @@ static void make_ranks(struct world *w, uint64_t seed)
     w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
     for (int i = 0; i < w->nrank; i++) {
         struct vp *v = &w->vp[i];
-        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank};
+        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank, .noutput = w->load->noutput,
+                                .output = w->load->output};
         v->world = w;
         v->stages = w->result->stage + (size_t)i * (size_t)row;
         v->posted_end = &v->posted;

@@ -23,6 +23,8 @@ struct world_load {
     const char *const *stage_name; /* (nstage); one more, "end", is added for idling until the makespan */
     int64_t largest_message;       /* bytes; a promise (CHECK), -1: none. When every message is eager, sends of a node
                                       come in order and some levels need fewer events, with the same times */
+    const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
+    int noutput;
     struct run_pulse *pulse;       /* where to tell how far the run is, NULL: nowhere */
 };
 

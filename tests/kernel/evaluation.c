@@ -70,16 +70,47 @@ static void compare(const struct kernel_job *job, struct arena *a, struct evalua
     struct work w = {0};
     double *reference = TAKE(a, m->nu + 1, double), *tau = TAKE(a, m->nu + 1, double);
     dynamics_load(d, s);
-    if (job->tau) {
+    if (job_output(job, OUTPUT_TAU)) {
         rnea(d, s->q, s->qd, s->qdd, reference, &w);
-        v->tau_error = relative_error(m->nu, job->tau, reference);
+        v->tau_error = relative_error(m->nu, job_output(job, OUTPUT_TAU), reference);
     }
-    if (!job->qdd) return;
+    if (!job_output(job, OUTPUT_QDD)) return;
     memcpy(tau, s->tau, (size_t)m->nu * sizeof *tau);
     springs_add(d, s->q, s->qd, tau);
     if (m->nloop == 0) assert_true(aba(d, s->q, s->qd, tau, reference, &w));
     else assert_true(closed_forward(d, s->q, s->qd, tau, reference, NULL, NULL, &w));
-    v->qdd_error = relative_error(m->nu, job->qdd, reference);
+    v->qdd_error = relative_error(m->nu, job_output(job, OUTPUT_QDD), reference);
+}
+
+/* want: every output of the program `k` for the job's model. */
+static void want(struct kernel_job *job, const struct kernel_type *k, struct arena *a)
+{
+    const struct model *m = job->model;
+    if (k->does_inverse) job_want(job, OUTPUT_TAU, m->nu, a);
+    if (k->does_forward) job_want(job, OUTPUT_QDD, m->nu, a);
+    if (job->spec->kernel.steps > 0) {
+        job_want(job, OUTPUT_Q_END, m->nq, a);
+        job_want(job, OUTPUT_QD_END, m->nu, a);
+    }
+    if (m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, a);
+    job_want(job, OUTPUT_LOOP_RANK, 1, a);
+    job_want(job, OUTPUT_RESIDUAL, job->nrank, a);
+    job_want(job, OUTPUT_CONDITION, job->nrank, a);
+}
+
+/* keep: what it published. */
+static void keep(const struct kernel_job *job, struct evaluation *v)
+{
+    v->tau = job_output(job, OUTPUT_TAU);
+    v->qdd = job_output(job, OUTPUT_QDD);
+    v->q_end = job_output(job, OUTPUT_Q_END);
+    v->qd_end = job_output(job, OUTPUT_QD_END);
+    v->lambda = job_output(job, OUTPUT_LAMBDA);
+    v->loop_rank = (int)*job_output(job, OUTPUT_LOOP_RANK);
+    for (int r = 0; r < job->nrank; r++) {
+        v->residual = fmax(v->residual, job_output(job, OUTPUT_RESIDUAL)[r]);
+        v->condition = fmax(v->condition, job_output(job, OUTPUT_CONDITION)[r]);
+    }
 }
 
 struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
@@ -92,18 +123,8 @@ struct evaluation evaluate_omitting(const struct run_spec *spec, const struct mo
                                       : kernel_find_precision(spec->kernel.name, spec->kernel.precision);
     assert_non_null(k);
     struct kernel_job job = {.spec = spec, .model = model, .state = state, .omit = omit, .nrank = spec->nrank};
-    const int nu = model ? model->nu : 0, nq = model ? model->nq : 0;
-    if (k->does_inverse) job.tau = v.tau = TAKE(a, nu + 1, double);
-    if (k->does_forward) job.qdd = v.qdd = TAKE(a, nu + 1, double);
-    if (spec->kernel.steps > 0) {
-        job.q_end = v.q_end = TAKE(a, nq + 1, double);
-        job.qd_end = v.qd_end = TAKE(a, nu + 1, double);
-    }
-    if (model && model->nrow > 0) job.lambda = v.lambda = TAKE(a, model->nrow, double);
-    job.loop_rank = &v.loop_rank;
-    job.measured = v.measured = TAKE(a, spec->nrank, double);
-    job.residual = TAKE(a, spec->nrank, double);
-    job.condition = TAKE(a, spec->nrank, double);
+    if (model) want(&job, k, a);
+    else job_want(&job, OUTPUT_SECONDS, spec->nrank, a);
     if (!k->accepts(spec, model, &e) || !k->prepare(&job, a, &e)) fail_msg("%s", e.text);
     char **workspace = TAKE(a, spec->nrank, char *);
     for (int r = 0; r < spec->nrank; r++) {
@@ -112,13 +133,11 @@ struct evaluation evaluate_omitting(const struct run_spec *spec, const struct mo
         workspace[r] = arena_take(a, bytes);
     }
     struct running running = {.kernel = k, .job = &job, .workspace = workspace};
-    v.counts = many_ranks_run(spec->nrank, program, &running);
+    v.counts = many_ranks_publishing(spec->nrank, program, &running, job.output, KERNEL_OUTPUTS);
     assert_int_equal(v.counts.blocked, 0);
     assert_int_equal(v.counts.unread, 0);
-    for (int r = 0; r < spec->nrank; r++) {
-        v.residual = fmax(v.residual, job.residual[r]);
-        v.condition = fmax(v.condition, job.condition[r]);
-    }
+    if (model) keep(&job, &v);
+    else v.measured = job_output(&job, OUTPUT_SECONDS);
     if (k->needs_model && spec->kernel.steps == 0) compare(&job, a, &v);
     return v;
 }

@@ -226,17 +226,16 @@ static void implicit_steps_are_refused_where_they_do_not_exist(void **state)
 static void the_worst_evaluation_is_kept(void **state)
 {
     (void)state;
-    double residual[2] = {0}, scale[2] = {0}, condition[2] = {0};
-    const struct kernel_job job = {.residual = residual, .residual_scale = scale, .condition = condition};
-    motion_watch(&job, 1, 1e-9, 4, 10);
-    assert_true(residual[1] == 1e-9 && scale[1] == 4 && condition[1] == 10);
-    motion_watch(&job, 1, 1e-6, 2, 5);
-    assert_true(fabs(residual[1] / 5e-7 - 1) < 1e-12 && scale[1] == 4 && condition[1] == 10);
-    motion_watch(&job, 1, 1, 1e-12, 20); /* nothing but rounding beside the others */
-    assert_true(fabs(residual[1] / 5e-7 - 1) < 1e-12 && condition[1] == 20);
-    motion_watch(&job, 1, NAN, 4, 1);
-    motion_watch(&job, 1, 1e-12, 4, 1);
-    assert_true(isnan(residual[1]) && residual[0] == 0);
+    struct motion_seen seen = {0};
+    motion_watch(&seen, 1e-9, 4, 10);
+    assert_true(seen.residual == 1e-9 && seen.scale == 4 && seen.condition == 10);
+    motion_watch(&seen, 1e-6, 2, 5);
+    assert_true(fabs(seen.residual / 5e-7 - 1) < 1e-12 && seen.scale == 4 && seen.condition == 10);
+    motion_watch(&seen, 1, 1e-12, 20); /* nothing but rounding beside the others */
+    assert_true(fabs(seen.residual / 5e-7 - 1) < 1e-12 && seen.condition == 20);
+    motion_watch(&seen, NAN, 4, 1);
+    motion_watch(&seen, 1e-12, 4, 1);
+    assert_true(isnan(seen.residual));
 }
 
 int main(void)

@@ -190,8 +190,9 @@ static void untrustworthy_answers_are_told(void **state)
     double residual[2] = {1e-12, 1e-9}, condition[2] = {10, 20}, qdd[1] = {0};
     struct run_spec spec = chain_spec(2, 2);
     const struct model chain = {.nbody = 2, .is_chain = true};
-    struct kernel_job job = {.spec = &spec, .model = &chain, .nrank = 2, .qdd = qdd, .residual = residual,
-                             .condition = condition};
+    struct kernel_job job = {.spec = &spec, .model = &chain, .nrank = 2,
+                             .output = {[OUTPUT_QDD] = {qdd, 1}, [OUTPUT_RESIDUAL] = {residual, 2},
+                                        [OUTPUT_CONDITION] = {condition, 2}}};
     struct run_result r = {.status = RUN_OK};
     spec.kernel.refinement = REFINEMENT_AS_GIVEN;
     trust_check(&job, &r);
@@ -210,7 +211,7 @@ static void untrustworthy_answers_are_told(void **state)
     assert_int_equal(r.status, RUN_INVALID);
     assert_non_null(strstr(r.text, "residual is no number"));
     double scale[2] = {1e-20, 1}; /* the first rank has nothing but rounding */
-    r.status = RUN_OK, residual[0] = 1, job.residual_scale = scale;
+    r.status = RUN_OK, residual[0] = 1, job.output[OUTPUT_RESIDUAL_SCALE].x = scale;
     trust_check(&job, &r);
     assert_int_equal(r.status, RUN_OK);
     assert_true(r.residual == 1e-9);

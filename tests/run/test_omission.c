@@ -134,10 +134,11 @@ static bool answer_of(const struct run_spec *spec, struct arena *a, struct answe
     job.omit.fixed = fixed;
     if (left_out) *n = omission_list(&job, k, left_out);
     const bool steps = spec->kernel.steps > 0;
-    if (k->does_inverse) job.tau = TAKE(a, m->nu + 1, double);
-    if (k->does_forward) job.qdd = TAKE(a, m->nu + 1, double);
-    if (steps) job.q_end = TAKE(a, m->nq + 1, double), job.qd_end = TAKE(a, m->nu + 1, double);
-    if (m->nrow) job.lambda = TAKE(a, m->nrow, double);
+    if (k->does_inverse) job_want(&job, OUTPUT_TAU, m->nu, a);
+    if (k->does_forward) job_want(&job, OUTPUT_QDD, m->nu, a);
+    if (steps) job_want(&job, OUTPUT_Q_END, m->nq, a);
+    if (steps) job_want(&job, OUTPUT_QD_END, m->nu, a);
+    if (m->nrow) job_want(&job, OUTPUT_LAMBDA, m->nrow, a);
     if (!k->accepts(spec, job.model, &e) || !k->prepare(&job, a, &e)) return false;
     struct machine_spec machine = omission_machine(spec);
     struct record_spec record = omission_record(spec);
@@ -147,11 +148,11 @@ static bool answer_of(const struct run_spec *spec, struct arena *a, struct answe
     assert_int_equal(result->status, RUN_OK);
     *v = (struct answer){.nrank = spec->nrank, .makespan_ps = result->makespan_ps};
     for (int i = 0; i < result->nrank * result->nstage; i++) v->flops += result->stage[i].work.flop;
-    append(v, 0, job.tau, m->nu);
-    append(v, 1, job.qdd, m->nu);
-    append(v, 2, job.q_end, m->nq);
-    append(v, 3, job.qd_end, m->nu);
-    append(v, 4, job.lambda, m->nrow);
+    append(v, 0, job_output(&job, OUTPUT_TAU), m->nu);
+    append(v, 1, job_output(&job, OUTPUT_QDD), m->nu);
+    append(v, 2, job_output(&job, OUTPUT_Q_END), m->nq);
+    append(v, 3, job_output(&job, OUTPUT_QD_END), m->nu);
+    append(v, 4, job_output(&job, OUTPUT_LAMBDA), m->nrow);
     memcpy(v->finish_ps, result->finish_ps, (size_t)spec->nrank * sizeof(int64_t));
     return true;
 }

@@ -104,12 +104,12 @@ static struct kernel_job serial_job(const struct run_spec *spec, struct arena *a
     assert_non_null(m);
     job.model = m;
     job.state = state_make(m, &spec->model, a);
-    job.tau = TAKE(a, m->nu, double);
-    job.qdd = TAKE(a, m->nu, double);
+    job_want(&job, OUTPUT_TAU, m->nu, a);
+    job_want(&job, OUTPUT_QDD, m->nu, a);
     struct work w = {0};
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
-    t->inverse(m, job.state, a, job.tau, &w);
-    assert_true(t->forward(m, job.state, FORWARD_CRBA, a, job.qdd, NULL, NULL, &w));
+    t->inverse(m, job.state, a, job_output(&job, OUTPUT_TAU), &w);
+    assert_true(t->forward(m, job.state, FORWARD_CRBA, a, job_output(&job, OUTPUT_QDD), NULL, NULL, &w));
     return job;
 }
 
@@ -133,26 +133,27 @@ static void a_wrong_number_makes_the_run_invalid(void **unused)
     struct run_spec spec = SPEC(&p, "level=loggp", "n=12");
     struct arena *a = arena_create();
     struct kernel_job job = serial_job(&spec, a);
+    double *qdd = job_output(&job, OUTPUT_QDD), *tau = job_output(&job, OUTPUT_TAU);
     struct run_result r = checked(&job, a);
     assert_int_equal(r.status, RUN_OK);
     assert_int_equal(r.nerror, 2);
     assert_true(r.error[1].relative > 0 && r.error[1].relative < 1e-10); /* CRBA beside ABA */
     for (int i = 0; i < 12; i++) {
-        double good = job.qdd[i], good_tau = job.tau[i], largest = 0;
-        for (int k = 0; k < 12; k++) largest = fmax(largest, fabs(job.qdd[k]));
-        job.qdd[i] += 1e-6 * largest;
+        double good = qdd[i], good_tau = tau[i], largest = 0;
+        for (int k = 0; k < 12; k++) largest = fmax(largest, fabs(qdd[k]));
+        qdd[i] += 1e-6 * largest;
         r = checked(&job, a);
         assert_int_equal(r.status, RUN_INVALID);
         assert_non_null(strstr(r.text, "qdd differs from aba"));
         assert_true(fabs(r.error[1].relative / 1e-6 - 1) < 1e-3);
-        job.qdd[i] = NAN;
+        qdd[i] = NAN;
         assert_int_equal(checked(&job, a).status, RUN_INVALID);
-        job.qdd[i] = good;
-        job.tau[i] = -2 * good_tau - 1;
+        qdd[i] = good;
+        tau[i] = -2 * good_tau - 1;
         r = checked(&job, a);
         assert_int_equal(r.status, RUN_INVALID);
         assert_non_null(strstr(r.text, "tau differs from rnea"));
-        job.tau[i] = good_tau;
+        tau[i] = good_tau;
     }
     arena_destroy(a);
     plan_free(&p);

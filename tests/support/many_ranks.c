@@ -180,6 +180,7 @@ static const struct comm_type many_ranks_type = {
     .work = count_work,
     .stage = set_stage,
     .now_ps = no_clock,
+    .publish = comm_publish_here,
 };
 
 static void start(void *argument)
@@ -212,6 +213,12 @@ static void give_back(struct many_ranks *all)
 
 struct many_ranks_result many_ranks_run(int nrank, many_ranks_program *program, void *context)
 {
+    return many_ranks_publishing(nrank, program, context, NULL, 0);
+}
+
+struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
+                                               const struct comm_output *output, int noutput)
+{
     struct err e = {0};
     struct many_ranks all = {.n = nrank, .program = program, .context = context};
     all.rank = calloc((size_t)nrank, sizeof *all.rank);
@@ -220,7 +227,8 @@ struct many_ranks_result many_ranks_run(int nrank, many_ranks_program *program, 
     all.ready_end = &all.ready;
     for (int k = 0; k < nrank; k++) {
         struct rank *r = &all.rank[k];
-        r->comm = (struct comm){.type = &many_ranks_type, .rank = k, .size = nrank};
+        r->comm = (struct comm){
+            .type = &many_ranks_type, .rank = k, .size = nrank, .output = output, .noutput = noutput};
         r->all = &all;
         r->end = &r->first;
         r->fiber = fiber_start(all.pool, k, start, r);

@@ -29,4 +29,8 @@ typedef void many_ranks_program(struct comm *c, void *context);
 /* many_ranks_run: `program` on nrank ranks to the end (or until nothing can happen). */
 struct many_ranks_result many_ranks_run(int nrank, many_ranks_program *program, void *context);
 
+/* many_ranks_publishing: the same, with room for what the ranks publish (comm_publish). */
+struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *program, void *context,
+                                               const struct comm_output *output, int noutput);
+
 #endif
