@@ -5,8 +5,8 @@ WITH chosen AS (
     SELECT id, row_number() OVER (PARTITION BY P ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
                                   level = 'link' DESC, level <> 'loggp' DESC, precision = 'double' DESC, id DESC) AS choice
     FROM run
-    WHERE status = 'ok' AND kernel = 'dynamics' AND n = P AND P IN (16, 128)
-          AND machine = (SELECT machine FROM run WHERE status = 'ok' AND kernel = 'dynamics' AND n = P
+    WHERE id IN (SELECT run_id FROM v_shown) AND kernel = 'dynamics' AND n = P AND P IN (16, 128)
+          AND machine = (SELECT machine FROM run WHERE id IN (SELECT run_id FROM v_shown) AND kernel = 'dynamics' AND n = P
                          GROUP BY machine ORDER BY machine = 't3e-300' DESC, count(DISTINCT n) DESC, min(id) LIMIT 1)
           AND base = 'fixed' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0
           AND placement = 'linear' AND solver <> 'partition')

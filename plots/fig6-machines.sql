@@ -7,7 +7,7 @@ WITH point AS (
     FROM v_speedup
     WHERE kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
           AND solver <> 'partition' AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0
-          AND run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario <> 'paper-scaling')),
+          AND run_id IN (SELECT id FROM run JOIN v_shown ON run_id = id WHERE placement = 'linear' AND scenario <> 'paper-scaling')),
 -- one variant of each machine: the one with the paper's own message software comes first by name
 chosen AS (
     SELECT *, row_number() OVER (PARTITION BY panel, baseline, n

@@ -4,14 +4,15 @@
 -- needs: mimdsim paper fig6
 WITH most AS ( -- the machine with most points; the T3E where several have as many
     SELECT machine FROM run
-    WHERE status = 'ok' AND kernel = 'dynamics' AND n = P AND n > 1 AND scenario NOT IN ('paper-scaling', 'fig9', 'fig9-machines', 'fig6-machines')
+    WHERE id IN (SELECT run_id FROM v_shown) AND kernel = 'dynamics' AND n = P AND n > 1 AND scenario NOT IN ('paper-scaling', 'fig9', 'fig9-machines', 'fig6-machines')
     GROUP BY machine ORDER BY machine = 't3e-300' DESC, count(DISTINCT n) DESC, min(id) LIMIT 1),
 point AS (
     SELECT *, row_number() OVER (PARTITION BY baseline, n, level = 'loggp'
                                  ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,
                                           level = 'link' DESC, precision = 'double' DESC, run_id) AS choice
     FROM v_speedup
-    WHERE run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario NOT IN ('paper-scaling', 'fig9', 'fig9-machines'))
+    WHERE run_id IN (SELECT id FROM run JOIN v_shown ON run_id = id
+                     WHERE placement = 'linear' AND scenario NOT IN ('paper-scaling', 'fig9', 'fig9-machines'))
           AND machine = (SELECT machine FROM most) AND kernel = 'dynamics' AND n = P AND n > 1 AND base = 'fixed'
           AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),
 finest AS (

@@ -10,7 +10,7 @@ WITH solve AS (
                                            r.formulation, r.level = 'loggp'
                               ORDER BY r.operators = 'structured' DESC, r.level = 'link' DESC, r.id DESC) AS choice
     FROM run r JOIN stage s ON s.run_id = r.id AND s.name = 'CFA[2]'
-    WHERE r.status = 'ok' AND r.machine LIKE 'paragon%' AND r.kernel IN ('forward', 'dynamics') AND r.scenario NOT IN ('fig6-machines', 'fig9-machines')
+    WHERE r.id IN (SELECT run_id FROM v_shown) AND r.machine LIKE 'paragon%' AND r.kernel IN ('forward', 'dynamics') AND r.scenario NOT IN ('fig6-machines', 'fig9-machines')
           AND r.base = 'fixed'
           AND ifnull(r.compute_noise_cv, 0) = 0 AND ifnull(r.background_load, 0) = 0),
 one AS (SELECT * FROM solve WHERE choice = 1),

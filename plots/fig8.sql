@@ -2,7 +2,7 @@
 -- needs: mimdsim paper fig8
 WITH chosen AS (
     SELECT id FROM run
-    WHERE ?1 IS NOT NULL AND id = ?1 OR ?1 IS NULL AND status = 'ok' AND machine LIKE 'origin2000%' AND kernel = 'dynamics' AND n = 4 AND P = 4
+    WHERE ?1 IS NOT NULL AND id = ?1 OR ?1 IS NULL AND id IN (SELECT run_id FROM v_shown) AND machine LIKE 'origin2000%' AND kernel = 'dynamics' AND n = 4 AND P = 4
           AND EXISTS (SELECT 1 FROM span WHERE run_id = run.id)
     ORDER BY length(machine), formulation = 'paper' DESC, operators = 'structured' DESC, level <> 'loggp' DESC,
              level = 'link' DESC, id DESC LIMIT 1)
@@ -14,7 +14,7 @@ ORDER BY s.rank, s.begin_ps, s.span;
 -- table: messages
 WITH chosen AS (
     SELECT id FROM run
-    WHERE ?1 IS NOT NULL AND id = ?1 OR ?1 IS NULL AND status = 'ok' AND machine LIKE 'origin2000%' AND kernel = 'dynamics' AND n = 4 AND P = 4
+    WHERE ?1 IS NOT NULL AND id = ?1 OR ?1 IS NULL AND id IN (SELECT run_id FROM v_shown) AND machine LIKE 'origin2000%' AND kernel = 'dynamics' AND n = 4 AND P = 4
           AND EXISTS (SELECT 1 FROM span WHERE run_id = run.id)
     ORDER BY length(machine), formulation = 'paper' DESC, operators = 'structured' DESC, level <> 'loggp' DESC,
              level = 'link' DESC, id DESC LIMIT 1)

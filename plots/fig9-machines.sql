@@ -6,7 +6,7 @@ WITH point AS (
                      WHEN v.machine LIKE 'origin%' THEN 3 WHEN v.machine LIKE 'quad-ppro%' THEN 4 END AS panel
     FROM v_speedup v JOIN run r ON r.id = v.run_id
     WHERE v.kernel = 'dynamics' AND v.P > 1 AND v.n % v.P = 0 AND (v.n > v.P OR v.solver = 'partition') AND v.base = 'fixed'
-          AND v.baseline = 'parallel code on one processor' AND r.placement = 'linear'
+          AND v.baseline = 'parallel code on one processor' AND r.id IN (SELECT run_id FROM v_shown) AND r.placement = 'linear'
           AND ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0),
 -- one variant of each machine: the one with the paper's own message software comes first by name
 chosen AS (

@@ -6,7 +6,7 @@ WITH point AS (
                                  ORDER BY level <> 'loggp' DESC, level = 'link' DESC, formulation = 'paper' DESC,
                                           operators = 'structured' DESC, precision = 'double' DESC, run_id DESC) AS choice
     FROM v_speedup
-    WHERE run_id IN (SELECT id FROM run WHERE placement = 'linear' AND scenario <> 'paper-scaling')
+    WHERE run_id IN (SELECT id FROM run JOIN v_shown ON run_id = id WHERE placement = 'linear' AND scenario <> 'paper-scaling')
           AND machine LIKE 't3e%' AND kernel = 'dynamics' AND P > 1 AND (n > P OR solver = 'partition') AND n % P = 0 AND base = 'fixed'
           AND baseline IN ('parallel code on one processor', 'fastest serial')
           AND ifnull(compute_noise_cv, 0) = 0 AND ifnull(background_load, 0) = 0),

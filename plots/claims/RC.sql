@@ -2,14 +2,19 @@
 -- test: none: the paper names the indicator without a number
 -- unit: R/C
 -- designated: P = 128, structured
-SELECT format('P = %d, %s', v.P, v.operators) AS variant, v.rc_ratio AS value, NULL AS threshold, NULL AS holds,
+-- judged: nothing: there is no number to hold it against. Shown for the largest machine of the paper, structured operators.
+-- points: t3e-300, dynamics, n = P = 128 at level link
+-- needs: mimdsim paper fig5
+WITH latest AS (
+    SELECT max(r.id) AS id FROM run r JOIN v_machine_state m ON m.run_id = r.id
+    WHERE (m.state = 'as shipped' OR ?1 = 'what-if') AND r.status = 'ok' AND r.machine = 't3e-300' AND r.kernel = 'dynamics'
+          AND r.formulation = 'paper' AND r.level = 'link' AND r.solver IN ('pcr-symmetric', 'pcr') AND r.n = r.P
+          AND r.P IN (16, 128) AND r.base = 'fixed' AND r.model = 'serial-chain' AND r.joint = 'revolute'
+          AND r.precision = 'double' AND r.placement = 'linear' AND ifnull(r.compute_noise_cv, 0) = 0
+          AND ifnull(r.background_load, 0) = 0
+    GROUP BY r.operators, r.P)
+SELECT format('P = %d, %s', v.P, v.operators) AS variant, v.rc_ratio AS value, NULL AS threshold, NULL AS holds, NULL AS missing,
        format('computing %.0f %%, overhead %.0f %%, waiting %.0f %%, contention %.1f %% of the time', 100 * v.compute_share,
               100 * v.overhead_share, 100 * v.wait_share, 100 * v.contention_share) AS note
-FROM v_indicator v JOIN run r ON r.id = v.run_id
-WHERE v.machine = 't3e-300' AND v.kernel = 'dynamics' AND v.formulation = 'paper' AND v.level = 'link' AND v.n = v.P
-      AND v.P IN (16, 128) AND r.solver IN ('pcr-symmetric', 'pcr') AND r.base = 'fixed' AND r.precision = 'double'
-      AND r.placement = 'linear' AND ifnull(r.compute_noise_cv, 0) = 0 AND ifnull(r.background_load, 0) = 0
-      AND r.id IN (SELECT max(id) FROM run WHERE status = 'ok'
-                   GROUP BY machine, level, kernel, formulation, solver, operators, base, precision, placement,
-                            compute_noise_cv, background_load, n, P)
+FROM v_indicator v WHERE v.run_id IN (SELECT id FROM latest)
 ORDER BY variant;

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "plan/data_dir.h"
 #include "plan/file_kind.h"
+#include "plan/machine_changes.h"
 #include "plan/machine_file.h"
 
 enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
@@ -34,6 +35,7 @@ struct expansion {
     struct start *starts;
     int point[SCENARIO_MAX_AXES]; /* where each axis stands */
     struct printed *printed;      /* one per table */
+    struct machine_changes changes;
 };
 
 /* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries. */
@@ -232,6 +234,7 @@ static int make_point(struct expansion *x, struct run_spec *run)
     for (int i = 0; i < s->set.n; i++) setting_apply(&s->set.at[i], run, x->plan->arena);
     if (!resolve_sizes(x, run)) return -1;
     if (!wanted(s, run)) return 0;
+    machine_changes_note(&x->changes, run);
     return check_fits(x, run) && identify(x, run) ? 1 : -1;
 }
 
@@ -266,7 +269,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
 
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
 {
-    struct expansion x = {.plan = p, .scenario = s, .err = e};
+    struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena}};
     int64_t n = s->repetitions;
     int ntable;
     for (int i = 0; i < s->naxis; i++) n = n > MAX_RUNS ? n : n * s->axis[i].npoint;

@@ -29,20 +29,39 @@ static int compare_rules(const void *a, const void *b)
     return strcmp(x, y);
 }
 
-/* The rest of the line that begins with "-- word: ". */
+/* The rest of the line that begins with "-- word: ", with the lines "--   ..." that continue it. */
 static const char *header_line(struct arena *a, const char *sql, const char *word)
 {
-    struct text mark = {0};
+    struct text mark = {0}, all = {0};
     text_add(&mark, "-- %s: ", word);
-    const char *at = strstr(sql, mark.s), *found = NULL;
-    if (at && (at == sql || at[-1] == '\n')) {
-        at += mark.length;
-        char *line = arena_text(a, at);
-        line[strcspn(line, "\n")] = '\0';
-        found = line;
+    const char *line = strstr(sql, mark.s), *found = NULL;
+    if (line && (line == sql || line[-1] == '\n')) {
+        line += mark.length;
+        for (;;) {
+            size_t n = strcspn(line, "\n");
+            text_add_bytes(&all, line, n);
+            if (strncmp(line + n, "\n--   ", 6) != 0) break;
+            text_add(&all, " ");
+            line += n + 6;
+        }
+        found = arena_text(a, all.s ? all.s : "");
     }
     text_free(&mark);
+    text_free(&all);
     return found;
+}
+
+/* All headers of a file; false when one is missing. */
+static bool read_headers(struct claim_rule *r, struct arena *a)
+{
+    struct {
+        const char *word, **place;
+    } const header[] = {{"statement", &r->statement}, {"test", &r->test},     {"unit", &r->unit},
+                        {"designated", &r->designated}, {"judged", &r->judged}, {"points", &r->points},
+                        {"needs", &r->needs}};
+    for (size_t i = 0; i < sizeof header / sizeof *header; i++)
+        if (!(*header[i].place = header_line(a, r->sql, header[i].word))) return false;
+    return true;
 }
 
 static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder, const char *file, struct err *e)
@@ -54,13 +73,9 @@ static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder,
         char *id = arena_text(a, file);
         id[strlen(id) - 4] = '\0';
         *r = (struct claim_rule){.id = id, .sql = arena_text(a, sql.s)};
-        r->statement = header_line(a, r->sql, "statement");
-        r->test = header_line(a, r->sql, "test");
-        r->unit = header_line(a, r->sql, "unit");
-        r->designated = header_line(a, r->sql, "designated");
-        if (!r->statement || !r->test || !r->unit || !r->designated)
-            ok = err_set_at(e, ERR_DATA, path.s, 1,
-                            "a claim begins with -- statement:, test:, unit: and designated: lines");
+        if (!read_headers(r, a))
+            ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, unit:, designated:, "
+                                                    "judged:, points: and needs: lines");
     }
     text_free(&path);
     text_free(&sql);
@@ -101,6 +116,7 @@ void claims_free(struct claim_rules *c)
 /* One row of a claim's query. */
 struct judgement {
     const char *variant, *note;
+    const char *missing; /* runs that the variant lacks, NULL: none */
     struct store_value value, threshold;
     struct store_value holds; /* 0, 1 or NULL */
 };
@@ -123,20 +139,27 @@ static bool judge_row(void *context, int ncolumn, const char *const *name, const
 {
     struct judging *g = context;
     (void)name;
-    if (ncolumn != 5 || value[0].kind != STORE_TEXT)
-        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, note)", g->rule->id);
+    if (ncolumn != 6 || value[0].kind != STORE_TEXT)
+        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, missing, note)",
+                       g->rule->id);
+    bool whole = value[4].kind != STORE_TEXT;
     struct judgement j = {.variant = value[0].text,
-                          .value = as_real(value[1]),
+                          .value = whole ? as_real(value[1]) : store_null(),
                           .threshold = as_real(value[2]),
-                          .holds = value[3].kind == STORE_INT ? store_int(value[3].integer != 0) : store_null(),
-                          .note = value[4].kind == STORE_TEXT ? value[4].text : ""};
+                          .missing = whole ? NULL : value[4].text,
+                          .holds = store_null(),
+                          .note = value[5].kind == STORE_TEXT ? value[5].text : ""};
+    if (whole && value[3].kind == STORE_INT) j.holds = store_int(value[3].integer != 0);
     return g->tell(g->context, g->rule, &j);
 }
 
-static bool judge(const struct claim_rule *rule, struct store *s, judgement_fn *tell, void *context, struct err *e)
+static bool judge(const struct claim_rule *rule, struct store *s, bool what_if, judgement_fn *tell, void *context,
+                  struct err *e)
 {
     struct judging g = {rule, tell, context, e};
-    if (!store_query(s, rule->sql, 0, NULL, NULL, judge_row, &g, e)) return err_in(e, rule->id);
+    const char *const param[] = {what_if ? "what-if" : "as shipped"};
+    bool asks = strstr(rule->sql, "?1") != NULL;
+    if (!store_query(s, rule->sql, asks ? 1 : 0, param, NULL, judge_row, &g, e)) return err_in(e, rule->id);
     return e->kind == ERR_NONE;
 }
 
@@ -163,7 +186,7 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
     struct sampling p = {into, sample, e};
     if (!store_begin(into, e)) return false;
     for (int i = 0; i < c->n; i++)
-        if (!judge(&c->rule[i], from, keep_sample, &p, e)) {
+        if (!judge(&c->rule[i], from, true, keep_sample, &p, e)) {
             store_rollback(into);
             return false;
         }
@@ -177,9 +200,12 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
 struct deciding {
     struct store *s;
     struct err *e;
-    bool found;
+    bool what_if;
+    int64_t changed; /* runs on machines that are not as shipped */
+    bool found, whole;
     struct judgement own; /* texts below */
     struct text own_note, holding, failing;
+    int nholding, nfailing; /* variants, the designated one among them */
 };
 
 /* Range and share over the samples: (samples, share, low, high). */
@@ -205,7 +231,9 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
                       const char *note)
 {
     static const char *const name[] = {"id",        "variant",    "statement", "test",  "unit",    "value", "threshold",
-                                       "value_low", "value_high", "samples",   "share", "verdict", "note"};
+                                       "value_low", "value_high", "samples",   "share", "verdict", "judged",
+                                       "testable", "holding", "note"};
+    bool claim = *variant == '\0';
     const char *const key[] = {rule->id, *variant ? variant : rule->designated};
     struct spread p = {store_int(0), store_null(), store_null(), store_null()};
     if (!store_query(d->s,
@@ -225,44 +253,67 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
                                         p.count,
                                         p.share,
                                         store_text(verdict_of(j->holds)),
+                                        store_text(claim ? rule->judged : ""),
+                                        claim ? store_int(d->nholding + d->nfailing) : store_null(),
+                                        claim ? store_int(d->nholding) : store_null(),
                                         store_text(note)};
-    return store_insert(d->s, "claim", 13, name, value, d->e);
+    return store_insert(d->s, "claim", 16, name, value, d->e);
+}
+
+/* Why a variant cannot be told: the runs that are missing, what makes them, and those that do not count. */
+static void add_missing(const struct deciding *d, const struct claim_rule *rule, const char *missing, struct text *note)
+{
+    text_add(note, "not testable, runs are missing: %s; `%s -o %s` makes them", missing, rule->needs,
+             store_path(d->s));
+    if (d->changed > 0 && !d->what_if)
+        text_add(note, "; %lld runs on changed machines do not count (--what-if counts them)", (long long)d->changed);
 }
 
 static bool decide_row(void *context, const struct claim_rule *rule, const struct judgement *j)
 {
     struct deciding *d = context;
-    if (strcmp(j->variant, rule->designated) == 0) {
+    bool own = strcmp(j->variant, rule->designated) == 0;
+    struct text note = {0};
+    if (j->missing) add_missing(d, rule, j->missing, &note);
+    else text_add(&note, "%s", j->note);
+    if (own) {
         d->found = true;
+        d->whole = !j->missing;
         d->own = *j;
-        text_add(&d->own_note, "%s", j->note);
-    } else if (j->holds.kind == STORE_INT) {
-        struct text *list = j->holds.integer ? &d->holding : &d->failing;
-        text_add(list, "%s%s", list->length ? "; " : "", j->variant);
+        text_add(&d->own_note, "%s", note.s);
     }
-    return put_claim(d, rule, j->variant, j, j->note);
+    if (j->holds.kind == STORE_INT) {
+        struct text *list = j->holds.integer ? &d->holding : &d->failing;
+        if (!own) text_add(list, "%s%s", list->length ? "; " : "", j->variant);
+        d->nholding += j->holds.integer != 0;
+        d->nfailing += j->holds.integer == 0;
+    }
+    bool ok = put_claim(d, rule, j->variant, j, note.s);
+    text_free(&note);
+    return ok;
 }
 
 /* What a reader wants to know next: where the verdict would be the other one. */
 static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, struct text *note)
 {
-    if (d->found) text_add(note, "judged for %s: ", rule->designated);
+    if (d->what_if && d->changed > 0) text_add(note, "what-if, runs on changed machines count; ");
+    if (d->whole) text_add(note, "judged for %s: ", rule->designated);
     text_add(note, "%s", d->own_note.s ? d->own_note.s : "");
-    if (!d->found || d->own.holds.kind != STORE_INT) return;
+    if (d->own.holds.kind != STORE_INT) return;
+    text_add(note, "; holds in %d of %d variants", d->nholding, d->nholding + d->nfailing);
     bool holds = d->own.holds.integer != 0;
     const struct text *other = holds ? &d->failing : &d->holding;
-    const char *lead = holds ? "fails for" : "holds for";
-    if (other->length) text_add(note, "; %s: %s", lead, other->s);
-    else text_add(note, "; %s no variant", lead);
+    if (other->length) text_add(note, "; %s: %s", holds ? "fails for" : "holds for", other->s);
 }
 
-static bool decide(const struct claim_rule *rule, struct store *s, struct err *e)
+static bool decide(const struct claim_rule *rule, struct store *s, bool what_if, int64_t changed, struct err *e)
 {
     struct deciding d = {
-        .s = s, .e = e, .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
-    bool ok = judge(rule, s, decide_row, &d, e);
+        .s = s, .e = e, .what_if = what_if, .changed = changed,
+        .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
+    bool ok = judge(rule, s, what_if, decide_row, &d, e);
     struct text note = {0};
-    if (!d.found) text_add(&d.own_note, "no run is stored that could tell; `mimdsim paper` makes them");
+    if (!d.found) add_missing(&d, rule, rule->points, &d.own_note);
     add_elsewhere(&d, rule, &note);
     ok = ok && put_claim(&d, rule, "", &d.own, note.s);
     text_free(&note);
@@ -272,12 +323,27 @@ static bool decide(const struct claim_rule *rule, struct store *s, struct err *e
     return ok;
 }
 
+static bool take_count(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    (void)ncolumn;
+    (void)name;
+    *(int64_t *)context = value[0].integer;
+    return false;
+}
+
 bool claims_decide(const struct claim_rules *c, struct store *s, struct err *e)
 {
-    if (!store_begin(s, e)) return false;
+    int64_t changed = 0;
+    if (!store_query(s, "SELECT count(*) FROM v_machine_state WHERE state <> 'as shipped'"
+                        " AND machine IN ('t3e-300', 'paragon')"
+                        " AND run_id NOT IN (SELECT id FROM run WHERE scenario LIKE 'paper-%')",
+                     0, NULL, NULL, take_count, &changed, e) ||
+        !store_begin(s, e))
+        return false;
     bool ok = true;
     for (int i = 0; ok && i < c->n; i++)
-        ok = store_delete(s, "claim", "id", store_text(c->rule[i].id), e) && decide(&c->rule[i], s, e);
+        ok = store_delete(s, "claim", "id", store_text(c->rule[i].id), e) &&
+             decide(&c->rule[i], s, c->what_if, changed, e);
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;

@@ -1,9 +1,11 @@
 /* claims.h - the claims of the paper as questions to the database: plots/claims/ID.sql, one file a claim.
  *
- * A file begins with "-- statement:", "-- test:", "-- unit:" and "-- designated:" lines; its query gives one row for
- * each variant of the claim: (variant, value, threshold, holds, note), `holds` 1, 0 or NULL (cannot be told). The
- * designated variant is the claim's own verdict. The same files judge the stored runs and every sample of the uncertain
- * machine parameters. */
+ * A file begins with lines "-- statement:", "test:", "unit:", "designated:" (the variant that gives the verdict),
+ * "judged:" (why that one, with which tolerance: written before its value is known), "points:" (the runs it takes) and
+ * "needs:" (the command that makes them); a line "--   ..." continues the one above. Its query gives one row for each
+ * variant: (variant, value, threshold, holds, missing, note), `holds` 1, 0 or NULL (cannot be told), `missing` the
+ * runs that it lacks or NULL. Its parameter ?1 is 'what-if' when runs on changed machines count, too. The same files
+ * judge the stored runs and every sample of the uncertain machine parameters. */
 #ifndef REPORT_CLAIMS_H
 #define REPORT_CLAIMS_H
 
@@ -16,13 +18,14 @@
 
 struct claim_rule {
     const char *id; /* the file's stem */
-    const char *statement, *test, *unit, *designated;
+    const char *statement, *test, *unit, *designated, *judged, *points, *needs;
     const char *sql;
 };
 
 struct claim_rules {
     struct arena *arena; /* owned; everything below lives in it */
     int n;
+    bool what_if; /* claims_decide counts runs on changed machines, too; the caller's to set, false at first */
     struct claim_rule *rule; /* (n) by id: C1, C2, ... C10, then indicators */
 };
 
@@ -32,14 +35,16 @@ bool claims_read(struct claim_rules *c, const char *data_dir, struct err *e);
 void claims_free(struct claim_rules *c);
 
 /* claims_sample: judge all variants by the runs in `from` and keep values and verdicts as sample number `sample` of
- * `into` (table claim_sample), in one transaction. */
+ * `into` (table claim_sample), in one transaction. Samples are what-ifs: all runs in `from` count. */
 bool claims_sample(const struct claim_rules *c, struct store *from, struct store *into, int sample, struct err *e);
 
-/* claims_decide: judge the runs of `s` and fill its table claim anew, with ranges and shares of the samples there. */
+/* claims_decide: judge the runs of `s` and fill its table claim anew, with ranges and shares of the samples there. A
+ * variant whose runs are not all there is not testable; its note says which are missing and what makes them. Runs count
+ * when they were made on a machine as shipped (view v_machine_state), or all with c->what_if. */
 bool claims_decide(const struct claim_rules *c, struct store *s, struct err *e);
 
-/* claims_print: the table claim for people, or (json) an array with one object a claim: id, statement, test, verdict,
- * value, share, variants. */
+/* claims_print: the table claim for people and below it how each verdict came about, or (json) an array with one object
+ * a claim: id, statement, test, judged, verdict, value, share, testable, holding, variants. */
 bool claims_print(struct store *s, bool json, FILE *out, struct err *e);
 
 #endif

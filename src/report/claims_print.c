@@ -8,8 +8,23 @@ static const char order[] = " ORDER BY substr(id, 1, 1) <> 'C', length(id), id, 
 static const char table_sql[] =
     "SELECT id, verdict, iif(value IS NULL, '-', format('%.4g', value)) AS value, threshold, unit,"
     " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high), '-') AS range,"
-    " iif(share IS NULL, '-', format('%d %%', round(100 * share))) AS share, statement"
+    " iif(share IS NULL, '-', format('%d %%', round(100 * share))) AS share,"
+    " iif(testable > 0, holding || ' of ' || testable, '-') AS \"holds in\", statement"
     " FROM claim WHERE variant = '' ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
+
+/* How each verdict came about. */
+static const char reason_sql[] = "SELECT id, verdict, judged, test, note FROM claim WHERE variant = ''"
+                                 " ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
+
+static bool tell_reason(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    FILE *out = context;
+    (void)ncolumn;
+    (void)name;
+    fprintf(out, "\n%s %s\n  test:   %s\n  judged: %s\n  found:  %s\n", value[0].text, value[1].text, value[3].text,
+            value[2].text, value[4].text);
+    return true;
+}
 
 /* The rows of table claim, of which the one with the empty variant opens a claim. */
 struct listing {
@@ -38,9 +53,10 @@ static void close_claim(struct listing *l)
 }
 
 /* Columns of json_sql; a variant does not repeat what all variants of a claim share. */
-enum column { COLUMN_ID = 0, COLUMN_STATEMENT = 4, COLUMN_TEST = 5, COLUMN_UNIT = 7, COLUMN_VARIANT = 11,
-              COLUMN_VERDICT = 12 };
-static const char json_sql[] = "SELECT id, note, samples, share, statement, test, threshold, unit, value, value_high,"
+enum column { COLUMN_JUDGED = 2, COLUMN_STATEMENT = 6, COLUMN_TESTABLE = 8, COLUMN_UNIT = 10,
+              COLUMN_VARIANT = 14, COLUMN_VERDICT = 15 };
+static const char json_sql[] = "SELECT holding, id, judged, note, samples, share, statement, test, testable, threshold,"
+                               " unit, value, value_high,"
                                " value_low, variant, verdict FROM claim";
 
 static bool json_claim(void *context, int ncolumn, const char *const *name, const struct store_value *value)
@@ -50,7 +66,7 @@ static bool json_claim(void *context, int ncolumn, const char *const *name, cons
     if (own) close_claim(l);
     json_object(&l->j);
     for (int i = 0; i < ncolumn; i++) {
-        bool shared = i == COLUMN_ID || i == COLUMN_STATEMENT || i == COLUMN_TEST || i == COLUMN_UNIT;
+        bool shared = i <= COLUMN_JUDGED || (i >= COLUMN_STATEMENT && i <= COLUMN_TESTABLE) || i == COLUMN_UNIT;
         if (own ? i < COLUMN_VARIANT : !shared) member(&l->j, name[i], &value[i]);
     }
     if (own) {
@@ -64,7 +80,9 @@ static bool json_claim(void *context, int ncolumn, const char *const *name, cons
 
 bool claims_print(struct store *s, bool json, FILE *out, struct err *e)
 {
-    if (!json) return report_query(s, table_sql, 0, NULL, false, out, e);
+    if (!json)
+        return report_query(s, table_sql, 0, NULL, false, out, e) &&
+               store_query(s, reason_sql, 0, NULL, NULL, tell_reason, out, e);
     struct listing l = {.j = json_make(out)};
     char sql[512];
     snprintf(sql, sizeof sql, "%s%s", json_sql, order);

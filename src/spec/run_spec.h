@@ -45,6 +45,9 @@ struct run_spec {
     int rep;                 /* repetition number, 0-based */
     char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
     const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
+    const char *machine_changes; /* JSON object of the machine's settings that are not those of the shipped machine of
+                                    its name, "{}": none; NULL: none is shipped, or nobody looked. Borrowed */
+    const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */
     struct level_choice level_choice;
     struct run_pulse *pulse; /* where the run tells how far it is, NULL: nowhere; no setting either, and borrowed */
     unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */

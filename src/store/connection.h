@@ -22,9 +22,10 @@
       " accounting_error_ps,"                                                                                          \
       " finish_min_ps, finish_max_ps, rank_compute_min_ps, rank_compute_max_ps, links, host_s, host_total_s,"          \
       " host_peak_bytes, stack_peak_bytes, level_asked, level_error, level_error_at, inner_added, outer_added,"        \
-      " twice_added, residual_before, left_out, config_text, build_id, created_utc) VALUES"                            \
-      " (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"  \
-      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")     \
+      " twice_added, residual_before, left_out, config_text, machine_changes, machine_hash, build_id, created_utc)"    \
+      " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"    \
+      " ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"                              \
+      " strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))")                                                                       \
     X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
     X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
     X(SETTING_ADD, "INSERT INTO setting (key, value) VALUES (?1, ?2)")                                                 \

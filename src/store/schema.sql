@@ -76,6 +76,9 @@ CREATE TABLE run (
     residual_before  REAL,              -- of that first answer
     left_out         TEXT NOT NULL,     -- what it left out, with reasons: run_omission as text
     config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash
+    machine_changes  TEXT,              -- JSON: settings that are not those of the shipped machine of this name; '{}':
+                                        -- none; NULL: no machine of this name is shipped
+    machine_hash     TEXT,              -- SHA-256 of that shipped machine, as it was when the run was made
     build_id         INTEGER NOT NULL REFERENCES build (id),
     created_utc      TEXT NOT NULL,
     UNIQUE (config_hash, seed, rep)
@@ -234,6 +237,9 @@ CREATE TABLE claim (
     samples    INTEGER NOT NULL DEFAULT 0,
     share      REAL,
     verdict    TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),
+    judged     TEXT NOT NULL DEFAULT '', -- of variant '': which row is judged, with which tolerance, and why
+    testable   INTEGER,                -- of variant '': how many variants can be judged, and in how many it holds
+    holding    INTEGER,
     note       TEXT NOT NULL DEFAULT '',
     PRIMARY KEY (id, variant)
 ) STRICT, WITHOUT ROWID;
@@ -413,6 +419,25 @@ SELECT *, deviation_ps / sqrt(repetitions)
                               ELSE 1.96 + 2.5 / (repetitions - 1) END AS confidence95_ps
 FROM spread;
 
+-- Whose machine a run was made on: 'as shipped'; 'changed', by --set, by its scenario or by a file of one's own with the
+-- same name; 'own', no machine of that name is shipped; 'older', the shipped file was another one when the database's
+-- latest run on that machine was made. Only runs on machines as shipped enter a claim, unless its file names a change.
+CREATE VIEW v_machine_state AS
+WITH newest AS (
+    SELECT machine, machine_hash FROM run WHERE id IN (SELECT max(id) FROM run WHERE machine_hash IS NOT NULL GROUP BY machine))
+SELECT r.id AS run_id, r.machine, r.machine_changes,
+       CASE WHEN r.machine_changes IS NULL THEN 'own' WHEN r.machine_hash <> w.machine_hash THEN 'older'
+            WHEN r.machine_changes = '{}' THEN 'as shipped' ELSE 'changed' END AS state
+FROM run r LEFT JOIN newest w ON w.machine = r.machine;
+
+-- The runs that figures show: those on a machine as shipped; where a machine and kernel has none of these, all it has.
+CREATE VIEW v_shown AS
+WITH state AS (
+    SELECT s.run_id, r.machine, r.kernel, s.state = 'as shipped' AS shipped
+    FROM v_machine_state s JOIN run r ON r.id = s.run_id WHERE r.status = 'ok'),
+most AS (SELECT machine, kernel, max(shipped) AS shipped FROM state GROUP BY machine, kernel)
+SELECT a.run_id FROM state a JOIN most b ON b.machine = a.machine AND b.kernel = a.kernel AND b.shipped = a.shipped;
+
 CREATE VIEW v_setting AS
 SELECT rs.run_id, s.key, s.value FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
 
@@ -427,7 +452,8 @@ FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.s
      JOIN varied v ON v.scenario = r.scenario AND v.key = s.key;
 
 CREATE VIEW v_claims AS
-SELECT id, variant, statement, verdict, value, unit, threshold, value_low, value_high, share, samples, note
+SELECT id, variant, statement, verdict, value, unit, threshold, value_low, value_high, share, samples, testable, holding,
+       judged, note
 FROM claim;
 
 -- Who made a row, with what.

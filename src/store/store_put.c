@@ -222,6 +222,8 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     bind_real(&b, run_result_refined(r) ? r->residual_before : NAN);
     bind_text(&b, left_out.s);
     bind_text(&b, spec->config_text ? spec->config_text : "");
+    bind_text(&b, spec->machine_changes);
+    bind_text(&b, spec->machine_changes ? spec->machine_hash : NULL);
     bind_int(&b, s->build_id);
     const bool ok = store_step(s, b.statement, e);
     text_free(&left_out);

@@ -312,7 +312,8 @@ static void every_view_answers_on_an_empty_database(void **state)
     struct fixture *f = *state;
     static const char *const view[] = {"v_speedup",    "v_stage",    "v_accounting", "v_errors",
                                        "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
-                                       "v_provenance", "v_link_top", "v_repetition"};
+                                       "v_provenance", "v_link_top", "v_repetition", "v_machine_state",
+                                       "v_shown"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);

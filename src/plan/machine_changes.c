@@ -1,0 +1,130 @@
+/* machine_changes.c - how the machine of a run differs from the shipped one; see machine_changes.h. */
+#include "plan/machine_changes.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "base/digest.h"
+#include "base/text.h"
+#include "plan/machine_file.h"
+#include "spec/field.h"
+#include "spec/spec_fields.h"
+
+/* One shipped machine. */
+struct shipped_machine {
+    const char *name;
+    const char *text; /* "machine.key = value" lines without the network level; NULL: none is shipped */
+    char hash[65];    /* SHA-256 of `text`, "" when there is none */
+    struct shipped_machine *next;
+};
+
+/* Lines of the machine's canonical text that ask something of it, but are not the machine. */
+static bool is_question(const char *line)
+{
+    static const char *const key[] = {"machine.network.level = ", "machine.network.tolerance = "};
+    for (size_t i = 0; i < sizeof key / sizeof *key; i++)
+        if (strncmp(line, key[i], strlen(key[i])) == 0) return true;
+    return false;
+}
+
+/* The canonical text without those lines. */
+static void describe(const struct machine_spec *m, struct text *out)
+{
+    struct text all = {0};
+    fields_print(&machine_table, m, false, &all);
+    for (const char *line = all.s; line && *line;) {
+        const char *end = strchrnul(line, '\n');
+        if (*end) end++;
+        if (!is_question(line)) text_add_bytes(out, line, (size_t)(end - line));
+        line = end;
+    }
+    text_free(&all);
+}
+
+static struct shipped_machine *read_shipped(const char *name, struct arena *a)
+{
+    struct shipped_machine *s = TAKE(a, 1, struct shipped_machine);
+    struct text path = {0}, text = {0};
+    struct machine_file file;
+    struct err ignored;
+    err_clear(&ignored);
+    s->name = arena_text(a, name);
+    text_add(&path, "%s/machines/%s.yaml", plan_data_dir(), name);
+    if (!strchr(name, '/') && access(path.s, R_OK) == 0 && machine_file_read(&file, path.s, NULL, a, &ignored)) {
+        describe(&file.spec, &text);
+        s->text = arena_text(a, text.s);
+        digest_sha256_hex(text.s, text.length, s->hash);
+    }
+    text_free(&path);
+    text_free(&text);
+    return s;
+}
+
+/* The rest of the line of `text` that begins with the `n` letters at `key`; NULL when there is none. */
+static const char *line_of(const char *text, const char *key, size_t n)
+{
+    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        if (strncmp(line, key, n) == 0) return line + n;
+    return NULL;
+}
+
+/* "value" in JSON: what has a meaning there is escaped. */
+static void add_quoted(struct text *out, const char *s, size_t n)
+{
+    text_add(out, "\"");
+    for (size_t i = 0; i < n; i++)
+        if (s[i] == '"' || s[i] == '\\') text_add(out, "\\%c", s[i]);
+        else if ((unsigned char)s[i] < ' ') text_add(out, "\\u%04x", s[i]);
+        else text_add_bytes(out, &s[i], 1);
+    text_add(out, "\"");
+}
+
+/* Lines of `own` whose value is another one in `shipped`, as the members of a JSON object. */
+static void add_differences(struct text *out, const char *own, const char *shipped)
+{
+    static const char prefix[] = "machine.";
+    for (const char *line = own; *line;) {
+        const char *end = strchrnul(line, '\n'), *equals = memmem(line, (size_t)(end - line), " = ", 3);
+        if (equals) {
+            const char *key = line + strlen(prefix), *value = equals + 3;
+            size_t length = (size_t)(end - value);
+            const char *there = line_of(shipped, line, (size_t)(value - line));
+            if (!there || strcspn(there, "\n") != length || memcmp(there, value, length) != 0) {
+                text_add(out, "%s", out->length > 1 ? ", " : "");
+                add_quoted(out, key, (size_t)(equals - key));
+                text_add(out, ": ");
+                add_quoted(out, value, length);
+            }
+        }
+        line = *end ? end + 1 : end;
+    }
+}
+
+static const struct shipped_machine *shipped(struct machine_changes *c, const char *name)
+{
+    for (struct shipped_machine *s = c->known; s; s = s->next)
+        if (strcmp(s->name, name) == 0) return s;
+    struct shipped_machine *s = read_shipped(name, c->arena);
+    s->next = c->known;
+    return c->known = s;
+}
+
+void machine_changes_note(struct machine_changes *c, struct run_spec *run)
+{
+    if (!c->any || memcmp(&c->last, &run->machine, sizeof c->last) != 0) {
+        const struct shipped_machine *s = shipped(c, run->machine.name);
+        struct text own = {0}, changes = {0};
+        describe(&run->machine, &own);
+        text_add(&changes, "{");
+        if (s->text && strcmp(own.s, s->text) != 0) add_differences(&changes, own.s, s->text);
+        text_add(&changes, "}");
+        c->text = s->text ? arena_text(c->arena, changes.s) : NULL;
+        c->hash = s->hash;
+        memcpy(&c->last, &run->machine, sizeof c->last);
+        c->any = true;
+        text_free(&own);
+        text_free(&changes);
+    }
+    run->machine_changes = c->text;
+    run->machine_hash = c->hash;
+}
