@@ -36,6 +36,19 @@ static void print_row(const struct published *p, const struct outcome *o)
     printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict, *p->cause ? ": " : "", p->cause);
 }
 
+/* Where ranks meet on the wires, what every level of the network makes of it. */
+static void print_levels(const struct published *p, const struct outcome *o)
+{
+    if (!o->contended) return;
+    printf("%6s at level", "");
+    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+        printf("%s %s ", i ? "," : "", validation_level_name(i));
+        if (isnan(o->level[i])) printf("-");
+        else printf("%.5g (%+.1f %%)", o->level[i] / p->scale, 100 * (o->level[i] - p->value) / p->value);
+    }
+    putchar('\n');
+}
+
 static void json_pair(struct json *j, const char *key, double value)
 {
     json_key(j, key);
@@ -57,6 +70,14 @@ static void json_row(struct json *j, const struct published *p, const struct out
     json_word(j, "class", p->evidence);
     json_pair(j, "high", p->high / p->scale);
     json_word(j, "id", p->id);
+    if (o->contended) {
+        static const int sorted[VALIDATION_LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
+        json_key(j, "levels");
+        json_object(j);
+        for (int i = 0; i < VALIDATION_LEVELS; i++)
+            json_pair(j, validation_level_name(sorted[i]), o->level[sorted[i]] / p->scale);
+        json_end(j);
+    }
     json_pair(j, "low", p->low / p->scale);
     json_word(j, "machine", p->machine);
     json_pair(j, "published", p->value / p->scale);
@@ -161,7 +182,10 @@ static void print_table(const struct common *c, const struct table *t, const str
     if (!c->json)
         printf("%-6s %-17s %-13s %8s %20s %11s %-7s %9s %-3s %-5s %s\n", "id", "machine", "quantity", "at", "published",
                "simulated", "unit", "error", "ev.", "cal.", "verdict, cause");
-    for (int i = 0; i < t->n && !c->json; i++) print_row(t->row[i], &t->outcome[i]);
+    for (int i = 0; i < t->n && !c->json; i++) {
+        print_row(t->row[i], &t->outcome[i]);
+        print_levels(t->row[i], &t->outcome[i]);
+    }
     if (!c->json) {
         print_summary(s);
         return;

@@ -30,6 +30,25 @@ static void judge(const struct published *p, struct outcome *o)
     else o->verdict = *p->cause ? "explained" : "fail";
 }
 
+const char *validation_level_name(int level)
+{
+    static const char *const name[VALIDATION_LEVELS] = {"loggp", "link", "packet", "flit", "auto"};
+    return name[level];
+}
+
+static void measure_levels(const struct published *p, const struct machine_spec *m, struct outcome *o)
+{
+    o->contended = true;
+    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+        struct machine_spec at = *m;
+        struct err why;
+        err_clear(&why);
+        at.network.level = (enum network_level)i;
+        if (probe_measure(&at, p->quantity, p->at, &o->level[i], &why)) o->level[i] += p->add;
+        else o->level[i] = NAN;
+    }
+}
+
 /* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
 bool validation_measure(const struct published *p, struct outcome *o, struct arena *a, struct err *e)
 {
@@ -43,6 +62,7 @@ bool validation_measure(const struct published *p, struct outcome *o, struct are
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
     judge(p, o);
+    if (o->measured && probe_contends(p->quantity, p->at)) measure_levels(p, &m, o);
     return true;
 }
 

@@ -10,6 +10,11 @@
 /* Errors above this need a cause that somebody wrote down. */
 #define VALIDATION_UNEXPLAINED 0.3
 
+enum { VALIDATION_LEVELS = LEVEL_AUTO + 1 };
+
+/* validation_level_name: "loggp", ... of enum network_level below VALIDATION_LEVELS. */
+const char *validation_level_name(int level);
+
 /* What a point came to. */
 struct outcome {
     bool measured;
@@ -17,6 +22,8 @@ struct outcome {
     char why[256];           /* not measured: why the machine has no such quantity */
     double error, tolerance; /* relative */
     const char *verdict;     /* pass, fail, explained, not-testable */
+    bool contended;          /* several ranks share the wires: */
+    double level[VALIDATION_LEVELS]; /* then the value at each level of enum network_level, SI, NAN: none */
 };
 
 /* validation_measure: the figure `p` asked of its simulated machine, and judged.

@@ -9,11 +9,13 @@
 #include "run/rates.h"
 #include "run/run.h"
 
-enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000 };
+enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000,
+       EXCHANGE_BYTES = 1 << 17 };
 
 static const char *const names[PROBE_QUANTITIES] = {
     "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
     "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
+    "exchange",
     "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
 };
 
@@ -32,8 +34,10 @@ struct measured {
     double last_send;        /* of the last rank per message [s] */
 };
 
+bool probe_contends(enum probe_quantity q, double at) { return (q == PROBE_BARRIER || q == PROBE_EXCHANGE) && at > 2; }
+
 /* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where two ranks talk, so
- * all network levels agree and level link is the cheapest that knows of others. */
+ * all network levels agree there and level link is the cheapest that knows of others. */
 static bool bench(const struct machine_spec *m, const char *kernel, int nrank, int64_t bytes, int repeat,
                   struct measured *out, struct err *e)
 {
@@ -43,7 +47,7 @@ static bool bench(const struct machine_spec *m, const char *kernel, int nrank, i
     strncpy(spec.kernel.name, kernel, sizeof spec.kernel.name - 1);
     spec.kernel.message_bytes = bytes;
     spec.kernel.repeat = repeat;
-    spec.machine.network.level = LEVEL_LINK;
+    if (nrank <= 2) spec.machine.network.level = LEVEL_LINK;
     spec.machine.noise = (struct noise_spec){0};
     bool ok = run_one(&spec, a, &r, e);
     if (ok && r.status != RUN_OK) ok = err_set(e, ERR_CONFIG, "%s: %s", m->name, r.text);
@@ -226,6 +230,18 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
     return true;
 }
 
+/* The start-up goes away between two lengths. */
+static bool total_exchange(const struct machine_spec *m, int ranks, double *rate, struct err *e)
+{
+    struct measured once, twice;
+    if (ranks < 2) return err_set(e, ERR_CONFIG, "%s: an exchange of %d ranks", m->name, ranks);
+    int64_t bytes = EXCHANGE_BYTES / (ranks - 1) / SMALL_BYTES * SMALL_BYTES;
+    if (!bench(m, "all-to-all", ranks, bytes, 1, &once, e) || !bench(m, "all-to-all", ranks, 2 * bytes, 1, &twice, e))
+        return false;
+    *rate = (double)(bytes * (ranks - 1)) / (twice.time - once.time);
+    return true;
+}
+
 /* Codes of computing have a size that is an order or a length. */
 static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate, struct err *e)
 {
@@ -272,6 +288,8 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
         return cut(m, q, value, e);
     case PROBE_BARRIER:
         return barrier(m, (int)at, value, e);
+    case PROBE_EXCHANGE:
+        return total_exchange(m, (int)at, value, e);
     case PROBE_LINPACK:
     case PROBE_STREAM_COPY:
     case PROBE_STREAM_SCALE:

@@ -26,6 +26,7 @@ enum probe_quantity {
     PROBE_BISECTION,     /* links that a halving cuts, both directions; the smallest over the dimensions [B/s] */
     PROBE_GLOBAL,        /* all links between groups of a dragonfly, one direction [B/s] */
     PROBE_BARRIER,       /* [s]; at: ranks */
+    PROBE_EXCHANGE,      /* total exchange: bytes that each rank sends, long messages, a second [B/s]; at: ranks */
     PROBE_LINPACK,       /* LINPACK benchmark of order at [flop/s] */
     PROBE_STREAM_COPY,   /* the four kernels of STREAM [B/s] */
     PROBE_STREAM_SCALE,
@@ -40,7 +41,13 @@ enum probe_quantity {
 const char *probe_name(enum probe_quantity q);
 enum probe_quantity probe_find(const char *name);
 
+/* probe_contends: whether messages of several ranks meet on the wires, so that the level of the network matters. Where
+ * two ranks talk all levels agree. */
+bool probe_contends(enum probe_quantity q, double at);
+
 /* probe_measure: quantity `q` of machine `m` at `at` into *value (SI).
+ *
+ *   Between two ranks at level link, among more at the machine's own level.
  *
  *   Returns false with ERR_CONFIG when the machine has no such quantity (no route of so many links, no groups), or as
  *   run_one. */

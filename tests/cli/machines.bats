@@ -92,6 +92,20 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     stderr_says "published.csv:2: calibrated: 'maybe'; expected yes, no or other"
 }
 
+@test "where messages meet, every level of the network is probed" {
+    works mimdsim validate t3e-300-shmem --quiet --json
+    printf '%s' "$output" >rows.json
+    # one answer a level: without contention the node's own rate, at packet and flit nearly the same
+    sql_is :memory: "SELECT count(*), min(l ->> 'loggp' > 1.4 * (l ->> 'packet')), max(abs(l ->> 'flit' - (l ->> 'packet')) < 1),
+        min(l ->> 'link' > l ->> 'packet'), min(l ->> 'auto' = l ->> 'packet')
+        FROM (SELECT p.value -> 'levels' AS l FROM json_each(readfile('rows.json'), '\$.points') p)
+        WHERE l IS NOT NULL" '3|1|1|1|1'
+    works mimdsim validate t3e-300-shmem --quiet
+    [[ $output =~ at\ level\ loggp\ 340.01 ]]
+    works mimdsim validate paragon --quiet
+    stdout_says "packet -, flit" # worms do not fit the buffers
+}
+
 @test "a wrong table of published figures is refused with its line" {
     mkdir -p data/machines
     { head -1 "$MIMDSIM_DATA/machines/published.csv"

@@ -69,6 +69,22 @@ static void test_loggp(void **state)
     is(measured(&m, PROBE_GAP, 0), 30e-6);
 }
 
+/* Two ranks and three never share a link in a total exchange; four do in its second step, where messages come late by
+ * a whole one; without contention nobody does. */
+static void test_exchange(void **state)
+{
+    (void)state;
+    struct machine_spec m = mesh();
+    m.network.level = LEVEL_LINK;
+    is(measured(&m, PROBE_EXCHANGE, 2), 1e9);
+    is(measured(&m, PROBE_EXCHANGE, 3), 1e9);
+    assert_in_range((uint64_t)measured(&m, PROBE_EXCHANGE, 4), 750000000, 850000000);
+    m.network.level = LEVEL_LOGGP;
+    is(measured(&m, PROBE_EXCHANGE, 4), 1e9);
+    assert_true(probe_contends(PROBE_EXCHANGE, 4) && probe_contends(PROBE_BARRIER, 16));
+    assert_false(probe_contends(PROBE_EXCHANGE, 2) || probe_contends(PROBE_ONE_WAY, 1024));
+}
+
 static void test_wire(void **state)
 {
     (void)state;
