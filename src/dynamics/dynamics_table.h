@@ -31,6 +31,8 @@ struct dynamics_totals {
     double kinetic, potential, linear[3], angular[3], mass, com[3];
 };
 
+enum { POSE_NUMBERS = 24 };
+
 struct dynamics_type {
     const char *name;            /* "float", "double", "quad" */
     double epsilon;
@@ -46,6 +48,14 @@ struct dynamics_type {
     /* mass_matrix: (nu x nu) row-major at s->q. */
     void (*mass_matrix)(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
                         struct work *w);
+
+    /* wrenches: (nbody x 6) [force; moment] that each joint transmits to its body from the parent when inverse dynamics
+     * gives s->qdd: user's body axes, about the body's origin. */
+    void (*wrenches)(const struct model *m, const struct state *s, struct arena *scratch, double *wrench);
+
+    /* kinematics: (nbody x POSE_NUMBERS) of each body, world axes: rotation (9) to world, position, velocity, angular
+     * velocity, acceleration (without gravity), angular acceleration (3 each). */
+    void (*kinematics)(const struct model *m, const struct state *s, struct arena *scratch, double *pose);
 
     /* totals: energy (springs included), momentum, centre of mass. */
     void (*totals)(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t);

@@ -86,6 +86,40 @@ static void mass_matrix(const struct model *m, const struct state *s, struct are
     arena_release(scratch, mark);
 }
 
+/* The joint forces that RNEA leaves behind, from internal [moment; force] to the user's [force; moment]. */
+static void wrenches(const struct model *m, const struct state *s, struct arena *scratch, double *wrench)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    real *tau = TAKE(scratch, m->nu, real);
+    rnea_full(p.d, p.q, p.u, p.ud, tau, NULL);
+    for (int i = 0; i < m->nbody; i++)
+        for (int k = 0; k < 3; k++) {
+            const real *turn = p.d->body[i].user + 3 * k, *moment = p.d->f + 6 * i, *force = moment + 3;
+            wrench[6 * i + k] = (double)vec3_dot(turn, force);
+            wrench[6 * i + 3 + k] = (double)vec3_dot(turn, moment);
+        }
+    arena_release(scratch, mark);
+}
+
+static void kinematics(const struct model *m, const struct state *s, struct arena *scratch, double *pose)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct problem p = problem_take(m, s, scratch);
+    struct body_motion *x = TAKE(scratch, m->nbody, struct body_motion);
+    forward_kinematics(p.d, p.q, p.u, p.ud, x);
+    for (int i = 0; i < m->nbody; i++) {
+        double *to = pose + POSE_NUMBERS * (size_t)i;
+        to_double(to, x[i].r, 9);
+        to_double(to + 9, x[i].p, 3);
+        to_double(to + 12, x[i].v, 3);
+        to_double(to + 15, x[i].w, 3);
+        to_double(to + 18, x[i].a, 3);
+        to_double(to + 21, x[i].alpha, 3);
+    }
+    arena_release(scratch, mark);
+}
+
 static void totals(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t)
 {
     struct arena_mark mark = arena_mark(scratch);
@@ -140,6 +174,8 @@ const struct dynamics_type dynamics_type_here = {
     .inverse = inverse,
     .forward = forward,
     .mass_matrix = mass_matrix,
+    .wrenches = wrenches,
+    .kinematics = kinematics,
     .totals = totals,
     .advance = advance,
     .drift = drift,

@@ -2,10 +2,12 @@
 #include "model/vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "io/document.h"
+#include "model/vector_check.h"
 
 enum { MAX_BODIES = 1000000, JOINT_KINDS = 5 };
 
@@ -61,7 +63,8 @@ static bool frame_read(struct reader *r, const struct node *map, const char *key
         return false;
     double square = 0;
     for (int i = 0; i < 4; i++) square += f->quat[i] * f->quat[i];
-    return fabs(square - 1) < 1e-6 || fail(r, node, "'quat' is no unit quaternion");
+    if (!(fabs(square - 1) < 1e-6)) return fail(r, node, "'quat' is no unit quaternion");
+    return vector_check_frame(f, node, r->path, r->e);
 }
 
 static bool joint_read(struct reader *r, const struct node *body, struct vector_body *b)
@@ -228,8 +231,37 @@ static bool instant_read(struct reader *r, const struct node *node, const struct
                          struct vector_instant *t)
 {
     const struct node *energy = document_need(node, "energy", r->path, r->e);
-    return energy && document_number(energy, "total", r->path, &t->energy, r->e) &&
+    const struct node *momentum = energy ? document_need(node, "momentum", r->path, r->e) : NULL;
+    return momentum && document_number(energy, "kinetic", r->path, &t->energy[0], r->e) &&
+           document_number(energy, "potential", r->path, &t->energy[1], r->e) &&
+           document_number(energy, "total", r->path, &t->energy[2], r->e) &&
+           numbers(r, momentum, "linear", t->linear, 3) &&
+           numbers(r, momentum, "angular_about_world_origin", t->angular, 3) &&
            (t->q = array_need(r, node, "q", c->nq)) && (t->qd = array_need(r, node, "qd", c->nv));
+}
+
+/* The same states as texts of 45 digits: numbers as near to them as doubles are. */
+static bool digits_read(struct reader *r, const struct node *root, struct vector_case *c)
+{
+    const struct node *list = document_find(root, "states_45_digits");
+    if (!list) return true;
+    if (list->kind != NODE_LIST || list->count != c->ninstant)
+        return fail(r, list, "'states_45_digits' must have as many states as 'trajectory'");
+    int k = 0, n = c->nq + c->nv;
+    for (const struct node *state = list->child; state; state = state->next, k++) {
+        double *x = TAKE(r->a, (size_t)n + 1, double);
+        if (state->kind != NODE_LIST || state->count != n)
+            return fail(r, state, "a state of 'states_45_digits' must hold all numbers of q and qd");
+        int i = 0;
+        for (const struct node *digit = state->child; digit; digit = digit->next, i++) {
+            char *end = NULL;
+            if (digit->kind == NODE_TEXT) x[i] = strtod(digit->text, &end);
+            if (!end || end == digit->text || *end || !isfinite(x[i]))
+                return fail(r, digit, "'states_45_digits' must hold numbers as texts");
+        }
+        c->instant[k].digits = x;
+    }
+    return true;
 }
 
 static bool trajectory_read(struct reader *r, const struct node *root, struct vector_case *c)
@@ -253,7 +285,7 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
         if (!instant_read(r, node, c, &c->instant[k])) return false;
         if (k > 0 && !(time[k] > time[k - 1])) return fail(r, trajectory, "'times' must increase");
     }
-    return true;
+    return digits_read(r, root, c);
 }
 
 static bool answers_read(struct reader *r, const struct node *root, struct vector_case *c)
@@ -285,10 +317,13 @@ bool vector_read(const char *path, struct vector_case *c, struct arena *a, struc
     *c = (struct vector_case){.path = r.path,
                               .name = document_text(root, "name"),
                               .group = document_text(root, "group"),
-                              .urdf = document_text(root, "urdf")};
-    bool good = numbers(&r, root, "gravity", c->gravity, 3) && bodies_read(&r, root, c) && counts_check(&r, root, c) &&
-                loops_read(&r, root, c) && state_read(&r, root, c) && answers_read(&r, root, c) &&
-                complete_check(&r, root, c);
+                              .urdf = document_text(root, "urdf"),
+                              .declared = document_find(root, "answers")};
+    const struct node *urdf = document_find(root, "urdf");
+    if (urdf) c->urdf_line = urdf->line;
+    bool good = vector_check_keys(root, r.path, e) && numbers(&r, root, "gravity", c->gravity, 3) &&
+                bodies_read(&r, root, c) && counts_check(&r, root, c) && loops_read(&r, root, c) &&
+                state_read(&r, root, c) && answers_read(&r, root, c) && complete_check(&r, root, c);
     if (good) peers_read(root, c);
     return good;
 }

@@ -11,6 +11,8 @@
 #include "base/arena.h"
 #include "base/err.h"
 
+struct node;
+
 enum vector_joint {
     VECTOR_FIXED,     /* nq 0, nv 0 */
     VECTOR_REVOLUTE,  /* nq 1, nv 1 */
@@ -56,7 +58,9 @@ struct vector_pose {
 struct vector_instant {
     double time;
     const double *q, *qd;
-    double energy;                 /* total, springs included */
+    double energy[3];              /* kinetic, potential with springs, total */
+    double linear[3], angular[3];  /* momentum, the angular one about the world's origin */
+    const double *digits;          /* (nq + nv) q and qd as written with 45 digits, NULL: the file has none */
     double accuracy;               /* bound of the reference's own error */
     double sensitivity;            /* growth of an initial error until now */
 };
@@ -70,6 +74,8 @@ struct vector_peer {
 /* Arrays are borrowed from the arena of vector_read; answers that the file does not hold are NULL or NAN. */
 struct vector_case {
     const char *path, *name, *group, *urdf;
+    int urdf_line;                 /* where the URDF file is named */
+    const struct node *declared;   /* the list 'answers', NULL: the file promises all */
     int nbody, nq, nv, nrow;       /* nrow: loop rows altogether */
     double gravity[3];
     struct vector_body *body;
@@ -86,7 +92,7 @@ struct vector_case {
     bool has_energy, has_momentum, has_com;
     int npose;
     struct vector_pose *pose;
-    double floor_id, floor_fd;     /* change of the exact answers when inputs are rounded */
+    double floor_id, floor_fd;     /* change of the exact answers when inputs are rounded, as the file says */
     struct vector_peer peer_id, peer_fd;
 
     int ninstant;                  /* trajectories only */
@@ -96,8 +102,8 @@ struct vector_case {
 /* vector_read: read a dynref-1 file into *c, all memory from `a`.
  *
  *   Returns false with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): syntax, a missing field, a wrong count, an
- *   unknown joint type, a parent that does not come before its child, a number that is not finite. Bodies need not be
- *   physical: some reference robots are not. */
+ *   unknown joint type, a parent that does not come before its child, a number that is not finite, a key that is not
+ * the format's, a rotation that is not its quaternion's. Bodies need not be physical: some reference robots are not. */
 bool vector_read(const char *path, struct vector_case *c, struct arena *a, struct err *e);
 
 /* vector_joint_name: "revolute", ... ; vector_joint_nq, vector_joint_nv: its coordinates and degrees of freedom. */

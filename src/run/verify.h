@@ -1,12 +1,17 @@
 /* verify.h - every algorithm held against reference vectors computed by others.
  *
- * A row is one algorithm and one quantity of one case. It passes when its error, max |x - ref| / max |ref|, is within
- * the tolerance. A tolerance that the caller gives is taken as it is; the default asks for nothing that no
- * double-precision code attains: it is never below ten times the change of the exact answer when the inputs are
- * rounded, nor below the best of the libraries that the file quotes.
- * A larger error is either explained by rounding - it goes away in quad precision, or, in large cases, is in proportion
- * to the error in single precision - or it is a failure. A case passes when no row fails and every quantity
- * has a row that passes. */
+ * A row is one algorithm and one quantity of one case. Its error is the largest difference from the reference, each
+ * number by its own scale: how far the exact answer moves when the inputs move by one rounding, in units of that
+ * rounding (verify_answers.h). Neither the largest number beside it nor what the file says of other programs excuses an
+ * error.
+ *
+ *   pass             the error is within the tolerance
+ *   rounding         it is not, but the same algorithm in quad precision is, and by the tolerance of the row
+ *   algorithm-fails  quad precision does not mend it; articulated bodies in quad precision confirm the file's answer,
+ * and the algorithm is right about the same scene with even masses and inertias. `remedy`: what works fail everything
+ * else not-applicable   the note says why
+ *
+ * A case passes when no row fails and every quantity that was compared has a row that passes. */
 #ifndef RUN_VERIFY_H
 #define RUN_VERIFY_H
 
@@ -19,31 +24,31 @@
 #include "spec/machine_spec.h"
 
 struct verify_options {
-    double tolerance_inverse;  /* everything but accelerations and loop forces; 0: 1e-12 */
-    double tolerance_forward;  /* accelerations and loop forces; 0: 1e-10 */
+    double tolerance_inverse;  /* everything but accelerations and loop forces; 0: 1e-12, in single precision 1e-4 */
+    double tolerance_forward;  /* accelerations and loop forces; 0: 1e-10, in single precision 1e-3 */
     enum precision precision;  /* of the algorithms under test */
     bool parallel;             /* the parallel kernels too */
     const struct machine_spec *machine; /* that they run on; NULL: a crossbar of as many nodes as there are ranks */
-    bool all_ranks;            /* large cases too on P = 1, 2, 3, n/2, n; otherwise on 3 and n */
+    bool all_ranks; /* large cases too on P = 1, 2, 3, n/2, n, otherwise on 3 and n; and by their mass matrix */
 };
 
 enum verify_verdict {
-    VERIFY_PASS,           /* within the tolerance */
-    VERIFY_ROUNDING,       /* above it, by rounding alone */
-    VERIFY_FAIL,           /* above it, or no number */
-    VERIFY_NOT_APPLICABLE  /* the note says why */
+    VERIFY_PASS, VERIFY_ROUNDING, VERIFY_ALGORITHM_FAILS, VERIFY_FAIL, VERIFY_NOT_APPLICABLE, VERIFY_VERDICTS
 };
 
 struct verify_row {
     char algorithm[48];    /* "rnea", "aba", "forward direct pcr-symmetric" */
-    char quantity[16];     /* the field of the reference: "tau_id", "qdd_fd", ... */
+    char quantity[24];     /* the field of the reference: "tau_id", "qdd_fd", ... */
     bool parallel;
     char ranks[32];        /* parallel: the numbers of ranks tried, "1,2,3,8,16" */
     int worst_rank;        /* parallel: with how many the error was largest */
-    double error;          /* INFINITY: an answer that is no number */
+    double error;          /* by the numbers' own scales; INFINITY: an answer that is no number */
+    double plain;          /* max |x - ref| / max |ref|, as libraries quote theirs; says nothing of the verdict */
+    double quad;           /* rows above the tolerance: the error in quad precision */
     double tolerance;
     enum verify_verdict verdict;
-    char note[128];
+    char note[160];
+    char remedy[80];       /* algorithm-fails: what answers this quantity of this case */
 };
 
 struct verify_report {
@@ -82,7 +87,7 @@ void verify_print_summary(FILE *out, const struct verify_report *r, int n);
 /* verify_print_json: n reports as one document, keys sorted, numbers that are not finite as null. */
 void verify_print_json(FILE *out, const struct verify_report *r, int n);
 
-/* verify_verdict_word: "pass", "rounding", "fail", "not applicable". */
+/* verify_verdict_word: "pass", "rounding", "algorithm-fails", "fail", "not-applicable". */
 const char *verify_verdict_word(enum verify_verdict v);
 
 #endif

@@ -64,8 +64,6 @@ static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANK
 struct outcome {
     enum { ANSWERED, REFUSED, BROKEN } kind;
     double *x, *lambda;  /* tau or qdd, loop forces */
-    int loop_rank;
-    double condition;    /* a lower bound, of the block-scaled system */
     char text[96];       /* refused, broken: why */
 };
 
@@ -124,50 +122,47 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_s
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
                             .x = job_output(&job, kernel->does_forward ? OUTPUT_QDD : OUTPUT_TAU),
-                            .lambda = job_output(&job, OUTPUT_LAMBDA),
-                            .loop_rank = (int)*job_output(&job, OUTPUT_LOOP_RANK)};
-    for (int i = 0; i < nrank; i++) out->condition = fmax(out->condition, job_output(&job, OUTPUT_CONDITION)[i]);
+                            .lambda = job_output(&job, OUTPUT_LAMBDA)};
     text_copy(out->text, sizeof out->text, result->text);
     return true;
 }
 
-/* The errors of a variant over all numbers of ranks. */
+/* The worst answers of a variant over all numbers of ranks. */
 struct spread {
-    double error, lambda_error, condition;
-    int worst, lambda_worst, rank_deficiency;
-    bool answered;
-    char ranks[32], text[128];
+    struct verify_row answer, lambda; /* judged; worst_rank 0: none */
+    char ranks[32], text[128];        /* numbers of ranks tried; why one was refused or broke down */
 };
+
+static void worst_take(struct verify_row *worst, struct verify_row *row, int nrank)
+{
+    if (worst->worst_rank > 0 && !(row->error > worst->error)) return;
+    row->worst_rank = nrank;
+    *worst = *row;
+}
 
 static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x, int nrank, bool inverse)
 {
-    const struct vector_case *c = v->vector;
+    const struct verify_options *o = v->options;
     bool good = x->kind == ANSWERED;
-    double error = good ? verify_error(x->x, inverse ? c->tau_id : c->qdd_fd, c->nv) : INFINITY;
+    struct verify_row row = {.worst_rank = 0};
     size_t used = strlen(s->ranks);
     snprintf(s->ranks + used, sizeof s->ranks - used, "%s%d", used ? "," : "", nrank);
     if (!good) text_copy(s->text, sizeof s->text, x->text);
-    if (!s->answered || error > s->error) {
-        s->error = error;
-        s->worst = nrank;
-    }
-    s->answered = true;
-    if (good) s->condition = fmax(s->condition, x->condition);
-    if (!inverse && c->lambda && good) {
-        double lambda_error = verify_error(x->lambda, c->lambda, c->nrow);
-        if (s->lambda_worst == 0 || lambda_error > s->lambda_error) {
-            s->lambda_error = lambda_error;
-            s->lambda_worst = nrank;
-        }
-        if (x->loop_rank > 0 && x->loop_rank < c->nrow) s->rank_deficiency = c->nrow - x->loop_rank;
-    }
+    verify_row_judge(v, &row, inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD, good ? x->x : NULL,
+                     inverse ? verify_tolerance_inverse(o) : verify_tolerance_forward(o));
+    if (!good) snprintf(row.note, sizeof row.note, "breaks down: %.100s", x->text);
+    worst_take(&s->answer, &row, nrank);
+    if (inverse || !v->vector->lambda) return;
+    struct verify_row lambda = {.worst_rank = 0};
+    verify_row_judge(v, &lambda, VERIFY_LAMBDA, good ? x->lambda : NULL, verify_tolerance_forward(o));
+    worst_take(&s->lambda, &lambda, nrank);
 }
 
 static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s, struct err *e)
 {
     bool inverse = strcmp(kernel->name, "inverse") == 0;
     int rank[MAX_RANKS], n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
-    *s = (struct spread){0};
+    *s = (struct spread){.ranks = ""};
     for (int i = 0; i < n; i++) {
         struct outcome x;
         struct arena_mark mark = arena_mark(v->arena);
@@ -181,92 +176,73 @@ static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel,
     return true;
 }
 
-/* The errors of the variant's accelerations and loop forces in another precision, with the ranks that were worst. */
-static bool error_in(struct verify_case *v, const struct kernel_spec *kernel, enum precision precision, int nrank,
-                     double *error, double *lambda_error, struct err *e)
+/* Is the variant in quad precision, on nrank processors, right about the scene without extremes? */
+static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int nrank, bool *sane, struct err *e)
 {
-    const struct vector_case *c = v->vector;
-    struct kernel_spec again = *kernel;
+    if (!verify_even(v, e)) return false;
     struct arena_mark mark = arena_mark(v->arena);
     struct outcome x;
-    again.precision = precision;
-    if (!kernel_run(v, &again, nrank, &x, e)) return false;
-    *error = *lambda_error = INFINITY;
-    if (x.kind == ANSWERED) *error = verify_error(x.x, c->qdd_fd, c->nv);
-    if (x.kind == ANSWERED && c->lambda) *lambda_error = verify_error(x.lambda, c->lambda, c->nrow);
+    if (!kernel_run(v->even, quad, nrank, &x, e)) return false;
+    *sane = x.kind == ANSWERED && verify_even_right(v, x.x);
     arena_release(v->arena, mark);
     return true;
 }
 
-/* Above the tolerance: by rounding, if the kernel itself finds the system singular to its precision, or if the error
- * goes away in quad precision, or, of large cases, for which that takes long, if it is in proportion to the error in
- * single precision. */
-static bool explain(struct verify_case *v, const struct kernel_spec *kernel, double condition, struct verify_row *row,
-                    struct err *e)
+/* A row above its tolerance by the same variant in quad precision, on as many ranks as were worst. */
+static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enum verify_quantity k,
+                    struct verify_row *row, struct err *e)
 {
-    enum { QUAD_LIMIT = 310 };
-    bool quad = v->vector->nv <= QUAD_LIMIT;
-    double error, ignored;
-    char before[64];
-    if (condition * dynamics_type_of(kernel->precision)->epsilon >= 1) {
-        row->verdict = VERIFY_ROUNDING;
-        snprintf(row->note, sizeof row->note, "P=%d; its condition is above %.0e", row->worst_rank, condition);
-        return true;
-    }
-    if (!error_in(v, kernel, quad ? PRECISION_QUAD : PRECISION_FLOAT, row->worst_rank, &error,
-                  &ignored, e))
-        return false;
-    if (quad ? verify_error_vanishes(row->error, error) : verify_error_scales(row->error, error))
-        row->verdict = VERIFY_ROUNDING;
-    text_copy(before, sizeof before, row->note);
-    snprintf(row->note, sizeof row->note, "P=%d%s%s%s; in %s precision %.1e", row->worst_rank,
-             isfinite(row->error) ? "" : " breaks down", before[0] ? ": " : "", before, quad ? "quad" : "single",
-             error);
+    struct kernel_spec again = *kernel;
+    struct arena_mark mark = arena_mark(v->arena);
+    struct outcome x;
+    bool sane = true;
+    if (verify_row_refuted(v, row, k)) return true;
+    again.precision = PRECISION_QUAD;
+    if (!kernel_run(v, &again, row->worst_rank, &x, e)) return false;
+    const double *y = k == VERIFY_LAMBDA ? x.lambda : x.x;
+    double error = x.kind == ANSWERED ? verify_answers_error(&v->answers, k, y) : INFINITY;
+    arena_release(v->arena, mark);
+    if (k == VERIFY_TAU_ID)
+        sane = false; /* inverse dynamics has no system to solve that could be singular */
+    else if (error > row->tolerance && !is_sane(v, &again, row->worst_rank, &sane, e)) return false;
+    verify_row_explain(row, error, sane);
     return true;
 }
 
-/* Loop forces are no better than the accelerations: `rounded` tells that rounding explains those. */
-static bool lambda_row(struct verify_case *v, const char *name, const struct kernel_spec *kernel,
-                       const struct spread *s, bool rounded, struct err *e)
+/* A row of the report from what a spread found. */
+static bool row_keep(struct verify_case *v, const struct variant *variant, const struct kernel_spec *kernel,
+                     enum verify_quantity k, const struct spread *s, struct err *e)
 {
-    struct verify_row *row = verify_row_add(v, name, "lambda");
-    row->parallel = true;
-    row->error = s->lambda_error;
-    row->tolerance = verify_tolerance_forward(v);
-    row->worst_rank = s->lambda_worst;
-    text_copy(row->ranks, sizeof row->ranks, s->ranks);
-    if (s->lambda_error <= row->tolerance) return true;
-    double ignored, quad;
-    if (!error_in(v, kernel, PRECISION_QUAD, s->lambda_worst, &ignored, &quad, e)) return false;
-    row->verdict = rounded || verify_error_vanishes(row->error, quad) ? VERIFY_ROUNDING : VERIFY_FAIL;
-    snprintf(row->note, sizeof row->note, "P=%d; in quad precision %.1e", row->worst_rank, quad);
-    return true;
+    struct verify_row *row = verify_row_add(v, variant->name, verify_quantity_name(k));
+    struct verify_row found = k == VERIFY_LAMBDA ? s->lambda : s->answer;
+    memcpy(found.algorithm, row->algorithm, sizeof found.algorithm);
+    memcpy(found.quantity, row->quantity, sizeof found.quantity);
+    memcpy(found.ranks, s->ranks, sizeof found.ranks);
+    found.parallel = true;
+    *row = found;
+    return row->verdict != VERIFY_FAIL || explain(v, kernel, k, row, e);
 }
 
 static bool variant_row(struct verify_case *v, const struct variant *variant, struct err *e)
 {
     struct kernel_spec kernel = variant->kernel;
     bool inverse = strcmp(kernel.name, "inverse") == 0;
-    const char *quantity = inverse ? "tau_id" : "qdd_fd";
+    enum verify_quantity quantity = inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD;
     struct spread s;
     kernel.precision = v->options->precision;
     if (!variant_run(v, &kernel, &s, e)) return false;
-    if (!s.answered) {
-        verify_row_skip(v, variant->name, quantity, s.text);
+    if (s.answer.worst_rank == 0) {
+        verify_row_skip(v, variant->name, verify_quantity_name(quantity), s.text);
         v->report->row[v->report->nrow - 1].parallel = true;
         return true;
     }
-    struct verify_row *row = verify_row_add(v, variant->name, quantity);
-    row->parallel = true;
-    row->error = s.error;
-    row->worst_rank = s.worst;
-    row->tolerance = inverse ? verify_tolerance_inverse(v) : verify_tolerance_forward(v);
-    row->verdict = s.error <= row->tolerance ? VERIFY_PASS : VERIFY_FAIL;
-    text_copy(row->ranks, sizeof row->ranks, s.ranks);
-    text_copy(row->note, sizeof row->note, s.text);
-    if (row->verdict == VERIFY_FAIL && !inverse && !explain(v, &kernel, s.condition, row, e)) return false;
-    if (inverse || !v->vector->lambda || s.rank_deficiency > 0) return true;
-    return lambda_row(v, variant->name, &kernel, &s, row->verdict == VERIFY_ROUNDING, e);
+    if (!row_keep(v, variant, &kernel, quantity, &s, e)) return false;
+    if (s.lambda.worst_rank == 0) return true;
+    if (verify_loops_skip(v, variant->name)) {
+        v->report->row[v->report->nrow - 1].parallel = true;
+        return true;
+    }
+    return row_keep(v, variant, &kernel, VERIFY_LAMBDA, &s, e);
 }
 
 /* Whether three components describe the case, to the rounding of its numbers. */

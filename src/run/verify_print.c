@@ -8,7 +8,7 @@
 
 const char *verify_verdict_word(enum verify_verdict v)
 {
-    static const char *const word[] = {"pass", "rounding", "fail", "not applicable"};
+    static const char *const word[] = {"pass", "rounding", "algorithm-fails", "fail", "not-applicable"};
     return word[v];
 }
 
@@ -27,38 +27,38 @@ static void print_row(FILE *out, const struct verify_row *row)
     char ranks[48] = "";
     if (row->ranks[0]) snprintf(ranks, sizeof ranks, "P=%s", row->ranks);
     if (row->verdict == VERIFY_NOT_APPLICABLE) {
-        fprintf(out, "  %-40s %-15s %-20s %8s %8s  n/a: %s\n", row->algorithm, row->quantity, ranks, "-", "-",
-                row->note);
+        fprintf(out, "  %-40s %-16s %-20s %8s %8s  not-applicable: %s\n", row->algorithm, row->quantity, ranks, "-",
+                "-", row->note);
         return;
     }
-    fprintf(out, "  %-40s %-15s %-20s %8.1e %8.1e  %s%s%s\n", row->algorithm, row->quantity, ranks, row->error,
+    fprintf(out, "  %-40s %-16s %-20s %8.1e %8.1e  %s%s%s%s%s\n", row->algorithm, row->quantity, ranks, row->error,
             row->tolerance, row->verdict == VERIFY_FAIL ? "FAIL" : verify_verdict_word(row->verdict),
-            row->note[0] ? ": " : "", row->note);
+            row->note[0] ? ": " : "", row->note, row->remedy[0] ? "; use " : "", row->remedy);
 }
 
 void verify_print(FILE *out, const struct verify_report *r, bool brief)
 {
     print_heading(out, r);
     if (!brief)
-        fprintf(out, "  %-40s %-15s %-20s %8s %8s  %s\n", "algorithm", "quantity", "ranks", "error", "at most",
+        fprintf(out, "  %-40s %-16s %-20s %8s %8s  %s\n", "algorithm", "quantity", "ranks", "error", "at most",
                 "verdict");
     for (int i = 0; i < r->nrow; i++)
-        if (!brief || r->row[i].verdict == VERIFY_FAIL || r->row[i].verdict == VERIFY_ROUNDING)
+        if (!brief || (r->row[i].verdict != VERIFY_PASS && r->row[i].verdict != VERIFY_NOT_APPLICABLE))
             print_row(out, &r->row[i]);
 }
 
 void verify_print_summary(FILE *out, const struct verify_report *r, int n)
 {
-    int count[4] = {0}, failed = 0, rows = 0;
+    int count[VERIFY_VERDICTS] = {0}, failed = 0, rows = 0;
     for (int i = 0; i < n; i++) {
         failed += !r[i].passed;
         rows += r[i].nrow;
         for (int k = 0; k < r[i].nrow; k++) count[r[i].row[k].verdict]++;
     }
     fprintf(out,
-            "%d case%s, %d failed; %d rows: %d pass, %d beyond the tolerance by rounding, %d fail, %d not applicable\n",
-            n, n == 1 ? "" : "s", failed, rows, count[VERIFY_PASS], count[VERIFY_ROUNDING], count[VERIFY_FAIL],
-            count[VERIFY_NOT_APPLICABLE]);
+            "%d case%s, %d failed; %d rows: %d pass, %d rounding, %d algorithm-fails, %d fail, %d not-applicable\n", n,
+            n == 1 ? "" : "s", failed, rows, count[VERIFY_PASS], count[VERIFY_ROUNDING], count[VERIFY_ALGORITHM_FAILS],
+            count[VERIFY_FAIL], count[VERIFY_NOT_APPLICABLE]);
 }
 
 /* A column of the matrix: rows whose algorithm begins with `algorithm`, in the quantity. */
@@ -89,7 +89,7 @@ static void print_cell(FILE *out, const struct verify_report *r, const struct co
         const struct verify_row *row = &r->row[i];
         bool here = strncmp(row->algorithm, column->algorithm, strlen(column->algorithm)) == 0 &&
                     strcmp(row->quantity, column->quantity) == 0 && row->verdict != VERIFY_NOT_APPLICABLE;
-        if (here) largest = fmax(largest, row->error);
+        if (here) largest = fmax(largest, row->plain);
     }
     if (largest < 0)
         fprintf(out, " - |");
@@ -140,11 +140,13 @@ static void json_row(struct json *j, const struct verify_row *row)
     json_object(j);
     key_text(j, "algorithm", row->algorithm);
     key_real(j, "error", applies ? row->error : NAN);
+    key_real(j, "error_of_largest", applies ? row->plain : NAN);
     key_text(j, "note", row->note);
     json_key(j, "parallel");
     json_bool(j, row->parallel);
     key_text(j, "quantity", row->quantity);
     key_text(j, "ranks", row->ranks);
+    key_text(j, "remedy", row->remedy);
     key_real(j, "tolerance", applies ? row->tolerance : NAN);
     key_text(j, "verdict", verify_verdict_word(row->verdict));
     key_int(j, "worst_rank_count", row->worst_rank);
