@@ -2,17 +2,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/flag.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "run/netcheck.h"
+#include "run/netcheck_verdict.h"
 
 static const char doc[] =
-    "Run the cases of each FILE (makespans, collectives, latency against load, hand cases) through the network levels "
-    "and "
-    "print the error of each case and statistics.\n\n"
+    "Run the cases of each FILE through the network levels, print the error of each case and statistics, and hold them "
+    "against the accuracy that is stated for each level and class of case. A list of messages without reference "
+    "answers "
+    "is played and its times are printed.\n\n"
     "Example: mimdsim netcheck tests/data/net/makespan.json --level packet\n\v"
-    "With --json one FILE gives one object, several give a list of objects. What a level cannot run is counted as "
-    "skipped, with the reason.";
+    "      --within=PERCENT       every error must be within this, instead of the stated accuracy\n"
+    "      --stated               print the stated accuracies and run nothing\n\n"
+    "Forms of cases, told by a key: step (distance), list (trace), hand (messages), load (points), saturation "
+    "(saturation_low). With --json one FILE gives one object, several give a list of objects. What a level cannot run "
+    "is "
+    "counted as skipped, with the reason. The exit status is 1 when a verdict is FAIL, 65 when a file is of no known "
+    "form "
+    "or none of its cases can be answered.";
 
 static bool level_of(const char *word, enum network_level *level, struct err *e)
 {
@@ -27,43 +35,69 @@ static bool level_of(const char *word, enum network_level *level, struct err *e)
                 : err_set(e, ERR_USAGE, "there is no level '%s'; there are: loggp, link, packet, flit, auto", word);
 }
 
-static void print_one(const struct netcheck *n, const struct common *c, struct json *j)
+static void print_one(const struct netcheck *n, const struct common *c, double within, struct json *j)
 {
     if (c->json) {
-        netcheck_json_object(n, j);
+        netcheck_json_object(n, within, j);
         return;
     }
     if (c->narg > 1) printf("%s\n", n->path);
-    netcheck_print(n, c->brief, stdout);
+    netcheck_print(n, within, c->brief, stdout);
     if (c->narg > 1) putchar('\n');
 }
 
 /* Every file is read before anything is printed, so that a wrong one leaves no half answer. */
-static bool check_files(const struct common *c, const bool *wanted, struct arena *a, struct err *e)
+static bool check_files(const struct common *c, const bool *wanted, double within, bool *pass, struct arena *a,
+                        struct err *e)
 {
     struct netcheck *n = TAKE(a, c->narg, struct netcheck);
     for (int i = 0; i < c->narg; i++)
         if (!netcheck_run(&n[i], c->arg[i], wanted, NULL, c->quiet, a, e)) return false;
     struct json j = json_make(stdout);
     if (c->json && c->narg > 1) json_array(&j);
-    for (int i = 0; i < c->narg; i++) print_one(&n[i], c, &j);
+    for (int i = 0; i < c->narg; i++) print_one(&n[i], c, within, &j);
     if (c->json && c->narg > 1) json_end(&j);
     if (c->json) json_finish(&j);
+    *pass = true;
+    for (int i = 0; i < c->narg; i++) *pass = *pass && netcheck_pass(&n[i], within);
+    return true;
+}
+
+/* "5" or "5%" as a fraction; -1 without the option */
+static bool within_of(const char *word, double *within, struct err *e)
+{
+    char *end;
+    *within = -1;
+    if (!word) return true;
+    double percent = strtod(word, &end);
+    if (*end == '%') end++;
+    if (end == word || *end || !(percent >= 0) || percent > 1e6)
+        return err_set(e, ERR_USAGE, "--within: '%s' is not a number of percent from 0 on", word);
+    *within = percent / 100;
     return true;
 }
 
 int cmd_netcheck(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_LEVEL, "FILE...", doc, 1, 64);
+    const char *limit = take_value(&argc, argv, "--within");
+    double within;
+    bool pass = true, stated = take_flag(&argc, argv, "--stated");
+    common_parse(&c, argc, argv, TAKES_LEVEL, "FILE...", doc, stated ? 0 : 1, 64);
+    if (stated) {
+        if (c.json) netcheck_json_stated(stdout);
+        else netcheck_print_stated(stdout);
+        return 0;
+    }
     struct err e;
     err_clear(&e);
     enum network_level level = LEVEL_LOGGP;
     bool wanted[NETCHECK_LEVELS] = {false};
-    bool ok = !c.level || level_of(c.level, &level, &e);
+    bool ok = within_of(limit, &within, &e) && (!c.level || level_of(c.level, &level, &e));
     if (ok && c.level) wanted[level] = true;
     struct arena *a = arena_create();
-    ok = ok && check_files(&c, c.level ? wanted : NULL, a, &e);
+    ok = ok && check_files(&c, c.level ? wanted : NULL, within, &pass, a, &e);
     arena_destroy(a);
-    return ok ? 0 : common_fail(&c, &e);
+    if (!ok) return common_fail(&c, &e);
+    return pass ? 0 : err_exit_status(ERR_CHECK);
 }

@@ -298,7 +298,7 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
     struct json j = json_make(stdout);
     if (c->json) json_array(&j);
     for (int i = 0; i < n; i++) {
-        if (c->json) netcheck_json_object(&checks[i], &j);
+        if (c->json) netcheck_json_object(&checks[i], -1, &j);
         else network_table(&checks[i]);
     }
     if (c->json) {
