@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "report/findings.h"
+#include "report/opening.h"
 #include "report/page.h"
 
 #define IN_ORDER " ORDER BY substr(id, 1, 1) <> 'C', length(id), id"
@@ -34,7 +35,7 @@ static bool tell_claim(void *context, int ncolumn, const char *const *name, cons
     text_add(&t, "%s: %s", value[0], value[1]);
     page_heading(c->page, 3, t.s);
     text_free(&t);
-    text_add(&t, "Test: %s.", value[2]);
+    text_add(&t, "Test: %s. Judged: %s", value[2], value[8]);
     if (value[3])
         text_add(&t, " The model gives %s (%s)", value[3], value[4]);
     else
@@ -54,13 +55,13 @@ static bool contradictions(struct chapter *c)
                    "The paper prints no numbers beside its figures, its machines were shared with others, and its "
                    "serial baseline is not fully defined. Each claim is therefore tested for every serial baseline, "
                    "with structured and with dense operators; its own verdict is that of the variant nearest to the "
-                   "text, the fastest serial Newton-Euler code. Nothing is tuned to a claim.");
+                   "text. Judged: why that variant, with which tolerance.");
     return store_select(
         c->d->store,
         "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), NULL),"
-        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))) FROM claim WHERE variant = '' AND verdict = "
-        "'fail'" IN_ORDER,
+        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))), judged FROM claim WHERE variant = '' AND "
+        "verdict = 'fail'" IN_ORDER,
         0, NULL, tell_claim, c, c->e);
 }
 
@@ -91,7 +92,8 @@ static bool claims(struct chapter *c)
         c,
         "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples, statement, test"
+        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples,"
+        " iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, statement, test"
         " FROM claim WHERE variant = ''" IN_ORDER,
         "No claim has been judged.");
 }
@@ -105,7 +107,7 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
     text_add(&t, "%s: %s", value[0], value[1]);
     page_heading(c->page, 3, t.s);
     text_free(&t);
-    text_add(&t, "Test: %s. Value: %s.", value[2], value[3]);
+    text_add(&t, "Test: %s. Value: %s. Judged: %s", value[2], value[3], value[4]);
     page_paragraph(c->page, t.s);
     text_free(&t);
     return page_table(
@@ -120,9 +122,8 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
 static bool variants(struct chapter *c)
 {
     page_heading(c->page, 2, "Each claim for each baseline");
-    return store_select(c->d->store, "SELECT id, statement, test, unit FROM claim WHERE variant = ''" IN_ORDER, 0, NULL,
-                        tell_variants, c, c->e) &&
-           c->e->kind == ERR_NONE;
+    static const char sql[] = "SELECT id, statement, test, unit, judged FROM claim WHERE variant = ''" IN_ORDER;
+    return store_select(c->d->store, sql, 0, NULL, tell_variants, c, c->e) && c->e->kind == ERR_NONE;
 }
 
 /* --- figures --------------------------------------------------------------------------------------------------------
@@ -290,10 +291,13 @@ static bool chapters(struct chapter *c)
         return false;
     claimed = claimed || d->whole;
     run = run || d->whole;
+    if (claimed && !opening_abstract(c->page, d->store, d->data_dir, c->e)) return false;
+    page_contents(c->page);
     return (!claimed || (contradictions(c) && estimates(c) && claims(c))) && figures(c) &&
            findings_accuracy(c->page, d->store, c->e) && findings_stability(c->page, d->store, c->e) &&
            (!claimed || variants(c)) && machines(c) && (!run || numerics(c)) && omissions(c) &&
-           (!run || (effort(c) && provenance(c)));
+           (!run || (effort(c) && provenance(c))) &&
+           (!claimed || opening_glossary(c->page, d->store, d->data_dir, c->e));
 }
 
 bool document_write(const struct document *d, struct err *e)

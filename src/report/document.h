@@ -25,8 +25,9 @@ struct document {
     double host_s; /* how long the command took; 0: not told */
 };
 
-/* document_write: claims that fail first, then the table of claims, the figures, error against run time, stability, the
- * machines, accuracy, what was left out, time and provenance. Returns false with ERR_CREATE, ERR_IO or ERR_DATA. */
+/* document_write: on claims the abstract, contents, claims that fail, the table of claims; the figures, error against
+ * run time, stability, the machines, accuracy, what was left out, time and provenance; a glossary where there are
+ * claims. Returns false with ERR_NO_INPUT, ERR_CREATE, ERR_IO or ERR_DATA. */
 bool document_write(const struct document *d, struct err *e);
 
 #endif

@@ -1,10 +1,12 @@
 /* page.c - Markdown and HTML side by side; see page.h. */
 #include "report/page.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "base/text.h"
 
 static const char style[] =
@@ -19,6 +21,7 @@ static const char style[] =
     "}\n"
     "td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }\n"
     "td.short, td.pass, td.fail { white-space: nowrap }\n"
+    "nav ul { columns: 18em; padding-left: 1.2em }\n"
     "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: 0.85em; color: #444 "
     "}\n"
     "</style>\n";
@@ -68,9 +71,43 @@ bool page_open(struct page *p, const char *folder, const char *name, const char 
     return true;
 }
 
+/* The file of a page with contents: their list, then what waited. */
+static FILE *join(FILE *front, FILE *waiting, char *const *rest, const size_t *size, const struct text *list)
+{
+    CHECK(fclose(waiting) == 0); /* in memory */
+    fputs(list->s ? list->s : "", front);
+    fwrite(*rest, 1, *size, front);
+    free(*rest);
+    return front;
+}
+
+/* All headings are known. */
+static void write_contents(struct page *p)
+{
+    text_add(&p->list_md, "\n");
+    text_add(&p->list_html, "</ul>\n</nav>\n");
+    p->md = join(p->front_md, p->md, &p->rest_md, &p->size_md, &p->list_md);
+    p->html = join(p->front_html, p->html, &p->rest_html, &p->size_html, &p->list_html);
+    text_free(&p->list_md);
+    text_free(&p->list_html);
+}
+
+void page_contents(struct page *p)
+{
+    CHECK(!p->front_md);
+    page_heading(p, 2, "Contents");
+    fputs("<nav>\n<ul>\n", p->html);
+    p->front_md = p->md;
+    p->front_html = p->html;
+    p->md = open_memstream(&p->rest_md, &p->size_md);
+    p->html = open_memstream(&p->rest_html, &p->size_html);
+    CHECK(p->md && p->html);
+}
+
 bool page_close(struct page *p, struct err *e)
 {
     bool ok = true;
+    if (p->front_md) write_contents(p);
     if (p->html) fputs("</body>\n</html>\n", p->html);
     for (int i = 0; i < 2; i++) {
         FILE *f = i ? p->html : p->md;
@@ -82,14 +119,46 @@ bool page_close(struct page *p, struct err *e)
     return ok;
 }
 
+/* The name that links to a heading: as GitHub makes it of a heading in Markdown. */
+static void add_anchor(struct text *out, const char *heading)
+{
+    for (const char *c = heading; *c; c++) {
+        char letter = (char)tolower((unsigned char)*c);
+        if (letter == ' ') letter = '-';
+        if (isalnum((unsigned char)letter) || letter == '-' || letter == '_') text_add_bytes(out, &letter, 1);
+    }
+}
+
+/* One line of the contents. */
+static void list_heading(struct page *p, const char *text, const char *anchor)
+{
+    char *md = NULL, *html = NULL;
+    size_t size;
+    FILE *to_md = open_memstream(&md, &size), *to_html = open_memstream(&html, &size);
+    CHECK(to_md && to_html);
+    escape_md(to_md, text, false);
+    escape(to_html, text);
+    CHECK(fclose(to_md) == 0 && fclose(to_html) == 0);
+    text_add(&p->list_md, "- [%s](#%s)\n", md, anchor);
+    text_add(&p->list_html, "<li><a href=\"#%s\">%s</a></li>\n", anchor, html);
+    free(md);
+    free(html);
+}
+
 void page_heading(struct page *p, int level, const char *text)
 {
+    struct text anchor = {0};
+    add_anchor(&anchor, text);
+    text_add(&anchor, "%s", "");
     fprintf(p->md, "%.*s ", level, "####");
     escape_md(p->md, text, false);
     fputs("\n\n", p->md);
-    fprintf(p->html, "<h%d>", level);
+    if (level == 2) fprintf(p->html, "<h2 id=\"%s\">", anchor.s);
+    else fprintf(p->html, "<h%d>", level);
     escape(p->html, text);
     fprintf(p->html, "</h%d>\n", level);
+    if (level == 2 && p->front_md) list_heading(p, text, anchor.s);
+    text_free(&anchor);
 }
 
 void page_paragraph(struct page *p, const char *text)

@@ -255,6 +255,32 @@ solver() {
     stderr_says 'judged:'
 }
 
+@test "a report on claims opens with its abstract, links to every section, and explains its words" {
+    template
+    speedups link 2:100 16:150 32:200 48:3000 64:3500 128:4000
+    verdict C2 '' pass
+    works mimdsim report planted.db --quiet
+    [ "$(grep '^## ' planted.md | head -2 | tr '\n' ' ')" = '## Abstract ## Contents ' ]
+    grep -q 'Jaramillo-Botero' planted.md
+    grep -q 'of 2 claims that were judged, 1 hold (C2) and 1 do not (C1)' planted.md
+    # what is linked to is there, in Markdown by its name, in HTML by its id, and every section is linked to
+    sed -n 's/^- \[.*(#\(.*\))$/\1/p' planted.md | sort >linked.md
+    sed -n 's/^## //p' planted.md | grep -v -e Abstract -e Contents | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9\n_-' | sort >there.md
+    diff there.md linked.md
+    grep -o 'href="#[^"]*' planted.html | sed 's/.*#//' | sort >linked.html
+    grep -o 'h2 id="[^"]*' planted.html | sed 's/.*"//' | grep -v -e abstract -e contents | sort >there.html
+    diff there.html linked.html
+    [ "$(wc -l <linked.html)" -gt 5 ]
+    for word in 'f, degree of parallelism' 'NE[1], NE[2], NE[3]' 'CFA[1], CFA[2], CFA[3]' 'rnea+aba' level 'structured, dense operators'; do
+        grep -q "<td[^>]*>$(printf %s "$word" | sed 's/[][+]/\\&/g; s/\\+/+/g')</td>" planted.html || { echo "no word: $word"; return 1; }
+    done
+    # the abstract is made of the database: another verdict, another abstract
+    speedups link 24:2300
+    verdict C2 '' fail
+    works mimdsim report planted.db --quiet
+    grep -q 'of 2 claims that were judged, 0 hold and 2 do not (C1, C2)' planted.md
+}
+
 @test "without runs nothing can be told, and the table says so" {
     template
     works mimdsim claims planted.db --json
