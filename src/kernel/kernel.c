@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "kernel/micro.h"
+#include "kernel/micro_collective.h"
 
 /* What each precision's archive defines (dynamics_kernel.h, seen from outside any precision). */
 extern const struct kernel_type inverse_kernel_f32, inverse_kernel_f64, inverse_kernel_f128;
@@ -13,7 +14,11 @@ extern const struct kernel_type inverse_kernel_planar_f32, inverse_kernel_planar
 extern const struct kernel_type forward_kernel_planar_f32, forward_kernel_planar_f64, forward_kernel_planar_f128;
 extern const struct kernel_type dynamics_kernel_planar_f32, dynamics_kernel_planar_f64, dynamics_kernel_planar_f128;
 
-#define MICRO &pingpong_kernel, &shift_kernel, &bisection_kernel, &all_to_all_kernel, &hot_spot_kernel, &barrier_kernel
+#define MICRO                                                                                                          \
+    &pingpong_kernel, &shift_kernel, &bisection_kernel, &all_to_all_kernel, &hot_spot_kernel, &ring_kernel,            \
+        &random_ring_kernel, &barrier_kernel, &message_barrier_kernel, &broadcast_kernel, &reduce_kernel,              \
+        &allreduce_kernel, &gather_kernel, &scatter_kernel, &allgather_kernel, &alltoall_kernel, &alltoallv_kernel,    \
+        &scan_kernel, &reduce_scatter_kernel
 
 static const struct kernel_type *const in_double[] = {&inverse_kernel_f64, &forward_kernel_f64, &dynamics_kernel_f64,
                                                       MICRO};

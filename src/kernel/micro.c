@@ -1,6 +1,7 @@
 /* micro.c - micro-benchmarks of a machine's messages (micro.h). */
 #include "kernel/micro.h"
 
+#include "comm/collectives.h"
 #include "kernel/tags.h"
 
 static const char *const stage_name[] = {"exchange"};
@@ -88,10 +89,15 @@ static void shift_run(struct comm *c, const struct kernel_job *job, void *worksp
 
 static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *workspace)
 {
-    const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job);
+    const int repeat = repetitions(job);
     const int64_t begin = comm_now_ps(c);
-    for (int k = 0; k < repeat; k++)
-        for (int d = 1; d < P; d++) exchange(c, (rank + d) % P, (rank - d + P) % P, workspace, message_bytes(job));
+    struct collective_call call = {.kind = COLLECTIVE_ALLTOALL, .comm = c, .tag = TAG_BENCH, .one_place = true};
+    call.count = message_bytes(job);
+    call.element = 1;
+    call.send = workspace;
+    call.recv = (char *)workspace + message_bytes(job);
+    const struct collective_algorithm *pairwise = collective_algorithm_find(COLLECTIVE_ALLTOALL, "pairwise");
+    for (int k = 0; k < repeat; k++) collective_run(pairwise, &call);
     note(c, begin, repeat);
 }
 

@@ -21,6 +21,11 @@ extern const struct kernel_type bisection_kernel;
 /* hot-spot: every rank sends to rank 0; time per repetition. */
 extern const struct kernel_type hot_spot_kernel;
 
+/* ring, random-ring: every rank sends to and receives from both its neighbours at once, as the effective bandwidth
+ * benchmark's patterns (Rabenseifner, Koniges 2001); in the order of ranks, or in one drawn from the run's seed; in
+ * rings of kernel_spec.ring_ranks or a little more. Time per repetition. */
+extern const struct kernel_type ring_kernel, random_ring_kernel;
+
 /* barrier: time per barrier. */
 extern const struct kernel_type barrier_kernel;
 

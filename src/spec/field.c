@@ -104,6 +104,7 @@ static bool set_text(const struct field *f, char *place, const char *text, char 
     if (length >= (size_t)f->capacity) return field_refuse(why, size, "too long; at most %d bytes", f->capacity - 1);
     for (const char *s = text; *s != '\0'; s++)
         if ((unsigned char)*s < 0x20) return field_refuse(why, size, "control characters are not allowed in a name");
+    if (f->valid != NULL && !f->valid(text, why, size)) return false;
     memset(place, 0, (size_t)f->capacity);
     memcpy(place, text, length);
     return true;

@@ -47,6 +47,8 @@ struct field {
     const char *fallback;      /* default as text; NULL: has to be given */
     const char *doc;           /* one line for the manual */
     field_idle_fn *idle;       /* NULL: acts in every run */
+    bool (*valid)(const char *text, char *why, int size); /* FIELD_TEXT: whether it may be this, else a clause why not;
+                                                             NULL: any text may */
     bool label;                /* true: for people only, no part of a run's identity */
 };
 

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "comm/collective_rules.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct kernel_spec, member)
@@ -17,10 +18,21 @@ static const char *const residuals[] = {"working", "twice", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
 static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", "linearly-implicit", NULL};
-static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier", "hot-spot", "shift"};
+static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier",
+                                         "hot-spot", "shift",     "ring",       "random-ring"};
+static const char *const further_collectives[] = {"alltoallv", "message-barrier"};
+
+bool kernel_spec_is_collective(const struct kernel_spec *k)
+{
+    for (size_t i = 0; i < sizeof further_collectives / sizeof *further_collectives; i++)
+        if (strcmp(k->name, further_collectives[i]) == 0) return true;
+    enum collective_kind kind = collective_find(k->name);
+    return kind != COLLECTIVE_KINDS && kind != COLLECTIVE_BARRIER;
+}
 
 bool kernel_spec_needs_model(const struct kernel_spec *k)
 {
+    if (kernel_spec_is_collective(k)) return false;
     for (size_t i = 0; i < sizeof benchmarks / sizeof *benchmarks; i++)
         if (strcmp(k->name, benchmarks[i]) == 0) return false;
     return true;
@@ -93,7 +105,33 @@ static const char *idle_without_message(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    return strcmp(r->kernel.name, "barrier") == 0 ? "a barrier has no size" : NULL;
+    bool barrier = strcmp(r->kernel.name, "barrier") == 0 || strcmp(r->kernel.name, "message-barrier") == 0;
+    return barrier ? "a barrier has no size" : NULL;
+}
+
+static const char *idle_without_algorithm(const struct run_spec *r)
+{
+    const char *why = idle_with_model(r);
+    if (why != NULL) return why;
+    return kernel_spec_is_collective(&r->kernel) ? NULL : "only collectives have algorithms";
+}
+
+static const char *idle_without_root(const struct run_spec *r)
+{
+    static const char *const rooted[] = {"broadcast", "reduce", "gather", "scatter"};
+    const char *why = idle_with_model(r);
+    if (why != NULL) return why;
+    for (size_t i = 0; i < sizeof rooted / sizeof *rooted; i++)
+        if (strcmp(r->kernel.name, rooted[i]) == 0) return NULL;
+    return "only broadcast, reduce, gather and scatter have a root";
+}
+
+static const char *idle_unless_ring(const struct run_spec *r)
+{
+    const char *why = idle_with_model(r);
+    if (why != NULL) return why;
+    bool ring = strcmp(r->kernel.name, "ring") == 0 || strcmp(r->kernel.name, "random-ring") == 0;
+    return ring ? NULL : "only 'ring' and 'random-ring' have rings";
 }
 
 static const char *idle_without_branch_choice(const struct run_spec *r)
@@ -181,6 +219,13 @@ static const struct field fields[] = {
      .fallback = "0 B", .idle = idle_without_message, .doc = "benchmarks: size of a message"},
     {.key = "distance", .kind = FIELD_INT, AT(distance), .min = 0, .max = 1 << 30, .fallback = "1",
      .idle = idle_unless_shift, .doc = "benchmarks: how many ranks away the partner is"},
+    {.key = "algorithm", .kind = FIELD_TEXT, AT(algorithm), .capacity = 32, .fallback = "auto",
+     .valid = collective_choice_valid, .idle = idle_without_algorithm,
+     .doc = "collectives: an algorithm by name (docs/collectives.md), or by machine.software.collectives and size"},
+    {.key = "root", .kind = FIELD_INT, AT(root), .min = -(1 << 30), .max = 1 << 30, .fallback = "0",
+     .idle = idle_without_root, .doc = "collectives: the rank that has or gets all; -1: the last"},
+    {.key = "ring_ranks", .kind = FIELD_INT, AT(ring_ranks), .min = 0, .max = 1 << 30, .fallback = "0",
+     .idle = idle_unless_ring, .doc = "ring, random-ring: ranks of one ring, 0: all ranks in one"},
 };
 
 const struct field_table kernel_table = {

@@ -35,13 +35,19 @@ struct kernel_spec {
     int steps;                   /* time steps; 0: one evaluation */
     double step_size;            /* [s] */
     enum step_rule step;         /* how a time step is made, physics 9 */
+    char algorithm[32];          /* collectives: by name, or "auto" */
     int repeat;                  /* micro-benchmarks: repetitions */
+    int ring_ranks;              /* ring, random-ring: of one ring; 0: all in one */
     int64_t message_bytes;       /* micro-benchmarks: size [B] */
     int distance;                /* shift: rank distance */
+    int root;                    /* collectives: rank; from the end when negative */
 };
 
 /* kernel_spec_needs_model: false for the message benchmarks. */
 bool kernel_spec_needs_model(const struct kernel_spec *k);
+
+/* kernel_spec_is_collective: whether it is a collective whose algorithm can be chosen. */
+bool kernel_spec_is_collective(const struct kernel_spec *k);
 
 /* kernel_spec_implicit: whether its time steps treat springs linearly implicitly; false without steps. */
 static inline bool kernel_spec_implicit(const struct kernel_spec *k)

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "comm/collective_rules.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct machine_spec, member)
@@ -173,6 +174,11 @@ static const char *idle_unless_background(const struct run_spec *r)
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
 }
 
+static const char *idle_without_collectives(const struct run_spec *r)
+{
+    return kernel_spec_is_collective(&r->kernel) ? NULL : "this kernel calls no collective that it chooses";
+}
+
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
      .doc = "name in tables and figures; the file's stem unless set"},
@@ -296,6 +302,10 @@ static const struct field fields[] = {
      .max = 10, .fallback = "0 s", .idle = idle_unless_server, .doc = "its service time for one message end"},
     {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.kernel_per_byte),
      .min = 0, .max = 1, .fallback = "0 s/B", .idle = idle_unless_server, .doc = "and per byte"},
+    {.key = "software.collectives", .kind = FIELD_TEXT, AT(software.collectives), .capacity = 512, .fallback = "",
+     .valid = collective_rules_valid, .idle = idle_without_collectives,
+     .doc = "algorithms that the message software takes: 'allreduce ring from 64 KiB on 8 ranks; ...', the last that "
+            "matches counts; else MPICH's choice (docs/collectives.md)"},
     {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
      .fallback = "software", .doc = "barrier built from messages or by the machine"},
     {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,

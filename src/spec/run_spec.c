@@ -12,12 +12,14 @@ bool run_spec_is_random(const struct run_spec *r)
     const struct machine_spec *m = &r->machine;
     bool chooses = m->topology.family == TOPOLOGY_DRAGONFLY || m->topology.family == TOPOLOGY_FAT_TREE;
     bool valiant = chooses && m->topology.routing == ROUTE_VALIANT;
-    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant;
+    bool order = strcmp(r->kernel.name, "random-ring") == 0;
+    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || order;
 }
 
 static const char *idle_unless_random(const struct run_spec *r)
 {
-    return run_spec_is_random(r) ? NULL : "there is no noise, no background traffic and no random route";
+    return run_spec_is_random(r) ? NULL
+                                 : "there is no noise, no background traffic, no random route and no random ring";
 }
 
 static const char *const baseline_rules[] = {"all", "needed", NULL};

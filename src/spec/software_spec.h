@@ -52,6 +52,7 @@ struct software_spec {
     bool kernel_server;        /* one shared server per machine handles every message (TCP loopback) */
     double kernel_time;        /* its service time per message end [s] */
     double kernel_per_byte;    /* and per byte [s/B] */
+    char collectives[512];     /* rules of comm/collective_rules.h */
     enum barrier_kind barrier;
     double barrier_time;       /* hardware barrier, last arrival to release [s] */
     double shared_latency;     /* channel within a node: latency [s] */

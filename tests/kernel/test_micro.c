@@ -6,13 +6,18 @@
 
 #include <cmocka.h>
 
+#include <string.h>
+
+#include "comm/collective_rules.h"
 #include "evaluation.h"
+#include "kernel/micro_collective.h"
 
 static void messages_and_bytes_are_as_announced(void **state)
 {
     (void)state;
-    static const char *const names[] = {"pingpong", "shift", "bisection", "all-to-all", "hot-spot", "barrier"};
-    for (int k = 0; k < 6; k++)
+    static const char *const names[] = {"pingpong", "shift", "bisection", "all-to-all",
+                                        "hot-spot", "barrier", "ring",    "random-ring"};
+    for (int k = 0; k < 8; k++)
         for (int P = 2; P <= 12; P += 2)
             for (int64_t bytes = 0; bytes <= 100000; bytes = 100 * bytes + 8) {
                 struct arena *a = arena_create();
@@ -30,6 +35,87 @@ static void messages_and_bytes_are_as_announced(void **state)
             }
 }
 
+/* Every algorithm that can: what the formula says is sent and computed, from and to any root. */
+static void collectives_are_as_announced(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"broadcast", "reduce",         "allreduce",      "gather",
+                                        "scatter",   "allgather",      "alltoall",       "scan",
+                                        "alltoallv", "reduce-scatter", "message-barrier"};
+    for (int k = 0; k < 11; k++)
+        for (int P = 1; P <= 17; P += 1 + P / 4)
+            for (int64_t bytes = 0; bytes <= 10000; bytes = 30 * bytes + 12) {
+                struct run_spec s = evaluation_spec(names[k], 1, P);
+                int n;
+                s.kernel.repeat = 2;
+                s.kernel.message_bytes = bytes;
+                s.kernel.root = -1;
+                const struct collective_algorithm *row = collective_algorithms(micro_collective_shape(&s).kind, &n);
+                for (int i = -1; i < n; i++) {
+                    struct err e = {0};
+                    struct kernel_estimate wanted;
+                    struct arena *a = arena_create();
+                    strcpy(s.kernel.algorithm, i < 0 ? "auto" : row[i].name);
+                    if (kernel_find(names[k])->accepts(&s, NULL, &e)) {
+                        const struct evaluation v = evaluate(&s, a);
+                        kernel_find(names[k])->estimate(&s, NULL, NULL, &wanted);
+                        assert_int_equal(v.counts.messages, (int64_t)wanted.messages);
+                        assert_int_equal(v.counts.bytes, (int64_t)wanted.bytes);
+                        assert_int_equal(v.counts.stage_work[0].flop, (uint64_t)wanted.flops);
+                    } else assert_non_null(strstr(e.text, "it needs"));
+                    arena_destroy(a);
+                }
+            }
+}
+
+static const char *chosen(const char *kernel, int P, int64_t bytes, const char *rules)
+{
+    struct err e = {0};
+    struct run_spec s = evaluation_spec(kernel, 1, P);
+    s.kernel.message_bytes = bytes;
+    strcpy(s.machine.software.collectives, rules);
+    const struct collective_algorithm *a = micro_collective_algorithm(&s, &e);
+    return a ? a->name : "";
+}
+
+static void the_machine_may_state_the_algorithms(void **state)
+{
+    (void)state;
+    static const char rules[] = "[allreduce reduce-broadcast, allreduce ring from 1 KiB on 4 ranks; gather linear]";
+    assert_string_equal(chosen("allreduce", 8, 8, ""), "recursive-doubling");
+    assert_string_equal(chosen("allreduce", 8, 8, rules), "reduce-broadcast");
+    assert_string_equal(chosen("allreduce", 8, 1024, rules), "ring");
+    assert_string_equal(chosen("allreduce", 3, 1024, rules), "reduce-broadcast");
+    assert_string_equal(chosen("gather", 3, 1024, rules), "linear");
+    assert_string_equal(chosen("scatter", 3, 1024, rules), "binomial");
+    assert_string_equal(chosen("alltoallv", 8, 8, ""), "linear");
+}
+
+static void refused(const char *rules, const char *expected)
+{
+    char why[320] = "";
+    assert_false(collective_rules_valid(rules, why, (int)sizeof why));
+    if (!strstr(why, expected)) fail_msg("'%s': %s", rules, why);
+}
+
+static void bad_rules_say_what_is_expected(void **state)
+{
+    (void)state;
+    char why[320];
+    refused("brodcast binomial", "expected 'broadcast'");
+    refused("broadcast bruck", "expected one of binomial, scatter-allgather");
+    refused("broadcast", "has no algorithm ''");
+    refused("broadcast binomial from 8", "no unit");
+    refused("broadcast binomial from -8 B", "no size");
+    refused("broadcast binomial from 8 B on two ranks", "expected a number of ranks");
+    refused("broadcast binomial above 8 B", "expected 'from SIZE'");
+    assert_true(collective_rules_valid(" [ ] ", why, (int)sizeof why));
+    assert_true(collective_rules_valid("broadcast binomial on 8 from 2 KiB", why, (int)sizeof why));
+    assert_true(collective_choice_valid("ring", why, (int)sizeof why));
+    assert_false(collective_choice_valid("rink", why, (int)sizeof why));
+    assert_non_null(strstr(why, "'ring'"));
+}
+
 static void what_makes_no_sense_is_refused(void **state)
 {
     (void)state;
@@ -41,6 +127,18 @@ static void what_makes_no_sense_is_refused(void **state)
     s.nrank = 3;
     assert_false(kernel_find("bisection")->accepts(&s, NULL, &e));
     assert_null(kernel_find("ping"));
+    err_clear(&e);
+    s = evaluation_spec("alltoall", 1, 3);
+    strcpy(s.kernel.algorithm, "xor");
+    assert_false(kernel_find("alltoall")->accepts(&s, NULL, &e));
+    assert_non_null(strstr(e.text, "power of two"));
+    err_clear(&e);
+    s = evaluation_spec("broadcast", 1, 3);
+    s.kernel.root = 3;
+    assert_false(kernel_find("broadcast")->accepts(&s, NULL, &e));
+    err_clear(&e);
+    s.kernel.ring_ranks = 1;
+    assert_false(kernel_find("ring")->accepts(&s, NULL, &e));
 }
 
 static void every_kernel_is_complete_in_every_precision(void **state)
@@ -63,6 +161,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(messages_and_bytes_are_as_announced),
+        cmocka_unit_test(collectives_are_as_announced),
+        cmocka_unit_test(the_machine_may_state_the_algorithms),
+        cmocka_unit_test(bad_rules_say_what_is_expected),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(every_kernel_is_complete_in_every_precision),
     };

@@ -136,7 +136,10 @@ static void random_value(const struct field *f, struct random *r, char *text, si
         break;
     }
     case FIELD_TEXT:
-        snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000));
+        if (strcmp(f->key, "software.collectives") == 0)
+            snprintf(text, size, "reduce chain; scan linear from %llu B", (unsigned long long)random_below(r, 100000));
+        else if (f->valid) snprintf(text, size, "ring");
+        else snprintf(text, size, "name-%llu", (unsigned long long)random_below(r, 100000));
         break;
     case FIELD_INTS:
         snprintf(text, size, "[%llu, 3]", (unsigned long long)random_below(r, 50) + 1);

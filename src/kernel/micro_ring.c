@@ -1,0 +1,135 @@
+/* micro_ring.c - ring and random-ring: every rank sends to both its neighbours (micro.h). */
+#include "base/random.h"
+#include "kernel/carve.h"
+#include "kernel/micro.h"
+#include "kernel/tags.h"
+
+static const char *const stage_name[] = {"exchange"};
+
+/* Who stands where: rings lie one behind the other. */
+struct ring {
+    int *member; /* (nrank) rank at each place */
+    int *place;  /* (nrank) of each rank */
+    int nring;
+};
+
+static int64_t message_bytes(const struct kernel_job *job) { return job->spec->kernel.message_bytes; }
+
+static int repetitions(const struct run_spec *spec) { return spec->kernel.repeat > 1 ? spec->kernel.repeat : 1; }
+
+static int ring_count(const struct run_spec *spec)
+{
+    const int size = spec->kernel.ring_ranks;
+    return size > 0 && size < spec->nrank ? spec->nrank / size : 1;
+}
+
+static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
+{
+    (void)model;
+    if (spec->kernel.message_bytes < 0)
+        return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)spec->kernel.message_bytes);
+    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d processors: a ring needs two", spec->nrank);
+    return spec->kernel.ring_ranks != 1 || err_set(e, ERR_CONFIG, "kernel.ring_ranks is 1: a ring needs two ranks");
+}
+
+/* Fisher and Yates, from the run's seed. */
+static void shuffle(int *member, int n, uint64_t seed)
+{
+    struct random r = random_make(seed, 0x72696e67, (uint64_t)n);
+    for (int i = n - 1; i > 0; i--) {
+        int k = (int)random_below(&r, (uint64_t)i + 1), kept = member[i];
+        member[i] = member[k];
+        member[k] = kept;
+    }
+}
+
+static bool prepare_order(struct kernel_job *job, struct arena *a, bool random)
+{
+    const int P = job->spec->nrank;
+    struct ring *g = TAKE(a, 1, struct ring);
+    g->member = TAKE(a, P, int);
+    g->place = TAKE(a, P, int);
+    g->nring = ring_count(job->spec);
+    for (int i = 0; i < P; i++) g->member[i] = i;
+    if (random) shuffle(g->member, P, job->spec->seed);
+    for (int i = 0; i < P; i++) g->place[g->member[i]] = i;
+    job->shared = g;
+    return true;
+}
+
+static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
+{
+    (void)e;
+    return prepare_order(job, a, false);
+}
+
+static bool prepare_random(struct kernel_job *job, struct arena *a, struct err *e)
+{
+    (void)e;
+    return prepare_order(job, a, true);
+}
+
+static size_t workspace_bytes(const struct kernel_job *job, int rank)
+{
+    (void)rank;
+    return 3 * (size_t)message_bytes(job) + 16;
+}
+
+/* neighbour: `step` places further round the ring of rank `rank`; rings differ by one place at most. */
+static int neighbour(const struct ring *g, int P, int rank, int step)
+{
+    const int64_t place = g->place[rank], ring = ((place + 1) * g->nring - 1) / P;
+    const int64_t first = ring * P / g->nring, n = (ring + 1) * P / g->nring - first;
+    return g->member[first + (place - first + step + n) % n];
+}
+
+static void run(struct comm *c, const struct kernel_job *job, void *workspace)
+{
+    const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job->spec);
+    const int left = neighbour(job->shared, P, rank, -1), right = neighbour(job->shared, P, rank, 1);
+    const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
+    char *out = workspace, *in = out + bytes;
+    for (int k = 0; k < repeat; k++) {
+        struct comm_request r[4] = {{0}};
+        comm_irecv(c, left, TAG_BENCH, in, bytes, &r[0]);
+        comm_irecv(c, right, TAG_BENCH + 1, in + bytes, bytes, &r[1]);
+        comm_isend(c, right, TAG_BENCH, out, bytes, &r[2]);
+        comm_isend(c, left, TAG_BENCH + 1, out, bytes, &r[3]);
+        comm_waitall(c, 4, r);
+    }
+    const double seconds = (double)(comm_now_ps(c) - begin) * 1e-12 / repeat;
+    comm_publish(c, OUTPUT_SECONDS, rank, 1, &seconds);
+}
+
+static void estimate(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
+                     struct kernel_estimate *out)
+{
+    (void)model, (void)omit;
+    *out = (struct kernel_estimate){.messages = 2.0 * spec->nrank * repetitions(spec)};
+    out->bytes = out->messages * (double)spec->kernel.message_bytes;
+    out->rank_bytes = 3.0 * (double)spec->kernel.message_bytes + 16;
+}
+
+const struct kernel_type ring_kernel = {
+    .name = "ring",
+    .title = "every rank sends to both its neighbours in a ring",
+    .nstage = 1,
+    .stage_name = stage_name,
+    .accepts = accepts,
+    .prepare = prepare,
+    .workspace_bytes = workspace_bytes,
+    .run = run,
+    .estimate = estimate,
+};
+
+const struct kernel_type random_ring_kernel = {
+    .name = "random-ring",
+    .title = "the same with the ranks in random order",
+    .nstage = 1,
+    .stage_name = stage_name,
+    .accepts = accepts,
+    .prepare = prepare_random,
+    .workspace_bytes = workspace_bytes,
+    .run = run,
+    .estimate = estimate,
+};
