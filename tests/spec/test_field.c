@@ -77,6 +77,8 @@ static void every_member_of_a_run_has_one_field(void **state)
     memset(covered + offsetof(struct run_spec, rep), 1, sizeof(int)); /* what the plan itself fills in */
     memset(covered + offsetof(struct run_spec, config_hash), 1, 65);
     memset(covered + offsetof(struct run_spec, config_text), 1, sizeof(char *));
+    memset(covered + offsetof(struct run_spec, machine_changes), 1, sizeof(char *));
+    memset(covered + offsetof(struct run_spec, machine_hash), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, pulse), 1, sizeof(void *));
     memset(covered + offsetof(struct run_spec, level_choice), 1, sizeof(struct level_choice));
     memset(covered + offsetof(struct run_spec, keep), 1, sizeof(unsigned)); /* no setting: results are the same */
