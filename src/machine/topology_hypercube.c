@@ -1,13 +1,18 @@
-/* topology_hypercube.c - binary n-cubes with e-cube routes, and the 16-processor Origin's Xpress links.
+/* topology_hypercube.c - binary n-cubes with e-cube routes, and the Origin's Xpress links on spare ports of routers.
  *
- * The link that leaves router r in dimension d is r n + d. With Xpress, one more link per
- * router, n 2^n + r, joins opposite corners; a route between opposite corners takes it, others are e-cube. */
+ * The link that leaves router r in dimension d is r n + d. Xpress links follow, for n up to 2 one beside each of them,
+ * n 2^n + r n + d: what goes to a router's odd nodes takes them. From n = 3 on there is one a router, n 2^n + r, to the
+ * opposite corner; a route between opposite corners takes it, others are e-cube. */
 #include "base/check.h"
 #include "machine/topology_internal.h"
 
+/* A router of the Origin has six ports, two of them for nodes: with up to two dimensions each link has a spare pair. */
+enum { MOST_DOUBLED = 2 };
+
 struct hypercube {
     int ndim;
-    bool xpress;
+    bool doubled;  /* Xpress links lie beside the cube's */
+    bool diagonal; /* they join opposite corners */
 };
 
 static bool hypercube_create(struct topology *t, struct arena *a, struct err *e)
@@ -17,17 +22,16 @@ static bool hypercube_create(struct topology *t, struct arena *a, struct err *e)
     int n = s->dims[0];
     if (n < 0 || n > 24)
         return err_set(e, ERR_CONFIG, "topology hypercube: %d dimensions; expected 0 to 24 (2^n routers)", n);
-    if (s->xpress && n < 2)
-        return err_set(e, ERR_CONFIG,
-                       "topology hypercube: Xpress links need opposite corners, so at least 2 dimensions");
+    if (s->xpress && n < 1)
+        return err_set(e, ERR_CONFIG, "topology hypercube: Xpress links join two routers, so at least 1 dimension");
     g->ndim = n;
-    g->xpress = s->xpress;
+    g->doubled = s->xpress && n <= MOST_DOUBLED;
+    g->diagonal = s->xpress && !g->doubled;
     t->state = g;
     t->nrouter = 1 << n;
-    t->nport = n + (g->xpress ? 1 : 0);
+    t->nport = n + (g->doubled ? n : 0) + (g->diagonal ? 1 : 0);
     t->nlink = t->nport << n;
-    t->max_hops = g->xpress && n == 2 ? 1 : n;
-    if (g->xpress && n > 2) t->max_hops = n - 1;
+    t->max_hops = g->diagonal ? n - 1 : n;
     return true;
 }
 
@@ -44,15 +48,16 @@ static bool hypercube_next(const struct topology *t, struct route_cursor *c, str
     unsigned diff = (unsigned)(c->router ^ c->target), all = (1u << g->ndim) - 1;
     if (diff == 0) return false;
     h->vc_class = 0;
-    if (g->xpress && diff == all) {
+    if (g->diagonal && diff == all) {
         h->link = (g->ndim << g->ndim) + c->router;
         h->port = g->ndim;
         c->router = c->target;
         return true;
     }
     int d = __builtin_ctz(diff);
-    h->link = c->router * g->ndim + d;
-    h->port = d;
+    bool beside = g->doubled && c->at % 2;
+    h->link = c->router * g->ndim + d + (beside ? g->ndim << g->ndim : 0);
+    h->port = d + (beside ? g->ndim : 0);
     c->router ^= 1 << d;
     return true;
 }
@@ -61,7 +66,7 @@ static int hypercube_distance(const struct topology *t, int from, int to)
 {
     const struct hypercube *g = t->state;
     unsigned diff = (unsigned)(from ^ to);
-    if (g->xpress && diff == (1u << g->ndim) - 1) return 1;
+    if (g->diagonal && diff == (1u << g->ndim) - 1) return 1;
     return __builtin_popcount(diff);
 }
 
@@ -69,15 +74,17 @@ static void hypercube_ends(const struct topology *t, int link, int *from, int *t
 {
     const struct hypercube *g = t->state;
     int first_xpress = g->ndim << g->ndim;
-    if (link >= first_xpress) {
+    bool beside = g->doubled && link >= first_xpress;
+    if (g->diagonal && link >= first_xpress) {
         *from = link - first_xpress;
         *to = *from ^ ((1 << g->ndim) - 1);
         *port = g->ndim;
         return;
     }
+    link -= beside ? first_xpress : 0;
     *from = link / g->ndim;
-    *port = link % g->ndim;
-    *to = *from ^ (1 << *port);
+    *to = *from ^ (1 << link % g->ndim);
+    *port = link % g->ndim + (beside ? g->ndim : 0);
 }
 
 static int hypercube_rate_dim(const struct topology *t, int link)

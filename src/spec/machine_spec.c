@@ -207,7 +207,9 @@ static const struct field fields[] = {
      .fallback = "minimal", .idle = idle_unless_dragonfly,
      .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
-     .idle = idle_unless_hypercube, .doc = "further links between opposite routers (Origin2000 with 16 processors)"},
+     .idle = idle_unless_hypercube,
+     .doc = "further links on spare ports (Origin2000): one beside each link, from 3 dimensions on one to the opposite "
+            "router"},
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
      .max = 1 << 24, .fallback = "[]", .idle = idle_unless_graph, .doc = "graph: router pairs, each joined both ways"},
     {.key = "topology.link_percent", .kind = FIELD_INT_LIST, AT(topology.link_percent), COUNT(topology.nlink_percent),

@@ -42,7 +42,7 @@ struct topology_spec {
     int processors_per_node;        /* >= 1 */
     enum tie_rule tie;
     enum dragonfly_routing routing;
-    bool xpress;                    /* 16-processor Origin: the extra links between opposite routers */
+    bool xpress;                    /* Origin: further links on the routers' spare ports */
     int nlink;                      /* graph: number of undirected links, 0 otherwise */
     int (*link)[2];                 /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
     int nlink_percent;              /* graph: 0, nlink or 2 nlink */

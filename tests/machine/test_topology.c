@@ -348,7 +348,7 @@ static void impossible_networks_are_refused(void **state)
         {.family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 0}},
         {.family = TOPOLOGY_TORUS, .ndim = 4, .dims = {2000, 2000, 2000, 2000}},
         {.family = TOPOLOGY_HYPERCUBE, .ndim = 1, .dims = {31}},
-        {.family = TOPOLOGY_HYPERCUBE, .ndim = 1, .dims = {1}, .xpress = true},
+        {.family = TOPOLOGY_HYPERCUBE, .ndim = 1, .dims = {0}, .xpress = true},
         {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {1, 3}},
         {.family = TOPOLOGY_FAT_TREE, .ndim = 2, .dims = {64, 8}},
         {.family = TOPOLOGY_DRAGONFLY, .ndim = 4, .dims = {2, 4, 2, 10}},
@@ -378,9 +378,46 @@ static void impossible_networks_are_refused(void **state)
     }
 }
 
+/* The Origin's square: two links beside each other on every side, one for the even nodes of a router and one for the
+ * odd; opposite corners are two links apart, on a cube of eight one. */
+static void test_xpress(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct err e;
+    struct topology_spec s = {.family = TOPOLOGY_HYPERCUBE,
+                              .ndim = 1,
+                              .dims = {2},
+                              .xpress = true,
+                              .nodes_per_router = 2,
+                              .processors_per_node = 2};
+    err_clear(&e);
+    const struct topology *t = topology_create(&s, a, &e);
+    assert_non_null(t);
+    assert_int_equal(t->nlink, 16);
+    assert_int_equal(t->max_hops, 2);
+    assert_int_equal(topology_distance(t, 0, 6), 2);
+    struct hop even[2], odd[2];
+    assert_int_equal(topology_route(t, 0, 2, 0, even), 1);
+    assert_int_equal(topology_route(t, 0, 3, 0, odd), 1);
+    int from[2], to[2], port[2];
+    topology_link_ends(t, even[0].link, &from[0], &to[0], &port[0]);
+    topology_link_ends(t, odd[0].link, &from[1], &to[1], &port[1]);
+    assert_true(even[0].link != odd[0].link && port[0] != port[1]);
+    assert_true(from[0] == from[1] && to[0] == to[1]);
+    assert_true(port[0] == even[0].port && port[1] == odd[0].port);
+    s.dims[0] = 3;
+    t = topology_create(&s, a, &e);
+    assert_non_null(t);
+    assert_int_equal(topology_distance(t, 0, 14), 1);
+    assert_int_equal(topology_distance(t, 0, 6), 2);
+    arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_xpress),
         cmocka_unit_test(every_link_ends_at_a_port_of_its_own),
         cmocka_unit_test(injection_ports_follow_those_of_links),
         cmocka_unit_test(routes_join_their_ends_and_are_shortest),
