@@ -42,6 +42,24 @@ static void append_joints(struct verify_answers *x, const struct vector_case *c,
     }
 }
 
+static void parts_find(struct verify_answers *x, const struct vector_case *c)
+{
+    for (int i = 0; i < c->nbody; i++) {
+        int n = vector_joint_nv(c->body[i].joint), v = c->body[i].v;
+        for (int k = 0; k < n; k++) x->part[v + k] = v + k - (n < 3 ? 0 : k % 3);
+    }
+}
+
+/* The mass matrix: what one joint's linear or angular part has to do with another's is one block. */
+static void append_matrix(struct verify_answers *x, const struct vector_case *c)
+{
+    int nv = c->nv, start = x->n;
+    if (!c->mass_matrix) return;
+    append(x, c->mass_matrix, nv * nv, 1);
+    for (int i = 0; i < nv; i++)
+        for (int k = 0; k < nv; k++) x->group[start + i * nv + k] = start + x->part[i] * nv + x->part[k];
+}
+
 static void append_poses(struct verify_answers *x, const struct vector_case *c)
 {
     for (int i = 0; i < c->npose; i++) {
@@ -70,7 +88,7 @@ static void append_quantity(struct verify_answers *x, const struct vector_case *
     case VERIFY_ANGULAR: append(x, c->angular, c->has_momentum ? 3 : 0, 3); break;
     case VERIFY_COM: append(x, c->com_world, c->has_com ? 3 : 0, 3); break;
     case VERIFY_TOTAL_MASS: append(x, &c->total_mass, c->has_com, 1); break;
-    case VERIFY_MASS_MATRIX: append(x, c->mass_matrix, c->mass_matrix ? c->nv * c->nv : 0, 1); break;
+    case VERIFY_MASS_MATRIX: append_matrix(x, c); break;
     case VERIFY_LAMBDA: append(x, c->lambda, c->lambda ? c->nrow : 0, 1); break;
     case VERIFY_QUANTITIES: break;
     }
@@ -164,25 +182,121 @@ static bool put_forward(const struct verify_answers *x, const struct model *m, c
 
 /* --- scales ------------------------------------------------------------------------------------------------------ */
 
+/* What joints transmit, as a force and a moment for each body, in the states that answers are given for. A joint's
+ * force is a component of it. Where that component cancels whatever the inputs are, as a ball's gyroscopic moment does,
+ * no input can move it; then, and only then, a rounding of what it is a component of is what moves it. */
+static const double cancels = 1e-18; /* of the other scale: what quad precision leaves of a number that cancels */
+
+enum load { LOAD_INVERSE, LOAD_BIAS, LOAD_REST, LOAD_FORWARD, LOADS };
+
+struct sampler {
+    struct verify_answers *x;
+    const struct vector_case *c;
+    struct arena *a;
+    double *wrench[LOADS], *scale[LOADS]; /* (6 nbody) exact; (2 nbody) force, moment */
+    double *qdd;                          /* (nv) exact */
+};
+
+static void wrenches_of(const struct sampler *p, const struct model *m, const struct state *s, enum load load,
+                        double *wrench)
+{
+    struct state at = *s;
+    double *zero = TAKE(p->a, m->nu + 1, double);
+    if (load == LOAD_BIAS || load == LOAD_REST) at.qdd = zero;
+    if (load == LOAD_REST) at.qd = zero, at.fext = NULL;
+    if (load == LOAD_FORWARD) at.qdd = p->qdd;
+    dynamics_type_of(PRECISION_QUAD)->wrenches(m, &at, p->a, wrench);
+}
+
+/* Scales at least what the wrenches are, and at least what they move by. */
+static void wrenches_take(const struct sampler *p, const struct model *m, const struct state *s, enum load load)
+{
+    struct arena_mark mark = arena_mark(p->a);
+    double *w = TAKE(p->a, 6 * (size_t)m->nbody, double);
+    wrenches_of(p, m, s, load, w);
+    for (int i = 0; i < 6 * m->nbody; i++) {
+        double *scale = &p->scale[load][i / 3], *exact = &p->wrench[load][i];
+        *scale = fmax(*scale, fmax(fabs(*exact), fabs(w[i] - *exact) / moved));
+    }
+    arena_release(p->a, mark);
+}
+
+/* The scale of the wrench that degree of freedom v of body i is a component of. */
+static double wrench_scale(const struct sampler *p, enum load load, int i, int v)
+{
+    enum vector_joint joint = p->c->body[i].joint;
+    bool linear = joint == VECTOR_PRISMATIC || (joint == VECTOR_FLOATING && v - p->c->body[i].v < 3);
+    return p->scale[load][2 * i + (linear ? 0 : 1)];
+}
+
+/* Joint forces that cancel; after `share`. */
+static void forces_mend(const struct sampler *p, enum verify_quantity k, enum load load)
+{
+    if (count_of(p->x, k) == 0) return;
+    for (int i = 0; i < p->c->nbody; i++)
+        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint); v++) {
+            double *scale = &p->x->scale[p->x->at[k] + v], other = wrench_scale(p, load, i, v);
+            if (*scale < cancels * other) *scale = other;
+        }
+}
+
+/* Accelerations that cancel: how far they move when joint forces move by roundings of what these are components of. */
+static void accelerations_mend(const struct sampler *p, const struct model *m, const struct state *s, struct random *r,
+                               double *y)
+{
+    struct verify_answers *x = p->x;
+    struct state shaken = *s;
+    int first = x->at[VERIFY_QDD_FD], n = count_of(x, VERIFY_QDD_FD);
+    double least = INFINITY, largest = 0;
+    for (int k = 0; k < n; k++) {
+        least = fmin(least, x->scale[first + k]);
+        largest = fmax(largest, x->scale[first + k]);
+    }
+    if (!x->forward || least > 1e-10 * largest) return; /* nothing cancels */
+    shaken.tau = TAKE(p->a, m->nu + 1, double);
+    for (int i = 0; i < p->c->nbody; i++)
+        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint); v++)
+            shaken.tau[v] = s->tau[v] + moved * wrench_scale(p, LOAD_FORWARD, i, v) * random_uniform(r, -1, 1);
+    if (!put_forward(x, m, &shaken, p->a, y, NULL)) return;
+    for (int k = first; k < first + n; k++) {
+        double other = fabs(y[k] - x->exact[k]) / moved;
+        if (x->scale[k] < cancels * other) x->scale[k] = other;
+    }
+}
+
 /* Fewer where a sample takes long: a sample of many bodies already holds many roundings. */
 static int samples_of(const struct vector_case *c) { return c->nbody > 200 ? 3 : 6; }
 
 /* One sample: scale at least what it moves. */
-static bool sample(struct verify_answers *x, const struct vector_case *c, struct random *r, struct arena *a,
-                   double *y, struct err *e)
+static bool sample(const struct sampler *p, struct random *r, double *y, struct err *e)
 {
-    struct arena_mark mark = arena_mark(a);
-    const struct vector_case *p = vector_perturb(c, moved, r, a);
-    struct model *m = vector_model(p, a, e);
+    struct verify_answers *x = p->x;
+    struct arena_mark mark = arena_mark(p->a);
+    const struct vector_case *c = vector_perturb(p->c, moved, r, p->a);
+    struct model *m = vector_model(c, p->a, e);
     if (!m) return false;
     system_prepare(m);
-    const struct state *s = vector_state(p, m, a);
-    verify_answers_compute(x, p, m, s, PRECISION_QUAD, a, y);
-    bool forward = x->forward && put_forward(x, m, s, a, y, NULL);
+    const struct state *s = vector_state(c, m, p->a);
+    for (int load = 0; load < LOADS; load++) wrenches_take(p, m, s, (enum load)load);
+    verify_answers_compute(x, c, m, s, PRECISION_QUAD, p->a, y);
+    bool forward = x->forward && put_forward(x, m, s, p->a, y, NULL);
     for (int i = 0; i < x->n; i++)
         if (i < x->at[VERIFY_QDD_FD] || forward) x->scale[i] = fmax(x->scale[i], fabs(y[i] - x->exact[i]) / moved);
-    arena_release(a, mark);
+    arena_release(p->a, mark);
     return true;
+}
+
+static struct sampler sampler_make(struct verify_answers *x, const struct vector_case *c, const struct model *m,
+                                   const struct state *s, struct arena *a)
+{
+    struct sampler p = {.x = x, .c = c, .a = a, .qdd = TAKE(a, c->nv + 1, double)};
+    if (x->forward) memcpy(p.qdd, x->exact + x->at[VERIFY_QDD_FD], (size_t)c->nv * sizeof *p.qdd);
+    for (int load = 0; load < LOADS; load++) {
+        p.wrench[load] = TAKE(a, 6 * (size_t)c->nbody, double);
+        p.scale[load] = TAKE(a, 2 * (size_t)c->nbody, double);
+        wrenches_of(&p, m, s, (enum load)load, p.wrench[load]);
+    }
+    return p;
 }
 
 /* One scale for all numbers of a vector. What cannot move is zero; of 77 digits that cancel, some 1e-77 is left. */
@@ -203,7 +317,9 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c, 
 {
     size_t room = room_for(c);
     *x = (struct verify_answers){.group = TAKE(a, room, int), .reference = TAKE(a, room, double),
-                                 .exact = TAKE(a, room, double), .scale = TAKE(a, room, double)};
+                                 .exact = TAKE(a, room, double), .scale = TAKE(a, room, double),
+                                 .part = TAKE(a, c->nv + 1, int)};
+    parts_find(x, c);
     for (int k = 0; k < VERIFY_QUANTITIES; k++) {
         x->at[k] = x->n;
         append_quantity(x, c, (enum verify_quantity)k);
@@ -212,11 +328,16 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c, 
     verify_answers_compute(x, c, m, s, PRECISION_QUAD, a, x->exact);
     x->forward = c->qdd_fd && put_forward(x, m, s, a, x->exact, &x->redundant);
     for (int i = 0; i < x->n; i++) x->scale[i] = fabs(x->exact[i]);
+    const struct sampler p = sampler_make(x, c, m, s, a);
     struct random r = random_make(1, 53, 0);
     double *y = TAKE(a, room, double);
     for (int k = samples_of(c); k > 0; k--)
-        if (!sample(x, c, &r, a, y, e)) return false;
+        if (!sample(&p, &r, y, e)) return false;
     share(x);
+    forces_mend(&p, VERIFY_TAU_ID, LOAD_INVERSE);
+    forces_mend(&p, VERIFY_BIAS, LOAD_BIAS);
+    forces_mend(&p, VERIFY_GRAVITY_TORQUE, LOAD_REST);
+    accelerations_mend(&p, m, s, &r, y);
     return true;
 }
 

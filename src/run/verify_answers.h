@@ -25,6 +25,7 @@ struct verify_answers {
     int n;                           /* numbers altogether */
     int at[VERIFY_QUANTITIES + 1];   /* where each quantity begins; none: the file does not hold it */
     int *group;                      /* (n) first number of the vector that it is part of */
+    int *part;                       /* (nv) the same for degrees of freedom: one joint's linear or angular part */
     double *reference;               /* (n) as the file has them */
     double *exact;                   /* (n) in quad precision; accelerations by articulated bodies */
     double *scale;                   /* (n) */
