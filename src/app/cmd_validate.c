@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/contention.h"
 #include "app/validation.h"
 #include "app/verb.h"
 #include "base/json.h"
@@ -21,7 +22,8 @@ static const char doc[] =
     "followed. "
     "A figure that was used for calibration may be missed by 10 % (5 % for wires and rates of cuts, 20 % for recalled "
     "figures, class PR), one that was not by 30 %. The exit status is 1 when one is missed by more and its row names "
-    "no cause. The summary tells the errors of both kinds apart.";
+    "no cause. The summary tells the errors of both kinds apart. A single machine is also asked what exchanges among "
+    "16 ranks get at every level of the network.";
 
 static void print_row(const struct published *p, const struct outcome *o)
 {
@@ -71,12 +73,8 @@ static void json_row(struct json *j, const struct published *p, const struct out
     json_pair(j, "high", p->high / p->scale);
     json_word(j, "id", p->id);
     if (o->contended) {
-        static const int sorted[VALIDATION_LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
         json_key(j, "levels");
-        json_object(j);
-        for (int i = 0; i < VALIDATION_LEVELS; i++)
-            json_pair(j, validation_level_name(sorted[i]), o->level[sorted[i]] / p->scale);
-        json_end(j);
+        validation_levels_json(o->level, p->scale, j);
     }
     json_pair(j, "low", p->low / p->scale);
     json_word(j, "machine", p->machine);
@@ -176,7 +174,9 @@ static void print_summary(const struct validation_summary *s)
     print_group("not used for calibration", &s->held);
 }
 
-static void print_table(const struct common *c, const struct table *t, const struct validation_summary *s)
+/* The points, contention where a single machine was asked for, and the summary. */
+static void print_table(const struct common *c, const struct table *t, const struct contention *row, int nrow,
+                        const struct validation_summary *s)
 {
     struct json j = json_make(stdout);
     if (!c->json)
@@ -187,10 +187,12 @@ static void print_table(const struct common *c, const struct table *t, const str
         print_levels(t->row[i], &t->outcome[i]);
     }
     if (!c->json) {
+        contention_print(row, nrow);
         print_summary(s);
         return;
     }
     json_object(&j);
+    contention_json(row, nrow, &j);
     json_key(&j, "points");
     json_array(&j);
     for (int i = 0; i < t->n; i++) json_row(&j, t->row[i], &t->outcome[i]);
@@ -244,7 +246,10 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     store_close(s);
     if (!ok) return false;
     struct validation_summary sum = validation_summarize(t.row, t.outcome, t.n);
-    print_table(c, &t, &sum);
+    struct contention row[CONTENTION_ROWS];
+    int nrow = strcmp(c->arg[0], "all") == 0 ? 0 : contention_measure(c->arg[0], row, a, e);
+    if (nrow < 0) return false;
+    print_table(c, &t, row, nrow, &sum);
     *failed = sum.failed;
     return true;
 }

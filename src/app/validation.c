@@ -36,6 +36,17 @@ const char *validation_level_name(int level)
     return name[level];
 }
 
+void validation_levels_json(const double level[VALIDATION_LEVELS], double scale, struct json *j)
+{
+    static const int sorted[VALIDATION_LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
+    json_object(j);
+    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+        json_key(j, validation_level_name(sorted[i]));
+        json_real(j, level[sorted[i]] / scale);
+    }
+    json_end(j);
+}
+
 static void measure_levels(const struct published *p, const struct machine_spec *m, struct outcome *o)
 {
     o->contended = true;

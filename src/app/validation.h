@@ -5,6 +5,7 @@
 #include "app/published.h"
 #include "base/arena.h"
 #include "base/err.h"
+#include "base/json.h"
 #include "plan/plan.h"
 
 /* Errors above this need a cause that somebody wrote down. */
@@ -14,6 +15,9 @@ enum { VALIDATION_LEVELS = LEVEL_AUTO + 1 };
 
 /* validation_level_name: "loggp", ... of enum network_level below VALIDATION_LEVELS. */
 const char *validation_level_name(int level);
+
+/* validation_levels_json: an object of one number a level, each over `scale`; not finite: null. */
+void validation_levels_json(const double level[VALIDATION_LEVELS], double scale, struct json *j);
 
 /* What a point came to. */
 struct outcome {

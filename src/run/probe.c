@@ -10,12 +10,12 @@
 #include "run/run.h"
 
 enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000,
-       EXCHANGE_BYTES = 1 << 17 };
+       EXCHANGE_BYTES = 1 << 17, SERVED_BYTES = 1 << 20 };
 
 static const char *const names[PROBE_QUANTITIES] = {
     "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
     "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
-    "exchange",
+    "exchange", "halves",
     "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
 };
 
@@ -34,7 +34,10 @@ struct measured {
     double last_send;        /* of the last rank per message [s] */
 };
 
-bool probe_contends(enum probe_quantity q, double at) { return (q == PROBE_BARRIER || q == PROBE_EXCHANGE) && at > 2; }
+bool probe_contends(enum probe_quantity q, double at)
+{
+    return (q == PROBE_BARRIER || q == PROBE_EXCHANGE || q == PROBE_HALVES) && at > 2;
+}
 
 /* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where two ranks talk, so
  * all network levels agree there and level link is the cheapest that knows of others. */
@@ -230,15 +233,17 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
     return true;
 }
 
-/* The start-up goes away between two lengths. */
-static bool total_exchange(const struct machine_spec *m, int ranks, double *rate, struct err *e)
+/* What each rank sends in a kernel where it has `partners`; the start-up goes away between two lengths. Behind a
+ * kernel's server copies hide while messages wait for it, until they are long. */
+static bool rate_among(const struct machine_spec *m, const char *kernel, int ranks, int partners, double *rate,
+                       struct err *e)
 {
     struct measured once, twice;
     if (ranks < 2) return err_set(e, ERR_CONFIG, "%s: an exchange of %d ranks", m->name, ranks);
-    int64_t bytes = EXCHANGE_BYTES / (ranks - 1) / SMALL_BYTES * SMALL_BYTES;
-    if (!bench(m, "all-to-all", ranks, bytes, 1, &once, e) || !bench(m, "all-to-all", ranks, 2 * bytes, 1, &twice, e))
-        return false;
-    *rate = (double)(bytes * (ranks - 1)) / (twice.time - once.time);
+    const int64_t all = m->software.kernel_server ? SERVED_BYTES : EXCHANGE_BYTES;
+    const int64_t bytes = all / partners / SMALL_BYTES * SMALL_BYTES;
+    if (!bench(m, kernel, ranks, bytes, 1, &once, e) || !bench(m, kernel, ranks, 2 * bytes, 1, &twice, e)) return false;
+    *rate = (double)(bytes * partners) / (twice.time - once.time);
     return true;
 }
 
@@ -289,7 +294,9 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
     case PROBE_BARRIER:
         return barrier(m, (int)at, value, e);
     case PROBE_EXCHANGE:
-        return total_exchange(m, (int)at, value, e);
+        return rate_among(m, "all-to-all", (int)at, (int)at - 1, value, e);
+    case PROBE_HALVES:
+        return rate_among(m, "bisection", (int)at, 1, value, e);
     case PROBE_LINPACK:
     case PROBE_STREAM_COPY:
     case PROBE_STREAM_SCALE:

@@ -27,6 +27,7 @@ enum probe_quantity {
     PROBE_GLOBAL,        /* all links between groups of a dragonfly, one direction [B/s] */
     PROBE_BARRIER,       /* [s]; at: ranks */
     PROBE_EXCHANGE,      /* total exchange: bytes that each rank sends, long messages, a second [B/s]; at: ranks */
+    PROBE_HALVES,        /* ranks i and i + P/2 exchange: bytes that each sends a second [B/s]; at: ranks, even */
     PROBE_LINPACK,       /* LINPACK benchmark of order at [flop/s] */
     PROBE_STREAM_COPY,   /* the four kernels of STREAM [B/s] */
     PROBE_STREAM_SCALE,

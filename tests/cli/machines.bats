@@ -104,6 +104,11 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     [[ $output =~ at\ level\ loggp\ 340.01 ]]
     works mimdsim validate paragon --quiet
     stdout_says "packet -, flit" # worms do not fit the buffers
+    # 16 ranks in a row of the mesh: eight messages of halves share the middle link of 175 MB/s
+    [[ $output =~ halves\ +154\ +21.183\ +-\ +19.699\ +- ]]
+    works mimdsim validate paragon --quiet --json
+    json_is '$.contention[1].quantity' halves
+    json_is '$.contention[1].levels.packet' ''
 }
 
 @test "a wrong table of published figures is refused with its line" {

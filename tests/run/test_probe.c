@@ -79,8 +79,12 @@ static void test_exchange(void **state)
     is(measured(&m, PROBE_EXCHANGE, 2), 1e9);
     is(measured(&m, PROBE_EXCHANGE, 3), 1e9);
     assert_in_range((uint64_t)measured(&m, PROBE_EXCHANGE, 4), 750000000, 850000000);
+    /* in a row of four the middle link carries two of the halves' messages */
+    is(measured(&m, PROBE_HALVES, 2), 1e9);
+    is(measured(&m, PROBE_HALVES, 4), 0.5e9);
     m.network.level = LEVEL_LOGGP;
     is(measured(&m, PROBE_EXCHANGE, 4), 1e9);
+    is(measured(&m, PROBE_HALVES, 4), 1e9);
     assert_true(probe_contends(PROBE_EXCHANGE, 4) && probe_contends(PROBE_BARRIER, 16));
     assert_false(probe_contends(PROBE_EXCHANGE, 2) || probe_contends(PROBE_ONE_WAY, 1024));
 }

@@ -1,0 +1,68 @@
+/* contention.c - one pattern of messages at every level of the network (contention.h). */
+#include "app/contention.h"
+
+#include <math.h>
+
+static bool measure(const struct machine_spec *m, struct contention *row)
+{
+    bool any = false;
+    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+        struct machine_spec at = *m;
+        struct err why;
+        err_clear(&why);
+        at.network.level = (enum network_level)i;
+        if (!probe_measure(&at, row->quantity, row->ranks, &row->level[i], &why)) row->level[i] = NAN;
+        any = any || isfinite(row->level[i]);
+    }
+    return any;
+}
+
+int contention_measure(const char *machine, struct contention row[CONTENTION_ROWS], struct arena *a, struct err *e)
+{
+    static const enum probe_quantity pattern[CONTENTION_ROWS] = {PROBE_EXCHANGE, PROBE_HALVES};
+    struct machine_spec m;
+    struct plan_options none = {0};
+    if (!plan_machine(&m, machine, &none, a, NULL, NULL, e)) return -1;
+    int64_t processors = machine_spec_processors(&m);
+    int ranks = processors < CONTENTION_RANKS ? (int)processors / 2 * 2 : CONTENTION_RANKS, n = 0;
+    for (int i = 0; i < CONTENTION_ROWS && ranks >= 4; i++) {
+        row[n] = (struct contention){.quantity = pattern[i], .ranks = ranks};
+        n += measure(&m, &row[n]);
+    }
+    return n;
+}
+
+void contention_print(const struct contention *row, int n)
+{
+    if (n == 0) return;
+    printf("\nMB/s that each of %d ranks sends, by level of the network\n%-10s", row[0].ranks, "");
+    for (int i = 0; i < VALIDATION_LEVELS; i++) printf(" %10s", validation_level_name(i));
+    putchar('\n');
+    for (int k = 0; k < n; k++) {
+        printf("%-10s", probe_name(row[k].quantity));
+        for (int i = 0; i < VALIDATION_LEVELS; i++) {
+            if (isfinite(row[k].level[i])) printf(" %10.5g", row[k].level[i] / 1e6);
+            else printf(" %10s", "-");
+        }
+        putchar('\n');
+    }
+}
+
+void contention_json(const struct contention *row, int n, struct json *j)
+{
+    json_key(j, "contention");
+    json_array(j);
+    for (int k = 0; k < n; k++) {
+        json_object(j);
+        json_key(j, "levels");
+        validation_levels_json(row[k].level, 1, j);
+        json_key(j, "quantity");
+        json_text(j, probe_name(row[k].quantity));
+        json_key(j, "ranks");
+        json_int(j, row[k].ranks);
+        json_key(j, "unit");
+        json_text(j, "B/s");
+        json_end(j);
+    }
+    json_end(j);
+}
