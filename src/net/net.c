@@ -41,7 +41,7 @@ static void link_rates_make(struct net *n, const struct network_spec *w)
     }
 }
 
-/* Segments of the software that differ in neither gap nor rate share a range. */
+/* Segments of the software that differ in neither gap, rate nor latency share a range. */
 static void ports_make(struct net *n, const struct machine_spec *m)
 {
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
@@ -50,9 +50,12 @@ static void ports_make(struct net *n, const struct machine_spec *m)
     const int nlist = software_segments(&m->software, list);
     n->nport = 0;
     for (int i = 0; i < nlist; i++) {
-        struct net_port p = {INT64_MAX, rate_make(w, bandwidth, list[i].gap_per_byte), sim_from_seconds(list[i].gap)};
+        struct net_port p = {INT64_MAX, rate_make(w, bandwidth, list[i].gap_per_byte), sim_from_seconds(list[i].gap),
+                             sim_from_seconds(w->end_latency) + sim_from_seconds(list[i].latency)};
         struct net_port *last = n->nport > 0 ? &n->port[n->nport - 1] : NULL;
-        if (last && last->rate.flit == p.rate.flit && last->rate.byte == p.rate.byte && last->gap == p.gap) continue;
+        if (last && last->rate.flit == p.rate.flit && last->rate.byte == p.rate.byte && last->gap == p.gap &&
+            last->end == p.end)
+            continue;
         if (last) last->below = list[i].from;
         n->port[n->nport++] = p;
     }
@@ -97,7 +100,6 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->nlink = t->nlink;
     n->nresource = 2 * t->nnode + t->nlink;
     n->tau = sim_from_seconds(w->hop_latency);
-    n->end = sim_from_seconds(w->end_latency);
     n->credit = sim_from_seconds(w->credit_latency);
     n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
     n->link = rate_make(w, w->link_bandwidth, 0);
@@ -200,7 +202,7 @@ sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)
     struct net_message m = {.src = src, .dst = dst, .bytes = bytes};
     int nhop;
     struct net_rate slow = net_slowest(n, &m, &nhop);
-    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, bytes) - 1) + n->end;
+    return (nhop + 1) * n->tau + net_rate_time(slow, net_flits(n, bytes) - 1) + net_end(n, bytes);
 }
 
 bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy)

@@ -105,7 +105,7 @@ static sim_ps closed_form(const struct fabric *f, struct flight *w, sim_ps start
         if (!plain || h == w->nhop) s->follow = clear;
         w->clear = later(w->clear, clear);
     }
-    return w->pass[w->nhop].begin + train + (w->last - 1) * w->slowest + n->end;
+    return w->pass[w->nhop].begin + train + (w->last - 1) * w->slowest + net_end(n, w->m->bytes);
 }
 
 /* ---- may it stay optimistic? ---- */

@@ -215,7 +215,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
         front_asks(g, before);
     }
     if (!is_last(l)) return;
-    if (++m->ejected == m->npacket) packet_deliver_at(f, m, now + f->net->end);
+    if (++m->ejected == m->npacket) packet_deliver_at(f, m, now + net_end(f->net, m->m->bytes));
     worm_return(g, w);
 }
 

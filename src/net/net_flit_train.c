@@ -211,7 +211,8 @@ static void stage_ask(struct train *g, struct stage *s)
 static void worm_end(struct train *g, struct worm *w)
 {
     struct flight *v = w->flight;
-    if (++v->ejected == v->npacket) packet_deliver_at(&g->fabric, v, w->stage[w->nhop].last + g->fabric.net->end);
+    if (++v->ejected == v->npacket)
+        packet_deliver_at(&g->fabric, v, w->stage[w->nhop].last + net_end(g->fabric.net, v->m->bytes));
     w->next = g->ended;
     g->ended = w;
 }

@@ -27,11 +27,12 @@ static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
 /* net_rate_slower: the slower of two rates. */
 static inline struct net_rate net_rate_slower(struct net_rate a, struct net_rate b) { return a.byte >= b.byte ? a : b; }
 
-/* What an injection port does with messages of one range of sizes. */
+/* What an injection port, and the interfaces at both ends, do with messages of one range of sizes. */
 struct net_port {
     int64_t below;       /* the first size of the next range, INT64_MAX: none */
     struct net_rate rate; /* includes the interface's gap per byte */
     sim_ps gap;          /* the software's g [ps] */
+    sim_ps end;          /* end latency, with that of the segment [ps] */
 };
 
 struct net {
@@ -43,7 +44,7 @@ struct net {
     net_deliver_fn *deliver;
     void *context;
 
-    sim_ps tau, end, credit;                   /* hop, end and credit latency [ps] */
+    sim_ps tau, credit;                        /* hop and credit latency [ps] */
     int64_t flit_bytes;                        /* >= 1 */
     struct net_rate ejection, link;
     struct net_port port[SOFTWARE_MAX_SEGMENTS]; /* (nport) the injection ports by rising size */
@@ -70,13 +71,15 @@ static inline int net_ejection(const struct net *n, int node) { return n->nnode 
 static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }
 static inline bool net_is_ejection(const struct net *n, int resource) { return resource >= n->nnode + n->nlink; }
 
-/* net_port: how the injection ports serve a message of `bytes` payload. */
+/* net_port: how the injection ports serve a message of `bytes` payload; net_end: its end latency. */
 static inline const struct net_port *net_port(const struct net *n, int64_t bytes)
 {
     const struct net_port *p = n->port;
     while (bytes >= p->below) p++;
     return p;
 }
+
+static inline sim_ps net_end(const struct net *n, int64_t bytes) { return net_port(n, bytes)->end; }
 
 /* net_resource_rate: the rate of a resource for a message of `bytes` payload. */
 static inline struct net_rate net_resource_rate(const struct net *n, int resource, int64_t bytes)

@@ -96,7 +96,7 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
         return;
     }
     struct net_message *m = f->m;
-    m->arrival = x + net_rate_time(f->slow, f->flits - 1) + n->end;
+    m->arrival = x + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
     flight_return(n, f);
     net_arrive(n, m);
 }
@@ -119,7 +119,7 @@ static void link_inject(struct net *n, struct net_message *m)
     }
     m->injected = resource_take(n, net_injection(n, m->src), m, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
-    m->uncontended = own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + n->end;
+    m->uncontended = own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
     head_sent(n, f, m->injected);
 }
 

@@ -38,7 +38,7 @@ static void loggp_inject(struct net *n, struct net_message *m)
     struct net_rate slow = net_slowest(n, m, &nhop);
     int64_t flits = net_flits(n, m->bytes);
     sim_ps busy = net_port_busy(n, m->bytes, flits);
-    sim_ps flight = (nhop + 1) * n->tau + net_rate_time(slow, flits - 1) + n->end;
+    sim_ps flight = (nhop + 1) * n->tau + net_rate_time(slow, flits - 1) + net_end(n, m->bytes);
     m->injected = port_take(&g->port[m->src], m->ready, busy);
     m->arrival = m->injected + flight;
     m->uncontended = m->arrival;

@@ -162,7 +162,7 @@ static void packet_delivered(void *subject, uint64_t argument, sim_ps now)
         return;
     }
     m->arrival = now;
-    if (f->net->end == 0) f->late = now;
+    if (net_end(f->net, m->bytes) == 0) f->late = now;
     if (w->optimistic)
         auto_delivered(f, w);
     else
@@ -174,7 +174,7 @@ void packet_deliver_at(struct fabric *f, struct flight *w, sim_ps arrival)
 {
     w->arrival = arrival;
     if (w->foreseen == arrival) return;
-    unsigned lane = f->net->end > 0 ? NET_LANE_FREE : LANE_LATE;
+    unsigned lane = net_end(f->net, w->m->bytes) > 0 ? NET_LANE_FREE : LANE_LATE;
     sim_at(f->net->sim, arrival, lane, (uint64_t)w->m->dst, packet_delivered, f, (uintptr_t)w);
 }
 
@@ -204,7 +204,7 @@ static sim_ps grant(struct fabric *f, struct resource *o, struct packet *p, sim_
 static void eject(struct fabric *f, struct packet *p, sim_ps tail)
 {
     struct flight *w = p->flight;
-    if (++w->ejected == w->npacket) packet_deliver_at(f, w, tail + f->net->end);
+    if (++w->ejected == w->npacket) packet_deliver_at(f, w, tail + net_end(f->net, w->m->bytes));
     packet_return(f, p);
 }
 
@@ -311,7 +311,7 @@ void flight_measure(struct fabric *f, struct flight *w)
     sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
     sim_ps at = later(m->ready, *port);
     *port = at + net_port_busy(n, m->bytes, flits);
-    m->uncontended = at + w->nhop * n->tau + (flits - 1) * w->slowest + n->end;
+    m->uncontended = at + w->nhop * n->tau + (flits - 1) * w->slowest + net_end(n, m->bytes);
 }
 
 /* the next packet of w leaves its node; the gap between messages follows the last one */

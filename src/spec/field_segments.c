@@ -22,6 +22,7 @@ static const struct field rows[] = {
     {.key = "send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(send_copy), .min = 0, .max = 1},
     {.key = "recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(recv_overhead), .min = 0, .max = 10},
     {.key = "recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(recv_copy), .min = 0, .max = 1},
+    {.key = "latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(latency), .min = 0, .max = 10},
     {.key = "gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(gap), .min = 0, .max = 10},
     {.key = "gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(gap_per_byte), .min = 0, .max = 1},
     {.key = "protocol", .kind = FIELD_CHOICE, .choice = protocols, AT(protocol)},
@@ -96,6 +97,7 @@ static const char *take_segment(const char *s, int number, struct software_segme
                                      .send_copy = -1,
                                      .recv_overhead = -1,
                                      .recv_copy = -1,
+                                     .latency = -1,
                                      .gap = -1,
                                      .gap_per_byte = -1,
                                      .rendezvous_latency = -1};

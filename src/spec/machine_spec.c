@@ -296,8 +296,8 @@ static const struct field fields[] = {
     {.key = "software.segments", .kind = FIELD_SEGMENTS, AT(software.segment), COUNT(software.nsegment),
      .capacity = SOFTWARE_MAX_SEGMENTS, .fallback = "[]",
      .doc = "message software by size, in place of short and eager: each segment {from: 8 KiB, ...} may give "
-            "send.overhead, send.copy, recv.overhead, recv.copy, gap, gap_per_byte, protocol (eager, rendezvous, "
-            "synchronous) and rendezvous.latency; what it does not give is software's"},
+            "send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, gap_per_byte, protocol (eager, "
+            "rendezvous, synchronous) and rendezvous.latency; what it does not give is software's"},
     {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server), .fallback = "false",
      .doc = "every message end passes one server of the whole machine (TCP loopback)"},
     {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time), .min = 0,

@@ -9,6 +9,7 @@ static struct software_segment completed(const struct software_spec *s, struct s
     x.send_copy = given(x.send_copy, s->send_copy);
     x.recv_overhead = given(x.recv_overhead, s->recv_overhead);
     x.recv_copy = given(x.recv_copy, s->recv_copy);
+    x.latency = given(x.latency, 0);
     x.gap = given(x.gap, s->gap);
     x.gap_per_byte = given(x.gap_per_byte, s->gap_per_byte);
     x.rendezvous_latency = given(x.rendezvous_latency, s->rendezvous_latency);

@@ -25,6 +25,7 @@ struct software_segment {
     double send_copy;            /* per byte [s/B] */
     double recv_overhead;        /* o_r [s] */
     double recv_copy;            /* per byte [s/B] */
+    double latency;              /* of the interfaces, beside network.end_latency [s] */
     double gap;                  /* g [s] */
     double gap_per_byte;         /* G [s/B] */
     double rendezvous_latency;   /* [s] */

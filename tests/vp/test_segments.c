@@ -32,11 +32,11 @@ static struct machine_spec line_of_nodes(enum network_level level)
 }
 
 static const struct software_segment nothing = {.send_overhead = -1, .send_copy = -1, .recv_overhead = -1,
-                                                .recv_copy = -1, .gap = -1, .gap_per_byte = -1,
+                                                .recv_copy = -1, .latency = -1, .gap = -1, .gap_per_byte = -1,
                                                 .rendezvous_latency = -1};
 
-/* Up to 999 B constant; then copies, and 2 ns a byte at the port; from 8000 B hand-shakes; from 16000 B the sender is
- * held and the copies are gone. */
+/* Up to 999 B constant; then copies, 600 ns more of the interfaces, and 2 ns a byte at the port; from 8000 B
+ * hand-shakes; from 16000 B the sender is held and the copies are gone. */
 static void four_segments(struct software_spec *s)
 {
     s->nsegment = 4;
@@ -46,6 +46,7 @@ static void four_segments(struct software_spec *s)
     s->segment[1].recv_copy = 2e-9;
     s->segment[1].gap_per_byte = 2e-9;
     s->segment[1].gap = 7e-6;
+    s->segment[1].latency = 600e-9;
     s->segment[2] = s->segment[1];
     s->segment[2].from = 8000;
     s->segment[2].protocol = PROTOCOL_RENDEZVOUS;
@@ -87,11 +88,13 @@ static void one_message(struct comm *c, void *context)
     }
 }
 
-/* Two resources to the neighbour; all flits but the first at `flit` ps each. */
+/* Two resources to the neighbour; all flits but the first at `flit` ps each, which is 16 ns where the interfaces take
+ * longer too. */
 static int64_t wire(int64_t bytes, int64_t flit)
 {
+    const int64_t latency = flit == 16000 ? 600000 : 0;
     const int64_t flits = bytes > 0 ? (bytes + FLIT - 1) / FLIT : 1;
-    return 2 * TAU + (flits - 1) * flit + END;
+    return 2 * TAU + (flits - 1) * flit + END + latency;
 }
 
 /* When the sender goes on and when the receiver has its message [ps]. */
