@@ -9,9 +9,9 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     works mimdsim validate all --quiet
     stdout_says "0 fail"
     sql_is mimdsim.db "SELECT count(*) > 100, sum(verdict = 'fail') FROM check_point WHERE suite = 'machines'" '1|0'
-    # what was read in a publication and used: within 10 %, recalled figures within 20 %
+    # what was read in a publication and used: within 10 %, recalled figures within 20 %; held-back ones have 30 %
     sql_is mimdsim.db "SELECT count(*) FROM check_point WHERE verdict = 'pass'
-        AND abs(relative_error) > iif(class = 'P', 0.1, 0.2) AND class <> 'E'" 0
+        AND abs(relative_error) > iif(class = 'P', 0.1, 0.2) AND class <> 'E' AND tolerance < 0.3" 0
     sql_is mimdsim.db "SELECT count(DISTINCT subject) >= 20 FROM check_point" 1
     works mimdsim validate all --quiet
     sql_is mimdsim.db "SELECT count(*) FROM check_point" "$(($(wc -l <"$MIMDSIM_DATA/machines/published.csv") - 1))"
@@ -226,8 +226,8 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     works mimdsim run bisection --quiet --machine paragon --set ranks=256
     works mimdsim links mimdsim.db
     [ "${#lines[@]}" -eq 21 ] # ten links, ten ports
-    # the middle of the mesh is crossed by 8 messages a column and direction
-    sql_is mimdsim.db "SELECT count(*), max(messages) FROM v_link_top WHERE level = 'link'" '10|8'
+    # the middle of the mesh is crossed by 8 messages a column and direction, by their requests, and by answers to others
+    sql_is mimdsim.db "SELECT count(*), max(messages) FROM v_link_top WHERE level = 'link'" '10|24'
     works mimdsim links mimdsim.db --json
     json_is_valid
     fails_with 66 mimdsim links mimdsim.db 77

@@ -81,6 +81,26 @@ static double wire_flits(const struct network_spec *w, double bytes)
     return (packets - 1) * full + fmax(1, ceil((last + (double)w->header_bytes) / flit));
 }
 
+static double one_of(double own, double whole) { return own < 0 ? whole : own; }
+
+/* The same with segments: that which begins last at or below the size says everything, where it says it. */
+static double one_way_by_size_us(const struct machine_spec *m, int routers, double bytes, double per_byte)
+{
+    const struct network_spec *w = &m->network;
+    const struct software_spec *s = &m->software;
+    const struct software_segment *x = s->segment;
+    while (x + 1 < s->segment + s->nsegment && bytes >= (double)x[1].from) x++;
+    double trip = routers * w->hop_latency + w->end_latency;
+    double t = one_of(x->send_overhead, s->send_overhead) + one_of(x->recv_overhead, s->recv_overhead);
+    t += bytes * (one_of(x->send_copy, s->send_copy) + one_of(x->recv_copy, s->recv_copy));
+    t += trip + one_of(x->latency, 0);
+    t += (wire_flits(w, bytes) - 1) * (double)w->flit_bytes *
+         fmax(per_byte, one_of(x->gap_per_byte, s->gap_per_byte));
+    if (x->protocol != PROTOCOL_EAGER) /* requests are of the first segment */
+        t += 2 * (trip + one_of(s->segment[0].latency, 0)) + one_of(x->rendezvous_latency, s->rendezvous_latency);
+    return t * 1e6;
+}
+
 /* One way of a message over `routers` routers in an empty machine, by the fields' definitions alone [us]. */
 static double one_way_us(const struct machine_spec *m, int routers, double bytes)
 {
@@ -92,6 +112,8 @@ static double one_way_us(const struct machine_spec *m, int routers, double bytes
     bool is_short = bytes <= (double)s->short_bytes && s->short_bytes > 0;
     bool rendezvous = s->eager_bytes >= 0 && bytes > (double)s->eager_bytes;
     if (routers > 1) per_byte = fmax(per_byte, 1 / w->link_bandwidth);
+    if (s->nsegment > 0)
+        return one_way_by_size_us(m, routers, bytes, fmax(1 / fmin(in, out), routers > 1 ? 1 / w->link_bandwidth : 0));
     double trip = routers * w->hop_latency + w->end_latency;
     double t = s->send_overhead - (is_short ? s->short_saving : 0) + s->recv_overhead + trip;
     t += (wire_flits(w, bytes) - 1) * (double)w->flit_bytes * per_byte;
@@ -133,6 +155,8 @@ static const struct point {
     {"fugaku", 2, 64, 1.31, 0.1},
     {"fugaku", 2, 1024, 1.98, 0.1},
     {"fugaku", 2, 8192, 3.9, 0.1},
+    {"fugaku", 2, 16384, 7.27, 0.1},
+    {"fugaku", 2, 32768, 11.5, 0.1},
     {"fugaku", 2, 65536, 17.1, 0.1},
     {"fugaku", 2, 1048576, 172, 0.1},
     {"fugaku", 2, 4194304, 668, 0.1},
@@ -145,6 +169,7 @@ static const struct point {
     {"aries", 1, 0, 1.11, 0.1},
     {"aries", 1, 1024, 1.39, 0.1},
     {"aries", 1, 8192, 4.21, 0.1},
+    {"aries", 1, 32768, 6.73, 0.1},
     {"aries", 1, 65536, 10.07, 0.1},
     {"aries", 1, 1048576, 109.28, 0.1},
     {"aries", 1, 4194304, 431.85, 0.1},
