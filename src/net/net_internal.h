@@ -71,7 +71,7 @@ static inline int net_ejection(const struct net *n, int node) { return n->nnode 
 static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }
 static inline bool net_is_ejection(const struct net *n, int resource) { return resource >= n->nnode + n->nlink; }
 
-/* net_port: how the injection ports serve a message of `bytes` payload; net_end: its end latency. */
+/* net_port: how the injection ports serve a message of `bytes` payload. */
 static inline const struct net_port *net_port(const struct net *n, int64_t bytes)
 {
     const struct net_port *p = n->port;
@@ -79,6 +79,7 @@ static inline const struct net_port *net_port(const struct net *n, int64_t bytes
     return p;
 }
 
+/* net_end: its end latency. */
 static inline sim_ps net_end(const struct net *n, int64_t bytes) { return net_port(n, bytes)->end; }
 
 /* net_resource_rate: the rate of a resource for a message of `bytes` payload. */
@@ -108,8 +109,7 @@ struct net_rate net_slowest(const struct net *n, const struct net_message *m, in
 /* net_head_port: the input port through which a message that comes over `resource` enters the next router. */
 int net_head_port(const struct net *n, int resource);
 
-/* net_port_busy: how long the injection port of a node is taken by the `flits` flits of a message of `bytes`: the gap g
- * after the last one. */
+/* net_port_busy: how long the `flits` flits of a message of `bytes` take an injection port, the gap g included. */
 static inline sim_ps net_port_busy(const struct net *n, int64_t bytes, int64_t flits)
 {
     const struct net_port *p = net_port(n, bytes);
