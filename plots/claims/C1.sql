@@ -25,7 +25,8 @@ slope AS (
     FROM point WHERE level = 'link' GROUP BY variant)
 SELECT variant, ((s32 - s16) / 16) / ((s16 - s2) / 14) AS value, 2.0 AS threshold,
        ((s32 - s16) / 16) / ((s16 - s2) / 14) >= 2 AS holds, missing,
-       format('S = %.2f, %.2f, %.2f at P = 2, 16, 32', s2, s16, s32) ||
+       format('S = %.2f, %.2f, %.2f at P = 2, 16, 32: the later slope is %.2f times the earlier',
+              s2, s16, s32, (s32 - s16) / 16 / ((s16 - s2) / 14)) ||
        iif(variant <> 'fastest serial, structured', '',
            format('; nearest to the claim: %s with %.2f',
                   (SELECT variant FROM slope ORDER BY (s32 - s16) / (s16 - s2) DESC LIMIT 1),

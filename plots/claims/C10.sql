@@ -16,6 +16,6 @@ WITH point AS (
     GROUP BY 1, 2, 3)
 SELECT a.variant, 1.0 * b.t / a.t AS value, 1.02 AS threshold, abs(1.0 * b.t / a.t - 1) <= 0.02 AS holds,
        iif(b.t IS NULL, 'n = P = 128 with a floating base at level link', NULL) AS missing,
-       format('%.1f us fixed, %.1f us floating', a.t / 1e6, b.t / 1e6) AS note
+       format('%.1f us with a fixed base, %.1f us with a floating one', a.t / 1e6, b.t / 1e6) AS note
 FROM point a LEFT JOIN point b ON b.variant = a.variant AND b.P = a.P AND b.base = 'floating'
 WHERE a.P = 128 AND a.base = 'fixed' ORDER BY a.variant;

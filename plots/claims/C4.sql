@@ -32,5 +32,5 @@ wide AS (
            max(CASE WHEN P = 128 AND name = 'NE[1]' THEN t END) / max(CASE WHEN P = 128 AND name = 'CFA[2]' THEN t END) AS r128
     FROM ranked GROUP BY variant)
 SELECT variant, r128 / r16 AS value, 1.0 AS threshold, few = 'NE[1]' AND many = 'CFA[2]' AS holds, missing,
-       format('dearest: %s at 16, %s at 128; NE[1] / CFA[2] = %.2f, then %.2f', few, many, r16, r128) AS note
+       format('%s takes longest at 16, %s at 128; NE[1] / CFA[2] = %.2f, then %.2f', few, many, r16, r128) AS note
 FROM wide LEFT JOIN gap USING (operators) ORDER BY variant;

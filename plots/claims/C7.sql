@@ -33,7 +33,8 @@ same AS (
     FROM point a JOIN point b ON b.n = a.n AND b.variant = a.variant AND a.ratio = 1 AND b.ratio = 16
     GROUP BY a.variant HAVING a.n = max(a.n))
 SELECT variant, f16 - f1 AS value, 0.0 AS threshold, lifted AND lowered AS holds, missing,
-       format('S %.2f to %.2f, f %.3f to %.3f at P = %d', s1, s16, f1, f16, P) AS note
+       format('from 1 to 16 bodies a processor S goes from %.2f to %.2f and f from %.3f to %.3f at P = %d',
+              s1, s16, f1, f16, P) AS note
 FROM last JOIN every USING (variant) LEFT JOIN gap USING (variant)
 UNION ALL
 SELECT 'speedup only: ' || variant, s16 / s1, 1.0, lifted, missing, format('S %.2f to %.2f at P = %d', s1, s16, P)

@@ -22,7 +22,7 @@ part AS (
     GROUP BY 1, 2, 3)
 SELECT format('P = %d, %s', i.P, i.operators) AS variant, f.grain / i.grain AS value, 1.0 AS threshold,
        i.grain < f.grain AND f.bytes > i.bytes AND f.waiting < i.waiting AS holds, NULL AS missing,
-       format('flops per message %d and %d, messages %d and %d, kB sent %.0f and %.0f, waiting %.0f %% and %.0f %%', i.grain,
+       format('inverse and forward: flops per message %d and %d, messages %d and %d, kB sent %.0f and %.0f, waiting %.0f %% and %.0f %%', i.grain,
               f.grain, i.messages, f.messages, i.bytes / 1e3, f.bytes / 1e3, 100 * i.waiting, 100 * f.waiting) AS note
 FROM part i JOIN part f ON f.P = i.P AND f.operators = i.operators AND i.forward = 0 AND f.forward = 1
 ORDER BY variant;

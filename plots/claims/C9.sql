@@ -29,6 +29,6 @@ rounds AS (SELECT variant, max(messages / pairs) = min(messages / pairs) AND min
            FROM point GROUP BY variant)
 SELECT variant, 1.0 * (max(step) - min(step)) / avg(step) AS value, 0.05 AS threshold,
        (max(step) - min(step)) / avg(step) <= 0.05 AND visible AS holds, max(missing) AS missing,
-       format('%.1f to %.1f us more for each doubling up to P = %d; rounds %s', min(step) / 1e6, max(step) / 1e6, max(P),
+       format('each doubling of n = P adds %.1f to %.1f us up to P = %d; the rounds are %s', min(step) / 1e6, max(step) / 1e6, max(P),
               iif(visible, 'visible', 'not visible')) AS note
 FROM rounds LEFT JOIN growth USING (variant) LEFT JOIN gap USING (variant) GROUP BY variant ORDER BY variant;

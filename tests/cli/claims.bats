@@ -59,7 +59,7 @@ load planted
 
 # solver SOLVER P STAGE [PART]: a run of the Paragon's forward dynamics, n = 256, whose CFA[2] takes STAGE on every rank.
 solver() {
-    plant "kernel = 'forward', machine = 'paragon', n = ${n:-256}, P = $2, solver = '$1', part_solver = '${4:-pcr}'" ""
+    plant "kernel = 'forward', machine = 'paragon', n = 256, P = $2, solver = '$1', part_solver = '${4:-pcr}'" ""
     stage 'CFA[2]' $(($2 * $3)) 0 0 10 0
 }
 
@@ -279,6 +279,30 @@ solver() {
     verdict C2 '' fail
     works mimdsim report planted.db --quiet
     grep -q 'of 2 claims that were judged, 0 hold and 2 do not (C1, C2)' planted.md
+}
+
+@test "the figure of the claims has a cell for every variant, and a frame for the one that is judged" {
+    template
+    speedups link 2:100 16:150 32:200 48:3000 64:3500 128:4000
+    local p
+    solver thomas 1 1000
+    for p in 16 256; do
+        solver pcr $p 500
+        solver partition $p 400
+        solver pcr-symmetric $p 600
+        solver cr $p 300
+    done
+    verdict C6 '' pass
+    works mimdsim plot planted.db claims
+    sqlite3 figures.db ".import --csv figures/claims.csv t"
+    sql_is figures.db 'SELECT count(*) FROM t' "$(sql planted.db 'SELECT count(*) FROM claim')"
+    sql_is figures.db "SELECT group_concat(variant, ' / ') FROM t WHERE id = 'C6' AND kind = 'named'" \
+        'cr‚ n = 256 / partition + pcr‚ n = 256 / pcr-symmetric‚ n = 256'
+    sql_is figures.db "SELECT group_concat(id || ' ' || variant, '; ') FROM t WHERE nominal = 1" \
+        'C1 structured: fastest serial; C2 structured: fastest serial; C6 partition + pcr‚ n = 256'
+    sql_is figures.db "SELECT mark FROM t WHERE id = 'C6' AND kind = 'verdict'" '2 of 3'
+    # no two cells of a line overlap
+    sql_is figures.db 'SELECT count(*) FROM t a JOIN t b ON a.y = b.y AND a.rowid < b.rowid AND abs(a.x - b.x) < a.half + b.half' 0
 }
 
 @test "without runs nothing can be told, and the table says so" {
