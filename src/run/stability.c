@@ -62,7 +62,7 @@ static bool measure_scene(struct stability_report *r, const struct scene *c, int
         good = scene_build(c, a, &m, &s, e);
         char name[64] = "";
         if (good) name_scene(c, m, name, (int)sizeof name);
-        if (good) stability_accelerations(r, name, m, s, a);
+        if (good) stability_accelerations(r, name, m, s, true, a);
         if (good && c->moves) stability_motion(r, name, m, s, c->spec.damping > 0, a);
         else if (good) stability_energy(r, name, m, s, a);
     }
@@ -141,14 +141,16 @@ static void print_row(FILE *out, const struct stability_row *x)
 
 void stability_print(FILE *out, const struct stability_report *r)
 {
-    int count[3] = {0};
+    int count[3] = {0}, by_algorithm = 0;
     fprintf(out, "%-27s %-22s %-7s %-9s%9s%9s%9s%9s%4s%9s%9s\n", "case", "algorithm", "prec", "status", "error",
             "residual", "cond", "growth", "ref", "energy", "step");
     for (int i = 0; i < r->nrow; i++) {
         print_row(out, &r->row[i]);
         count[r->row[i].status]++;
+        by_algorithm += r->row[i].cause == CAUSE_ALGORITHM;
     }
-    fprintf(out, "\n%d ok, %d degraded, %d failed of %d\n", count[0], count[1], count[2], r->nrow);
+    fprintf(out, "\n%d ok, %d degraded, %d failed of %d; %d not by rounding: the algorithm fails\n", count[0], count[1],
+            count[2], r->nrow, by_algorithm);
 }
 
 static void json_number(struct json *j, const char *key, double value)
@@ -165,6 +167,7 @@ static void json_pair(struct json *j, const char *key, const char *value)
 
 void stability_print_json(FILE *out, const struct stability_report *r)
 {
+    static const char *const cause[] = {"", "rounding", "algorithm-fails"};
     struct json j = json_make(out);
     json_object(&j);
     json_key(&j, "rows");
@@ -174,6 +177,7 @@ void stability_print_json(FILE *out, const struct stability_report *r)
         json_object(&j);
         json_pair(&j, "algorithm", x->algorithm);
         json_pair(&j, "case", x->subject);
+        json_pair(&j, "cause", cause[x->cause]);
         json_number(&j, "condition", x->condition);
         json_number(&j, "energy_drift", x->energy_drift);
         json_number(&j, "error", x->error);

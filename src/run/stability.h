@@ -13,6 +13,10 @@
 
 enum stability_status { STABILITY_OK, STABILITY_DEGRADED, STABILITY_FAILED };
 
+/* Why an acceleration is not ok: the same algorithm in quad precision is right to 1e-8, or is not. The second is a
+ * failure of the algorithm on that scene; the row's reason names what answers it. */
+enum stability_cause { CAUSE_UNKNOWN, CAUSE_ROUNDING, CAUSE_ALGORITHM };
+
 struct stability_row {
     char subject[64], algorithm[40], precision[8];
     enum stability_status status; /* double: ok to 1e-8, degraded to 1e-2; float: 1e-3 and 1e-1 */
@@ -26,7 +30,8 @@ struct stability_row {
                              accelerations: power of the error, u . M (answer - reference), over the largest joint
                              force times the sum of |u|; NaN: at rest */
     double step_s;        /* of motions: largest stable or mean step, in the model's time; NaN otherwise */
-    char reason[160];
+    enum stability_cause cause; /* of accelerations that are not ok */
+    char reason[192];
 };
 
 struct stability_report {

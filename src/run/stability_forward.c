@@ -144,21 +144,28 @@ static const struct variant {
     {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
 };
 
-static void parallel_row(const struct judge *j, const struct variant *v)
+static struct trial variant_trial(const struct judge *j, const struct variant *v, enum precision precision)
 {
     int P = j->m->nbody < MOST_RANKS ? j->m->nbody : MOST_RANKS;
     struct run_spec spec = {.machine = trial_machine(P), .nrank = P};
+    bool twice = v->twice && precision != PRECISION_QUAD;
     spec.kernel = (struct kernel_spec){.name = "forward", .formulation = v->formulation, .solver = v->solver,
-                                       .part_solver = PART_CR, .precision = v->precision, .composites_incoming = true,
-                                       .residual = v->twice ? RESIDUAL_TWICE : RESIDUAL_WORKING,
+                                       .part_solver = PART_CR, .precision = precision, .composites_incoming = true,
+                                       .residual = twice ? RESIDUAL_TWICE : RESIDUAL_WORKING,
                                        .inner_refinements = v->inner, .outer_refinements = v->outer,
                                        .algebra = ALGEBRA_SPATIAL};
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
-    struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
     spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
     struct trial t = trial_run(&spec, j->m, j->s, j->a);
     while (trust_refine(&spec, j->m, &(struct run_result){.residual = t.residual}))
         t = trial_run(&spec, j->m, j->s, j->a);
+    return t;
+}
+
+static void parallel_row(const struct judge *j, const struct variant *v)
+{
+    struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
+    struct trial t = variant_trial(j, v, v->precision);
     if (!t.answered) {
         text_copy(x->reason, sizeof x->reason, t.text);
         return;
@@ -168,9 +175,77 @@ static void parallel_row(const struct judge *j, const struct variant *v)
     if (t.condition > 0) x->growth = t.condition;
 }
 
-void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
-                             const struct state *s, struct arena *scratch)
+/* --- why an answer is not good ------------------------------------------------------------------------------------ */
+
+/* The error in quad precision of the algorithm of a row; INFINITY: it breaks down there too. */
+static double quad_error(const struct judge *j, const struct stability_row *x)
 {
+    struct arena_mark mark = arena_mark(j->a);
+    double *qdd = TAKE(j->a, j->m->nu + 1, double), error = INFINITY;
+    struct work w = {0};
+    for (int k = 0; k < FORWARD_METHODS; k++)
+        if (strcmp(x->algorithm, forward_method_name((enum forward_method)k)) == 0 &&
+            dynamics_type_of(PRECISION_QUAD)->forward(j->m, j->s, (enum forward_method)k, j->a, qdd, NULL, NULL, &w))
+            error = trial_error(qdd, j->reference, j->m->nu);
+    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
+        const struct variant *v = &variant_table[k];
+        if (strcmp(x->algorithm, v->name) != 0 || strcmp(x->precision, dynamics_type_of(v->precision)->name) != 0)
+            continue;
+        struct trial t = variant_trial(j, v, PRECISION_QUAD);
+        if (t.answered) error = trial_error(t.qdd, j->reference, j->m->nu);
+    }
+    arena_release(j->a, mark);
+    return error;
+}
+
+static bool is_serial(const struct stability_row *x)
+{
+    for (int k = 0; k < FORWARD_METHODS; k++)
+        if (strcmp(x->algorithm, forward_method_name((enum forward_method)k)) == 0) return true;
+    return false;
+}
+
+/* What answers the scene well in double precision: the last of the same kind, else the last of all; NULL: nothing. */
+static const char *remedy_of(const struct stability_report *r, int first, const struct stability_row *failed)
+{
+    const char *any = NULL, *same = NULL;
+    for (int i = first; i < r->nrow; i++) {
+        const struct stability_row *x = &r->row[i];
+        if (x->status != STABILITY_OK || strcmp(x->precision, "double") != 0) continue;
+        any = x->algorithm;
+        if (is_serial(x) == is_serial(failed)) same = x->algorithm;
+    }
+    return same ? same : any;
+}
+
+/* Rounding, or the algorithm itself? Added to the row's reason. */
+static void cause_tell(const struct judge *j, int first, struct stability_row *x)
+{
+    char before[sizeof x->reason], cause[96];
+    const char *remedy = remedy_of(j->report, first, x);
+    double error = quad_error(j, x);
+    x->cause = error <= 1e-8 ? CAUSE_ROUNDING : CAUSE_ALGORITHM;
+    if (x->cause == CAUSE_ROUNDING) snprintf(cause, sizeof cause, "rounding: %.1e in quad precision", error);
+    else snprintf(cause, sizeof cause, "algorithm-fails: %.1e in quad precision%s%s", error, remedy ? "; use " : "",
+                  remedy ? remedy : "");
+    text_copy(before, sizeof before, x->reason);
+    snprintf(x->reason, sizeof x->reason, "%.60s%s%s", before, before[0] ? "; " : "", cause);
+}
+
+/* Quad precision takes fifty times as long: rows of larger scenes say nothing of their cause. */
+static void causes_tell(const struct judge *j, int first)
+{
+    enum { MOST_CAUSED = 1100 };
+    int end = j->report->nrow;
+    if (j->m->nbody > MOST_CAUSED) return;
+    for (int i = first; i < end; i++)
+        if (j->report->row[i].status != STABILITY_OK) cause_tell(j, first, &j->report->row[i]);
+}
+
+void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
+                             const struct state *s, bool causes, struct arena *scratch)
+{
+    const int first = r->nrow;
     struct judge j = {r, subject, m, s, scratch, TAKE(scratch, m->nu + 1, double), 0, NAN};
     if (!quad_forward(m, s, scratch, j.reference)) {
         text_copy(row_add(r, subject, "aba", "quad")->reason, 60, "the reference itself broke down");
@@ -190,5 +265,5 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
         struct arena_mark mark = arena_mark(scratch);
         if (variant_table[k].contraction == branched) parallel_row(&j, &variant_table[k]);
         arena_release(scratch, mark);
-    }
+    }    if (causes) causes_tell(&j, first);
 }

@@ -36,11 +36,12 @@ struct stability_row *row_add(struct stability_report *r, const char *subject, c
 /* row_grade: error and status; limits of `single` precision or of double. */
 void row_grade(struct stability_row *row, double error, bool single);
 
-/* stability_accelerations: rows of every forward algorithm. stability_motion: rows of the steppers on a stiff scene;
- * stability_energy: of two steppers on any other, its motors off, for as long as its fastest joint needs to turn by a
- * third of a radian. */
+/* stability_accelerations: rows of every forward algorithm; `causes`: rows that are not ok are run again in quad
+ * precision, up to 1,100 bodies, and say what is wrong with them. stability_motion: rows of the steppers on a stiff
+ * scene; stability_energy: of two steppers on any other, its motors off, for as long as its fastest joint needs to turn
+ * by a third of a radian. */
 void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
-                             const struct state *s, struct arena *scratch);
+                             const struct state *s, bool causes, struct arena *scratch);
 void stability_motion(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
                       bool damped, struct arena *scratch);
 void stability_energy(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,

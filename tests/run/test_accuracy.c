@@ -250,7 +250,7 @@ static struct stability_report rows_of(const char *name, struct arena *rows)
     struct err e;
     err_clear(&e);
     assert_true(scene_build(c, a, &m, &s, &e));
-    stability_accelerations(&r, c->name, m, s, a);
+    stability_accelerations(&r, c->name, m, s, true, a);
     arena_destroy(a);
     return r;
 }
@@ -300,7 +300,7 @@ static void the_suite_tells_what_moves_and_what_was_refined(void **state)
     struct err e;
     err_clear(&e);
     assert_true(scene_build(&c, a, &m, &s, &e));
-    stability_accelerations(&r, c.name, m, s, a);
+    stability_accelerations(&r, c.name, m, s, false, a);
     stability_energy(&r, c.name, m, s, a);
     assert_int_equal(row_of(&r, "robust cr")->refinements, 1); /* the outer one was asked for, too */
     assert_true(row_of(&r, "motion rk8pd")->energy_drift < 1e-10);

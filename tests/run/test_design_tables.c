@@ -90,7 +90,7 @@ static double error_of(struct subject *t, const char *algorithm)
 {
     if (!t->report.arena) {
         t->report.arena = t->rows;
-        stability_accelerations(&t->report, t->name, t->m, t->s, t->a);
+        stability_accelerations(&t->report, t->name, t->m, t->s, false, t->a);
     }
     for (int i = 0; i < t->report.nrow; i++) {
         const struct stability_row *r = &t->report.row[i];
