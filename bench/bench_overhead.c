@@ -12,7 +12,8 @@
 #include "../tests/support/many_ranks.h"
 #include "base/progress.h"
 #include "dynamics/system.h"
-#include "kernel/kernel.h"
+#include "kernel/dynamics_program.h"
+#include "kernel/programs.h"
 #include "model/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
@@ -21,15 +22,14 @@
 enum { MOST_ROUNDS = 200 };
 
 struct bare {
-    const struct kernel_type *kernel;
-    struct kernel_job job;
+    struct program_run run;
     char **workspace;
 };
 
 static void program(struct comm *c, void *context)
 {
     struct bare *b = context;
-    b->kernel->run(c, &b->job, b->workspace[comm_rank(c)]);
+    b->run.rank->run(c, b->run.job, b->workspace[comm_rank(c)]);
 }
 
 /* rounds_for: repetitions that fill about a second, at least three. */
@@ -43,27 +43,21 @@ static int rounds_for(int nrank)
 static double bare_seconds(const struct run_spec *spec, bool watch, struct err *e)
 {
     struct arena *a = arena_create();
-    struct bare b = {.kernel = kernel_find_precision(spec->kernel.name, spec->kernel.precision)};
+    struct bare b = {.run = {.type = program_find(spec->kernel.name), .spec = *spec, .arena = a}};
+    struct program_run *r = &b.run;
     struct model *m = model_build(&spec->model, a, e);
     if (!m) return 0;
     system_prepare(m);
-    b.job =
-        (struct kernel_job){.spec = spec, .model = m, .state = state_make(m, &spec->model, a), .nrank = spec->nrank};
-    job_want(&b.job, OUTPUT_TAU, m->nu, a);
-    job_want(&b.job, OUTPUT_QDD, m->nu, a);
-    if (watch) {
-        job_want(&b.job, OUTPUT_RESIDUAL, spec->nrank, a);
-        job_want(&b.job, OUTPUT_RESIDUAL_SCALE, spec->nrank, a);
-        job_want(&b.job, OUTPUT_CONDITION, spec->nrank, a);
-    }
-    if (!b.kernel->accepts(spec, m, e) || !b.kernel->prepare(&b.job, a, e)) return 0;
+    if (!dynamics_open(r, m, state_make(m, &spec->model, a), e)) return 0;
+    dynamics_run_of(r)->job.watch = watch;
+    if (!r->type->prepare(r, a, e)) return 0;
     b.workspace = TAKE(a, spec->nrank, char *);
-    for (int k = 0; k < spec->nrank; k++) b.workspace[k] = arena_take(a, b.kernel->workspace_bytes(&b.job, k));
+    for (int k = 0; k < spec->nrank; k++) b.workspace[k] = arena_take(a, r->rank->workspace_bytes(r->job, k));
     double best = 1e30;
     for (int round = 0; round < rounds_for(spec->nrank); round++) {
-        for (int k = 0; k < spec->nrank; k++) memset(b.workspace[k], 0, b.kernel->workspace_bytes(&b.job, k));
+        for (int k = 0; k < spec->nrank; k++) memset(b.workspace[k], 0, r->rank->workspace_bytes(r->job, k));
         const double begin = host_seconds();
-        many_ranks_publishing(spec->nrank, program, &b, b.job.output, KERNEL_OUTPUTS);
+        many_ranks_publishing(spec->nrank, program, &b, r->output, PROGRAM_OUTPUTS);
         const double took = host_seconds() - begin;
         if (took < best) best = took;
     }

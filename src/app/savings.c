@@ -7,7 +7,6 @@
 
 #include "base/progress.h"
 #include "base/text.h"
-#include "run/scene.h"
 
 enum { LEAST_ROUNDS = 5, MOST_ROUNDS = 200 };
 static const double longest_run_s = 0.25, round_budget_s = 1.0, least_noise = 0.01;
@@ -31,7 +30,7 @@ static void shortest_add(struct shortest *s, double x)
 static double spread_of(const struct shortest *s) { return s->time[2] - s->time[0]; }
 
 /* A run as one of a campaign: its scene is there already. */
-static bool time_run(const struct run_spec *spec, unsigned keep, struct scene_shelf *shelf, struct shortest *host,
+static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cache *cache, struct shortest *host,
                      int64_t *machine_ps, struct err *e)
 {
     struct run_spec with = *spec;
@@ -39,7 +38,7 @@ static bool time_run(const struct run_spec *spec, unsigned keep, struct scene_sh
     struct arena *a = arena_create();
     with.keep = keep;
     double begin = host_processor_seconds();
-    bool ok = run_sharing(&with, shelf, a, &result, e);
+    bool ok = run_sharing(&with, cache, a, &result, e);
     shortest_add(host, host_processor_seconds() - begin);
     if (ok) *machine_ps = result.makespan_ps;
     arena_destroy(a);
@@ -49,7 +48,7 @@ static bool time_run(const struct run_spec *spec, unsigned keep, struct scene_sh
 /* The omissions that stand at one point, and the point without any put back, twice a round: what differs between its
  * two halves is chance. */
 static bool measure_point(const struct run_spec *spec, struct savings *all, const int *item, int n,
-                          struct scene_shelf *shelf, struct err *e)
+                          struct run_cache *cache, struct err *e)
 {
     const struct shortest none = {{INFINITY, INFINITY, INFINITY}};
     struct shortest base[2] = {none, none}, with[MOST_SAVINGS];
@@ -58,10 +57,10 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
     for (int i = 0; i < n; i++) with[i] = none;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         if (round >= LEAST_ROUNDS && host_seconds() - begin > round_budget_s) break;
-        if (!time_run(spec, 0, shelf, &base[0], &base_ps, e)) return false;
+        if (!time_run(spec, 0, cache, &base[0], &base_ps, e)) return false;
         for (int i = 0; i < n; i++)
-            if (!time_run(spec, all->item[item[i]].omission.keep, shelf, &with[i], &with_ps[i], e)) return false;
-        if (!time_run(spec, 0, shelf, &base[1], &base_ps, e)) return false;
+            if (!time_run(spec, all->item[item[i]].omission.keep, cache, &with[i], &with_ps[i], e)) return false;
+        if (!time_run(spec, 0, cache, &base[1], &base_ps, e)) return false;
     }
     double least = fmin(base[0].time[0], base[1].time[0]);
     double chance = fmax(fabs(base[0].time[0] - base[1].time[0]), least_noise * least);
@@ -127,9 +126,9 @@ bool savings_measure(const struct plan *p, const struct run_estimate *r, struct 
         int n = 0;
         for (int k = 0; k < out->n; k++)
             if (point[k] == point[i] && !out->item[k].measured && out->item[k].omission.keep) item[n++] = k;
-        struct scene_shelf *shelf = scene_shelf_create();
-        bool ok = n == 0 || measure_point(&p->run[point[i]], out, item, n, shelf, e);
-        scene_shelf_destroy(shelf);
+        struct run_cache *cache = run_cache_create();
+        bool ok = n == 0 || measure_point(&p->run[point[i]], out, item, n, cache, e);
+        run_cache_destroy(cache);
         if (!ok) return false;
     }
     return true;

@@ -7,6 +7,7 @@
 
 #include "kernel/chain.h"
 #include "kernel/compound.h"
+#include "kernel/dynamics_program.h"
 #include "kernel/extremes.h"
 #include "kernel/implicit.h"
 #include "kernel/publish.h"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "kernel/contraction.h"
+#include "kernel/dynamics_program.h"
 #include "kernel/estimate.h"
 #include "kernel/forward.h"
 #include "kernel/publish.h"
@@ -22,8 +23,9 @@ struct tree_inverse {
 };
 
 /* One body a rank: a textbook row of three square blocks and a right-hand side is the largest message there is. */
-static int64_t largest_message(const struct kernel_job *job)
+static int64_t largest_message(const void *job_)
 {
+    const struct kernel_job *job = job_;
     bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
     if (kernel_branches(job->spec, job->model) || gathers || job->model->nbody != job->nrank) return -1;
     return (3 * SQUARE + SPACE) * (int64_t)sizeof(real);
@@ -90,8 +92,9 @@ static void tree_inverse_carve(struct tree_inverse *v, struct carve *c, const st
 /* head: room for a workspace's struct, before what is carved. */
 static size_t head(size_t size) { return (size + 15) & ~(size_t)15; }
 
-static size_t inverse_bytes(const struct kernel_job *job, int rank)
+static size_t inverse_bytes(const void *job_, int rank)
 {
+    const struct kernel_job *job = job_;
     if (kernel_branches(job->spec, job->model)) {
         struct tree_inverse measured;
         struct carve c = {.used = head(sizeof measured)};
@@ -104,8 +107,9 @@ static size_t inverse_bytes(const struct kernel_job *job, int rank)
     return c.used;
 }
 
-static size_t forward_bytes(const struct kernel_job *job, int rank)
+static size_t forward_bytes(const void *job_, int rank)
 {
+    const struct kernel_job *job = job_;
     if (kernel_branches(job->spec, job->model)) {
         struct contraction measured;
         struct carve c = {.used = head(sizeof measured)};
@@ -118,8 +122,9 @@ static size_t forward_bytes(const struct kernel_job *job, int rank)
     return c.used;
 }
 
-static size_t dynamics_bytes(const struct kernel_job *job, int rank)
+static size_t dynamics_bytes(const void *job_, int rank)
 {
+    const struct kernel_job *job = job_;
     const size_t inverse = inverse_bytes(job, rank), forward = forward_bytes(job, rank);
     return inverse > forward ? inverse : forward;
 }
@@ -168,8 +173,9 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
         publish_reals(c, OUTPUT_TAU, tree_body(t, l)->u_at, tree_body(t, l)->d, v->tau + t->u_at[l]);
 }
 
-static void inverse_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void inverse_run(struct comm *c, const void *job_, void *workspace)
 {
+    const struct kernel_job *job = job_;
     if (kernel_branches(job->spec, job->model)) tree_inverse_run(c, job, workspace);
     else chain_inverse_run(c, job, workspace);
 }
@@ -190,13 +196,14 @@ static void tree_forward_run(struct comm *c, const struct kernel_job *job, struc
     contraction_run(k);
 }
 
-static void either_forward_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void either_forward_run(struct comm *c, const void *job_, void *workspace)
 {
+    const struct kernel_job *job = job_;
     if (kernel_branches(job->spec, job->model)) tree_forward_run(c, job, workspace);
     else chain_forward_run(c, job, workspace);
 }
 
-static void dynamics_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void both_run(struct comm *c, const void *job, void *workspace)
 {
     inverse_run(c, job, workspace);
     comm_barrier(c);
@@ -210,13 +217,9 @@ const struct kernel_type inverse_kernel = {
     .needs_model = true,
     .planar = SPACE == 3,
     .does_inverse = true,
-    .nstage = INVERSE_STAGES,
-    .stage_name = stage_name,
+    .rank = {INVERSE_STAGES, stage_name, inverse_bytes, largest_message, inverse_run},
     .accepts = accepts_inverse,
     .prepare = prepare,
-    .workspace_bytes = inverse_bytes,
-    .largest_message = largest_message,
-    .run = inverse_run,
     .estimate = estimate_inverse,
 };
 
@@ -226,13 +229,9 @@ const struct kernel_type forward_kernel = {
     .needs_model = true,
     .planar = SPACE == 3,
     .does_forward = true,
-    .nstage = FORWARD_STAGES,
-    .stage_name = stage_name,
+    .rank = {FORWARD_STAGES, stage_name, forward_bytes, largest_message, either_forward_run},
     .accepts = accepts_forward,
     .prepare = prepare,
-    .workspace_bytes = forward_bytes,
-    .largest_message = largest_message,
-    .run = either_forward_run,
     .estimate = estimate_forward,
 };
 
@@ -243,12 +242,8 @@ const struct kernel_type dynamics_kernel = {
     .planar = SPACE == 3,
     .does_inverse = true,
     .does_forward = true,
-    .nstage = FORWARD_STAGES,
-    .stage_name = stage_name,
+    .rank = {FORWARD_STAGES, stage_name, dynamics_bytes, largest_message, both_run},
     .accepts = accepts_forward,
     .prepare = prepare,
-    .workspace_bytes = dynamics_bytes,
-    .largest_message = largest_message,
-    .run = dynamics_run,
     .estimate = estimate_dynamics,
 };

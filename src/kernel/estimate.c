@@ -46,14 +46,14 @@ static struct outline outline_of(const struct run_spec *spec, const struct model
 }
 
 /* add: messages of `numbers` reals each. */
-static void add(struct kernel_estimate *e, double messages, double numbers)
+static void add(struct program_estimate *e, double messages, double numbers)
 {
     e->messages += messages;
     e->bytes += messages * numbers * (double)sizeof(real);
 }
 
 /* first_scan, of velocities or, at rest, accelerations; vector_scan: physics 3.1 to 3.3. */
-static void first_scan(const struct outline *o, bool incoming, struct kernel_estimate *e)
+static void first_scan(const struct outline *o, bool incoming, struct program_estimate *e)
 {
     const double inside = o->n - o->P;
     add(e, o->pairs, SPACE);
@@ -67,7 +67,7 @@ static void first_scan(const struct outline *o, bool incoming, struct kernel_est
     e->flops += inside * (2 * (o->x + SPACE) + o->y);
 }
 
-static void vector_scan(const struct outline *o, bool force, struct kernel_estimate *e)
+static void vector_scan(const struct outline *o, bool force, struct program_estimate *e)
 {
     const double inside = o->n - o->P;
     add(e, o->pairs, SPACE);
@@ -77,7 +77,7 @@ static void vector_scan(const struct outline *o, bool force, struct kernel_estim
 
 /* local_work: of single bodies; `forces`: inertial forces are wanted, not only velocities. */
 static void local_work(const struct run_spec *spec, const struct outline *o, const struct job_omit *omit, bool forces,
-                       struct kernel_estimate *e)
+                       struct program_estimate *e)
 {
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
     const double place = o->place + (dense ? SQUARE_MUL_FLOP : 0);
@@ -88,7 +88,7 @@ static void local_work(const struct run_spec *spec, const struct outline *o, con
 }
 
 /* reduction of one interface row per rank: physics (5.2), 5.3. */
-static void interface(const struct run_spec *spec, const struct outline *o, double m, struct kernel_estimate *e)
+static void interface(const struct run_spec *spec, const struct outline *o, double m, struct program_estimate *e)
 {
     const double c = o->c, packed = c * (c + 1) / 2;
     const double factor = c * (c + 1) * (2 * c + 1) / 6, triangular = c * c, product = c * (2 * c - 1);
@@ -127,13 +127,13 @@ static int even_owner(int nrow, int nrank, int i)
 }
 
 /* rows: reduction of all rows of all ranks (5.4 b): what crosses ranks, step by step. */
-static void rows(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+static void rows(const struct run_spec *spec, const struct outline *o, struct program_estimate *e)
 {
     const int n = (int)o->n, P = (int)o->P;
     const bool textbook = spec->kernel.solver == SOLVER_PCR;
     const double c = o->c, packed = c * (c + 1) / 2;
     struct outline all = *o; /* as if every row had a rank of its own, for the work */
-    struct kernel_estimate work = {0};
+    struct program_estimate work = {0};
     all.P = o->n, all.steps = all.pairs = all.triples = 0;
     for (int d = 1; d < n; d *= 2) {
         all.steps += 1;
@@ -157,7 +157,7 @@ static void rows(const struct run_spec *spec, const struct outline *o, struct ke
 }
 
 /* solution: the block tridiagonal system. */
-static void solution(const struct run_spec *spec, const struct outline *o, struct kernel_estimate *e)
+static void solution(const struct run_spec *spec, const struct outline *o, struct program_estimate *e)
 {
     const double c = o->c, packed = c * (c + 1) / 2;
     if (o->split && (spec->kernel.solver == SOLVER_PCR || spec->kernel.solver == SOLVER_PCR_SYMMETRIC)) {
@@ -193,7 +193,7 @@ static double evaluations(const struct kernel_spec *k)
 }
 
 /* repeat: the same again and again. */
-static void repeat(struct kernel_estimate *e, double times)
+static void repeat(struct program_estimate *e, double times)
 {
     e->messages *= times;
     e->bytes *= times;
@@ -201,10 +201,10 @@ static void repeat(struct kernel_estimate *e, double times)
 }
 
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                      struct kernel_estimate *out)
+                      struct program_estimate *out)
 {
     const struct outline o = outline_of(spec, model);
-    *out = (struct kernel_estimate){0};
+    *out = (struct program_estimate){0};
     if (kernel_branches(spec, model)) {
         estimate_tree(spec, model, omit, true, false, out);
         return;
@@ -218,11 +218,11 @@ void estimate_inverse(const struct run_spec *spec, const struct model *model, co
 }
 
 void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                      struct kernel_estimate *out)
+                      struct program_estimate *out)
 {
     const struct outline o = outline_of(spec, model);
     const bool direct = spec->kernel.formulation == FORMULATION_DIRECT;
-    *out = (struct kernel_estimate){0};
+    *out = (struct program_estimate){0};
     if (kernel_branches(spec, model)) {
         estimate_tree(spec, model, omit, false, true, out);
         repeat(out, evaluations(&spec->kernel));
@@ -252,9 +252,9 @@ void estimate_forward(const struct run_spec *spec, const struct model *model, co
 }
 
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                       struct kernel_estimate *out)
+                       struct program_estimate *out)
 {
-    struct kernel_estimate inverse, forward;
+    struct program_estimate inverse, forward;
     estimate_inverse(spec, model, omit, &inverse);
     estimate_forward(spec, model, omit, &forward);
     *out = forward;

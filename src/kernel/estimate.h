@@ -10,13 +10,13 @@
  * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
  * tenth. */
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                      struct kernel_estimate *out);
+                      struct program_estimate *out);
 /* estimate_forward: see above. */
 void estimate_forward(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                      struct kernel_estimate *out);
+                      struct program_estimate *out);
 /* estimate_dynamics: see above. */
 void estimate_dynamics(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                      struct kernel_estimate *out);
+                      struct program_estimate *out);
 
 /* kernel_fits_trees: whether the programs for trees have what is asked for: not dense operators, nor residuals in twice
  * the digits, nor inner refinements of linearly implicit steps. */
@@ -36,6 +36,6 @@ static inline bool kernel_branches(const struct run_spec *spec, const struct mod
 /* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
  * exact but for loops and refinements, flops roughly. */
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
-                   bool forward, struct kernel_estimate *out);
+                   bool forward, struct program_estimate *out);
 
 #endif

@@ -29,7 +29,7 @@ enum {
     UNMERGE_FLOP = 2 * SQUARE_VEC_FLOP + 2 * SCREW_ADD_FLOP + XFORM_FORCE_FLOP
 };
 
-static void add(struct kernel_estimate *e, double messages, double numbers)
+static void add(struct program_estimate *e, double messages, double numbers)
 {
     e->messages += messages;
     e->bytes += messages * numbers * (double)sizeof(real);
@@ -57,7 +57,7 @@ static struct jumps jumps_of(const struct tree_plan *p)
 }
 
 /* scan: one recurrence along the tree. */
-static void scan(const struct jumps *j, double n, bool first, struct kernel_estimate *e)
+static void scan(const struct jumps *j, double n, bool first, struct program_estimate *e)
 {
     add(e, j->entries, first ? XFORM_NUMBERS + SPACE : SPACE);
     add(e, j->jumps, SPACE);
@@ -68,7 +68,7 @@ static void scan(const struct jumps *j, double n, bool first, struct kernel_esti
 
 /* contraction: one solution for m columns. */
 static void contraction(const struct tree_plan *p, const struct model *model, double m, bool terms,
-                        struct kernel_estimate *e)
+                        struct program_estimate *e)
 {
     for (int i = 0; i < p->nop; i++) {
         const struct tree_op *op = &p->op[i];
@@ -105,7 +105,7 @@ static double solutions(const struct model *model, bool terms, double m)
 }
 
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
-                   bool forward, struct kernel_estimate *out)
+                   bool forward, struct program_estimate *out)
 {
     struct arena *a = arena_create();
     const struct tree_plan *p = tree_plan_make(model, spec->nrank, a);
@@ -119,7 +119,7 @@ void estimate_tree(const struct run_spec *spec, const struct model *model, const
     for (int k = 0; k < scans; k++) scan(&j, n, k == 0, out);
     out->flops += bodies(model, omit, forces);
     if (forward) {
-        struct kernel_estimate one = {0};
+        struct program_estimate one = {0};
         contraction(p, model, m, direct && !omit->velocity, &one);
         add(&one, j.entries, SPACE * m);
         out->messages += passes * one.messages;

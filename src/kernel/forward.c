@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernel/assembly.h"
+#include "kernel/dynamics_program.h"
 #include "kernel/extremes.h"
 #include "kernel/forward_exact.h"
 #include "kernel/forward_rows.h"
@@ -18,7 +19,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     struct chain *ch = &f->chain;
     const bool refine = spec->outer_refinements > 0;
     f->direct = spec->formulation == FORMULATION_DIRECT;
-    f->watch = job_output(job, OUTPUT_RESIDUAL) || refine;
+    f->watch = job->watch || refine;
     f->step = implicit_step(job);
     chain_carve(ch, c, job, rank, true, refine || !f->direct);
     const int m = ch->hi - ch->lo, nu = chain_nu(s, ch->lo, ch->hi);

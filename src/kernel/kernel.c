@@ -1,10 +1,7 @@
-/* kernel.c - the table of all kernels, in three precisions and two spaces. */
+/* kernel.c - the table of the dynamics kernels, in three precisions and two spaces. */
 #include "kernel/kernel.h"
 
 #include <string.h>
-
-#include "kernel/micro.h"
-#include "kernel/micro_collective.h"
 
 /* What each precision's archive defines (dynamics_kernel.h, seen from outside any precision). */
 extern const struct kernel_type inverse_kernel_f32, inverse_kernel_f64, inverse_kernel_f128;
@@ -14,18 +11,9 @@ extern const struct kernel_type inverse_kernel_planar_f32, inverse_kernel_planar
 extern const struct kernel_type forward_kernel_planar_f32, forward_kernel_planar_f64, forward_kernel_planar_f128;
 extern const struct kernel_type dynamics_kernel_planar_f32, dynamics_kernel_planar_f64, dynamics_kernel_planar_f128;
 
-#define MICRO                                                                                                          \
-    &pingpong_kernel, &shift_kernel, &bisection_kernel, &all_to_all_kernel, &hot_spot_kernel, &ring_kernel,            \
-        &random_ring_kernel, &barrier_kernel, &message_barrier_kernel, &broadcast_kernel, &reduce_kernel,              \
-        &allreduce_kernel, &gather_kernel, &scatter_kernel, &allgather_kernel, &alltoall_kernel, &alltoallv_kernel,    \
-        &scan_kernel, &reduce_scatter_kernel
-
-static const struct kernel_type *const in_double[] = {&inverse_kernel_f64, &forward_kernel_f64, &dynamics_kernel_f64,
-                                                      MICRO};
-static const struct kernel_type *const in_float[] = {&inverse_kernel_f32, &forward_kernel_f32, &dynamics_kernel_f32,
-                                                     MICRO};
-static const struct kernel_type *const in_quad[] = {&inverse_kernel_f128, &forward_kernel_f128, &dynamics_kernel_f128,
-                                                    MICRO};
+static const struct kernel_type *const in_double[] = {&inverse_kernel_f64, &forward_kernel_f64, &dynamics_kernel_f64};
+static const struct kernel_type *const in_float[] = {&inverse_kernel_f32, &forward_kernel_f32, &dynamics_kernel_f32};
+static const struct kernel_type *const in_quad[] = {&inverse_kernel_f128, &forward_kernel_f128, &dynamics_kernel_f128};
 static const struct kernel_type *const planar_in_double[] = {&inverse_kernel_planar_f64, &forward_kernel_planar_f64,
                                                              &dynamics_kernel_planar_f64};
 static const struct kernel_type *const planar_in_float[] = {&inverse_kernel_planar_f32, &forward_kernel_planar_f32,
@@ -34,12 +22,6 @@ static const struct kernel_type *const planar_in_quad[] = {&inverse_kernel_plana
                                                            &dynamics_kernel_planar_f128};
 enum { NPLANAR = sizeof planar_in_double / sizeof planar_in_double[0] };
 enum { NKERNEL = sizeof in_double / sizeof in_double[0] };
-
-const struct kernel_type *const *kernel_list(int *n)
-{
-    *n = NKERNEL;
-    return in_double;
-}
 
 static const struct kernel_type *find(const struct kernel_type *const *table, int n, const char *name)
 {

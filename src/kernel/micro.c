@@ -2,18 +2,17 @@
 #include "kernel/micro.h"
 
 #include "comm/collectives.h"
+#include "kernel/micro_program.h"
 #include "kernel/tags.h"
 
 static const char *const stage_name[] = {"exchange"};
 
 /* Every rank's workspace: the message that it sends, then the one that it receives. */
-static int64_t message_bytes(const struct kernel_job *job) { return job->spec->kernel.message_bytes; }
-static int repetitions(const struct kernel_job *job)
-{
-    return job->spec->kernel.repeat > 1 ? job->spec->kernel.repeat : 1;
-}
+static const struct kernel_spec *settings(const struct kernel_job *job) { return &job->spec->kernel; }
+static int64_t message_bytes(const void *job) { return settings(job)->message_bytes; }
+static int repetitions(const void *job) { return settings(job)->repeat > 1 ? settings(job)->repeat : 1; }
 
-static size_t workspace_bytes(const struct kernel_job *job, int rank)
+static size_t workspace_bytes(const void *job, int rank)
 {
     (void)rank;
     return 2 * (size_t)message_bytes(job) + 16;
@@ -54,7 +53,7 @@ static void note(struct comm *c, int64_t begin_ps, double divisor)
     comm_publish(c, OUTPUT_SECONDS, comm_rank(c), 1, &seconds);
 }
 
-static void pingpong_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void pingpong_run(struct comm *c, const void *job, void *workspace)
 {
     const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
     const int repeat = repetitions(job), rank = comm_rank(c), last = comm_size(c) - 1;
@@ -77,17 +76,17 @@ static void exchange(struct comm *c, int dst, int src, void *workspace, int64_t 
     comm_waitall(c, 2, request);
 }
 
-static void shift_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void shift_run(struct comm *c, const void *job, void *workspace)
 {
     const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job);
-    const int distance = (job->spec->kernel.distance % P + P) % P;
+    const int distance = (settings(job)->distance % P + P) % P;
     const int64_t begin = comm_now_ps(c);
     for (int k = 0; k < repeat && distance != 0; k++)
         exchange(c, (rank + distance) % P, (rank - distance + P) % P, workspace, message_bytes(job));
     note(c, begin, repeat);
 }
 
-static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void all_to_all_run(struct comm *c, const void *job, void *workspace)
 {
     const int repeat = repetitions(job);
     const int64_t begin = comm_now_ps(c);
@@ -101,7 +100,7 @@ static void all_to_all_run(struct comm *c, const struct kernel_job *job, void *w
     note(c, begin, repeat);
 }
 
-static void bisection_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void bisection_run(struct comm *c, const void *job, void *workspace)
 {
     const int P = comm_size(c), peer = (comm_rank(c) + P / 2) % P, repeat = repetitions(job);
     const int64_t begin = comm_now_ps(c);
@@ -109,7 +108,7 @@ static void bisection_run(struct comm *c, const struct kernel_job *job, void *wo
     note(c, begin, repeat);
 }
 
-static void hot_spot_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void hot_spot_run(struct comm *c, const void *job, void *workspace)
 {
     const int P = comm_size(c), repeat = repetitions(job);
     const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
@@ -125,7 +124,7 @@ static void hot_spot_run(struct comm *c, const struct kernel_job *job, void *wor
     note(c, begin, repeat);
 }
 
-static void barrier_run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void barrier_run(struct comm *c, const void *job, void *workspace)
 {
     (void)workspace;
     const int repeat = repetitions(job);
@@ -135,68 +134,66 @@ static void barrier_run(struct comm *c, const struct kernel_job *job, void *work
 }
 
 /* estimate_messages: `messages` of the spec's size a repetition. */
-static void estimate_messages(const struct run_spec *spec, double messages, struct kernel_estimate *out)
+static void estimate_messages(const struct run_spec *spec, double messages, struct program_estimate *out)
 {
     const double repeat = spec->kernel.repeat > 1 ? spec->kernel.repeat : 1;
-    *out = (struct kernel_estimate){.messages = messages * repeat};
+    *out = (struct program_estimate){.messages = messages * repeat};
     out->bytes = out->messages * (double)spec->kernel.message_bytes;
     out->rank_bytes = 2.0 * (double)spec->kernel.message_bytes + 16;
 }
 
 static void estimate_pingpong(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                              struct kernel_estimate *out)
+                              struct program_estimate *out)
 {
     (void)model, (void)omit;
     estimate_messages(spec, 2, out);
 }
 
 static void estimate_shift(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                           struct kernel_estimate *out)
+                           struct program_estimate *out)
 {
     (void)model, (void)omit;
     estimate_messages(spec, spec->kernel.distance % spec->nrank ? spec->nrank : 0, out);
 }
 
 static void estimate_all_to_all(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                                struct kernel_estimate *out)
+                                struct program_estimate *out)
 {
     (void)model, (void)omit;
     estimate_messages(spec, (double)spec->nrank * (spec->nrank - 1), out);
 }
 
 static void estimate_bisection(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                               struct kernel_estimate *out)
+                               struct program_estimate *out)
 {
     (void)model, (void)omit;
     estimate_messages(spec, spec->nrank, out);
 }
 
 static void estimate_hot_spot(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                              struct kernel_estimate *out)
+                              struct program_estimate *out)
 {
     (void)model, (void)omit;
     estimate_messages(spec, spec->nrank - 1, out);
 }
 
 static void estimate_barrier(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                             struct kernel_estimate *out)
+                             struct program_estimate *out)
 {
     (void)spec, (void)model, (void)omit;
-    *out = (struct kernel_estimate){.rank_bytes = 16}; /* a barrier's messages belong to the machine */
+    *out = (struct program_estimate){.rank_bytes = 16}; /* a barrier's messages belong to the machine */
 }
 
 #define MICRO(stem, word, text, accept)                                                                                \
     const struct kernel_type stem##_kernel = {                                                                         \
         .name = word,                                                                                                  \
         .title = text,                                                                                                 \
-        .nstage = 1,                                                                                                   \
-        .stage_name = stage_name,                                                                                      \
+        .rank = {1, stage_name, workspace_bytes, NULL, stem##_run},                                                    \
         .accepts = accept,                                                                                             \
         .prepare = prepare,                                                                                            \
-        .workspace_bytes = workspace_bytes,                                                                            \
-        .run = stem##_run,                                                                                             \
         .estimate = estimate_##stem,                                                                                   \
-    }
+    };                                                                                                                 \
+    const struct program_type stem##_program = MICRO_PROGRAM(stem, word, text)
 
 MICRO(pingpong, "pingpong", "a message there and back between the first and the last rank", accepts);
 MICRO(shift, "shift", "every rank sends to the rank a distance further", accepts);

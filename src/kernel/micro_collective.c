@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "comm/collective_rules.h"
 #include "kernel/carve.h"
+#include "kernel/micro_program.h"
 #include "kernel/tags.h"
 
 enum { STAGE_COLLECTIVE, STAGE_SYNCHRONISE, NSTAGE };
@@ -126,8 +127,9 @@ static void carve_buffers(struct buffers *b, struct carve *c, const struct run_s
     b->send_counts = CARVE(c, is_varied(spec) ? s->size : 0, int64_t);
 }
 
-static size_t workspace_bytes(const struct kernel_job *job, int rank)
+static size_t workspace_bytes(const void *job_, int rank)
 {
+    const struct kernel_job *job = job_;
     const struct shared *s = job->shared;
     struct carve c = {0};
     struct buffers b;
@@ -159,8 +161,9 @@ static struct collective_call make_call(struct comm *c, const struct shared *s, 
 
 static int repetitions(const struct run_spec *spec) { return spec->kernel.repeat > 1 ? spec->kernel.repeat : 1; }
 
-static void run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void run(struct comm *c, const void *job_, void *workspace)
 {
+    const struct kernel_job *job = job_;
     const struct shared *s = job->shared;
     const int repeat = repetitions(job->spec);
     int64_t spent = 0;
@@ -193,7 +196,7 @@ static int64_t varied_bytes(const struct collective_shape *s)
 }
 
 static void estimate(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                     struct kernel_estimate *out)
+                     struct program_estimate *out)
 {
     (void)model, (void)omit;
     struct err e = {0};
@@ -202,7 +205,7 @@ static void estimate(const struct run_spec *spec, const struct model *model, con
     struct collective_cost cost = {0};
     struct carve c = {0};
     struct buffers b;
-    *out = (struct kernel_estimate){0};
+    *out = (struct program_estimate){0};
     err_clear(&e);
     if (!a) return;
     a->cost(&s, &cost);
@@ -219,14 +222,12 @@ static void estimate(const struct run_spec *spec, const struct model *model, con
     const struct kernel_type stem##_kernel = {                                                                         \
         .name = word,                                                                                                  \
         .title = text,                                                                                                 \
-        .nstage = NSTAGE,                                                                                              \
-        .stage_name = stage_name,                                                                                      \
+        .rank = {NSTAGE, stage_name, workspace_bytes, NULL, run},                                                      \
         .accepts = accepts,                                                                                            \
         .prepare = prepare,                                                                                            \
-        .workspace_bytes = workspace_bytes,                                                                            \
-        .run = run,                                                                                                    \
         .estimate = estimate,                                                                                          \
-    }
+    };                                                                                                                 \
+    const struct program_type stem##_program = MICRO_PROGRAM(stem, word, text)
 
 COLLECTIVE(broadcast, "broadcast", "one rank's vector to all");
 COLLECTIVE(reduce, "reduce", "all ranks' vectors added up, on one rank");

@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "kernel/carve.h"
 #include "kernel/micro.h"
+#include "kernel/micro_program.h"
 #include "kernel/tags.h"
 
 static const char *const stage_name[] = {"exchange"};
@@ -13,7 +14,7 @@ struct ring {
     int nring;
 };
 
-static int64_t message_bytes(const struct kernel_job *job) { return job->spec->kernel.message_bytes; }
+static int64_t message_bytes(const void *job) { return ((const struct kernel_job *)job)->spec->kernel.message_bytes; }
 
 static int repetitions(const struct run_spec *spec) { return spec->kernel.repeat > 1 ? spec->kernel.repeat : 1; }
 
@@ -69,7 +70,7 @@ static bool prepare_random(struct kernel_job *job, struct arena *a, struct err *
     return prepare_order(job, a, true);
 }
 
-static size_t workspace_bytes(const struct kernel_job *job, int rank)
+static size_t workspace_bytes(const void *job, int rank)
 {
     (void)rank;
     return 3 * (size_t)message_bytes(job) + 16;
@@ -83,8 +84,9 @@ static int neighbour(const struct ring *g, int P, int rank, int step)
     return g->member[first + (place - first + step + n) % n];
 }
 
-static void run(struct comm *c, const struct kernel_job *job, void *workspace)
+static void run(struct comm *c, const void *job_, void *workspace)
 {
+    const struct kernel_job *job = job_;
     const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job->spec);
     const int left = neighbour(job->shared, P, rank, -1), right = neighbour(job->shared, P, rank, 1);
     const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
@@ -102,10 +104,10 @@ static void run(struct comm *c, const struct kernel_job *job, void *workspace)
 }
 
 static void estimate(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                     struct kernel_estimate *out)
+                     struct program_estimate *out)
 {
     (void)model, (void)omit;
-    *out = (struct kernel_estimate){.messages = 2.0 * spec->nrank * repetitions(spec)};
+    *out = (struct program_estimate){.messages = 2.0 * spec->nrank * repetitions(spec)};
     out->bytes = out->messages * (double)spec->kernel.message_bytes;
     out->rank_bytes = 3.0 * (double)spec->kernel.message_bytes + 16;
 }
@@ -113,23 +115,22 @@ static void estimate(const struct run_spec *spec, const struct model *model, con
 const struct kernel_type ring_kernel = {
     .name = "ring",
     .title = "every rank sends to both its neighbours in a ring",
-    .nstage = 1,
-    .stage_name = stage_name,
+    .rank = {1, stage_name, workspace_bytes, NULL, run},
     .accepts = accepts,
     .prepare = prepare,
-    .workspace_bytes = workspace_bytes,
-    .run = run,
     .estimate = estimate,
 };
 
 const struct kernel_type random_ring_kernel = {
     .name = "random-ring",
     .title = "the same with the ranks in random order",
-    .nstage = 1,
-    .stage_name = stage_name,
+    .rank = {1, stage_name, workspace_bytes, NULL, run},
     .accepts = accepts,
     .prepare = prepare_random,
-    .workspace_bytes = workspace_bytes,
-    .run = run,
     .estimate = estimate,
 };
+
+const struct program_type ring_program =
+    MICRO_PROGRAM(ring, "ring", "every rank sends to both its neighbours in a ring");
+const struct program_type random_ring_program =
+    MICRO_PROGRAM(random_ring, "random-ring", "the same with the ranks in random order");

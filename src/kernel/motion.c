@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "kernel/dynamics_program.h"
 #include "kernel/publish.h"
 #include <string.h>
 

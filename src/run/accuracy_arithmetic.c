@@ -6,9 +6,9 @@
 #include "base/text.h"
 #include "dynamics/dynamics_table.h"
 #include "dynamics/planar_dynamics.h"
+#include "kernel/omission.h"
 #include "machine/node_cost.h"
 #include "run/accuracy_ladder.h"
-#include "run/omission.h"
 #include "run/trial.h"
 
 static const char reference_name[] = "quad aba";

@@ -4,11 +4,9 @@
 
 #include "base/progress.h"
 #include "base/text.h"
-#include "kernel/kernel.h"
 #include "machine/node_cost.h"
 #include "machine/topology.h"
 #include "run/accuracy_ladder.h"
-#include "run/omission.h"
 #include "run/trial.h"
 
 enum { LEVELS = 5, REPEATS = 3 };
@@ -70,15 +68,14 @@ static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, co
 static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 {
     const struct machine_spec *m = &l->spec.machine;
-    struct kernel_estimate x = {0};
+    struct program_estimate x = {0};
     struct err e;
     err_clear(&e);
-    const struct kernel_type *kernel = omission_kernel(&l->spec, l->model, l->state, &e);
+    struct program_run r;
     double begin = host_seconds();
     struct topology *t = topology_create(&m->topology, l->arena, &e);
-    if (!t || !kernel || !kernel->estimate) return false;
-    const struct job_omit omit = omission_job(&l->spec, l->model, l->state);
-    kernel->estimate(&l->spec, l->model, &omit, &x);
+    if (!t || !trial_open(&r, &l->spec, l->model, l->state, l->arena, &e)) return false;
+    r.type->estimate(&r, &x);
     int P = l->spec.nrank;
     double hops = 0, bytes = x.messages > 0 ? x.bytes / x.messages : 0;
     for (int i = 1; i < P && i < t->nnode; i++) hops += topology_distance(t, 0, i);

@@ -15,7 +15,6 @@
 #include "base/progress.h"
 #include "measure/run_pulse.h"
 #include "run/run.h"
-#include "run/scene.h"
 
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
@@ -145,12 +144,12 @@ static struct run_spec with_pulse(const struct run_spec *spec, struct run_pulse 
 static _Noreturn void worker_main(const struct run_spec *spec, struct run_pulse *pulse, int orders, int answers)
 {
     int index;
-    struct scene_shelf *shelf = scene_shelf_create();
+    struct run_cache *cache = run_cache_create();
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
         struct run_spec own = with_pulse(&spec[index], pulse);
-        a.ok = run_sharing(&own, shelf, arena, &a.result, &a.error);
+        a.ok = run_sharing(&own, cache, arena, &a.result, &a.error);
         if (!send_answer(answers, &a)) break;
         arena_destroy(arena);
     }
@@ -259,19 +258,19 @@ static void stop_workers(struct campaign *c, bool at_once)
 
 static bool run_here(struct campaign *c, struct err *e)
 {
-    struct scene_shelf *shelf = scene_shelf_create();
+    struct run_cache *cache = run_cache_create();
     bool ok = true;
     for (int i = 0; ok && i < c->nspec; i++) {
         if (c->skip && c->skip[i]) continue;
         struct arena *arena = arena_create();
         struct run_result result;
         struct run_spec own = with_pulse(&c->spec[i], c->pulse);
-        ok = run_sharing(&own, shelf, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
+        ok = run_sharing(&own, cache, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
         arena_destroy(arena);
         c->ndone++;
         show_progress(c);
     }
-    scene_shelf_destroy(shelf);
+    run_cache_destroy(cache);
     return ok;
 }
 

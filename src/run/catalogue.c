@@ -2,13 +2,13 @@
 #include "run/catalogue.h"
 
 #include "base/check.h"
-#include "kernel/kernel.h"
+#include "kernel/programs.h"
 #include "sim/fiber.h"
 
 struct catalogue catalogue_of_kernels(void)
 {
     struct catalogue c = {0};
-    const struct kernel_type *const *k = kernel_list(&c.n);
+    const struct program_type *const *k = program_list(&c.n);
     CHECK(c.n <= CATALOGUE_MOST);
     for (int i = 0; i < c.n; i++) {
         c.name[i] = k[i]->name;

@@ -1,40 +1,41 @@
-/* launch.c - workspaces for all ranks, and the program that hands each its own; see launch.h. */
+/* launch.c - workspaces for all ranks, and the function that hands each its own; see launch.h. */
 #include "run/launch.h"
 
 #include "vp/world.h"
 
 struct launch {
-    const struct kernel_type *kernel;
-    const struct kernel_job *job;
+    const struct rank_program *rank;
+    const void *job;
     char **workspace; /* (nrank) */
 };
 
 static void program(struct comm *c, void *context)
 {
     struct launch *l = context;
-    l->kernel->run(c, l->job, l->workspace[comm_rank(c)]);
+    l->rank->run(c, l->job, l->workspace[comm_rank(c)]);
 }
 
 /* Taken one by one: all of it will be touched, so the arena may use large pages. */
-static char **make_workspaces(const struct kernel_job *job, const struct kernel_type *kernel, struct arena *a)
+static char **make_workspaces(const struct program_run *r, struct arena *a)
 {
-    char **w = TAKE(a, job->nrank, char *);
-    for (int i = 0; i < job->nrank; i++) w[i] = arena_take(a, kernel->workspace_bytes(job, i));
+    char **w = TAKE(a, r->spec.nrank, char *);
+    for (int i = 0; i < r->spec.nrank; i++) w[i] = arena_take(a, r->rank->workspace_bytes(r->job, i));
     return w;
 }
 
-int64_t launch_largest_message(const struct kernel_type *kernel, const struct kernel_job *job)
+int64_t launch_largest_message(const struct program_run *r)
 {
-    return kernel->largest_message ? kernel->largest_message(job) : -1;
+    return r->rank->largest_message ? r->rank->largest_message(r->job) : -1;
 }
 
-bool launch_job(const struct kernel_type *kernel, const struct kernel_job *job, const struct machine_spec *m,
-                const struct record_spec *record, uint64_t seed, int64_t largest, struct arena *scratch,
-                struct arena *a, struct run_result *out, struct err *e)
+bool launch_run(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
+                uint64_t seed, int64_t largest, struct arena *scratch, struct arena *a, struct run_result *out,
+                struct err *e)
 {
-    struct launch l = {kernel, job, make_workspaces(job, kernel, scratch)};
-    const struct world_load load = {.nrank = job->nrank, .program = program, .context = &l, .nstage = kernel->nstage,
-                                    .stage_name = kernel->stage_name, .largest_message = largest,
-                                    .output = job->output, .noutput = KERNEL_OUTPUTS, .pulse = job->spec->pulse};
+    struct launch l = {r->rank, r->job, make_workspaces(r, scratch)};
+    const struct world_load load = {.nrank = r->spec.nrank, .program = program, .context = &l,
+                                    .nstage = r->rank->nstage, .stage_name = r->rank->stage_name,
+                                    .largest_message = largest, .output = r->output, .noutput = PROGRAM_OUTPUTS,
+                                    .pulse = r->spec.pulse};
     return world_run(m, &load, record, seed, a, out, e);
 }

@@ -1,4 +1,4 @@
-/* launch.h - a prepared job of a kernel on the virtual processors of a machine: workspaces and every rank's program. */
+/* launch.h - a prepared run of a program on the virtual processors of a machine: workspaces and every rank's text. */
 #ifndef RUN_LAUNCH_H
 #define RUN_LAUNCH_H
 
@@ -7,14 +7,14 @@
 
 #include "base/arena.h"
 #include "base/err.h"
-#include "kernel/kernel.h"
 #include "measure/run_result.h"
+#include "program/program.h"
 #include "spec/run_spec.h"
 
-/* launch_largest_message: what the kernel promises of its messages [B], -1: nothing. */
-int64_t launch_largest_message(const struct kernel_type *kernel, const struct kernel_job *job);
+/* launch_largest_message: what the program promises of its messages [B], -1: nothing. After open. */
+int64_t launch_largest_message(const struct program_run *r);
 
-/* launch_job: run `job`, which kernel->prepare has seen, to the end on job->nrank virtual processors of machine `m`.
+/* launch_run: run the ranks of `r`, which has been prepared, to the end on virtual processors of machine `m`.
  *
  *   record, seed  in   see world_run
  *   largest       in   the promise that world_run may rely on, see world_load
@@ -22,8 +22,8 @@ int64_t launch_largest_message(const struct kernel_type *kernel, const struct ke
  *   a, out        out  the result, with its arrays in `a`
  *
  *   Returns false as world_run. */
-bool launch_job(const struct kernel_type *kernel, const struct kernel_job *job, const struct machine_spec *m,
-                const struct record_spec *record, uint64_t seed, int64_t largest, struct arena *scratch,
-                struct arena *a, struct run_result *out, struct err *e);
+bool launch_run(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
+                uint64_t seed, int64_t largest, struct arena *scratch, struct arena *a, struct run_result *out,
+                struct err *e);
 
 #endif

@@ -1,47 +1,20 @@
-/* omission.h - what a run does not compute because its scene does not need it, and how to compute it all the same.
+/* omission.h - what a run does not record or simulate because nothing asks for it, and the list of all that it leaves
+ * out, its program's part included.
  *
- * An omission is exact when every number of the answer (tau, q'', q and q' at the end, loop forces) is the same with it
- * and without; what only the simulator leaves out changes no simulated time either, though its events and so the digest
- * may differ. A bounded one changes the answer by less than its bound, relative to the answer's largest number.
- * --keep-all puts all of them back (KEEP_* of spec/run_spec.h). */
+ * What the simulator alone leaves out changes no simulated time, though its events and so the digest may differ.
+ * --keep-all puts all of it back (KEEP_* of spec/run_spec.h). */
 #ifndef RUN_OMISSION_H
 #define RUN_OMISSION_H
 
-#include "kernel/kernel.h"
 #include "measure/run_result.h"
-#include "model/model.h"
+#include "program/program.h"
 #include "spec/run_spec.h"
 
-/* omission_scene: the scene that the kernels and the serial codes get, spec->keep obeyed: bodies on fixed joints become
- * part of others where that leaves enough for all ranks; what is put back is added. Changes *m and *s, replacing them
- * by new ones in `a` when bodies merge. Returns how many did. */
-int omission_scene(const struct run_spec *spec, struct model **m, struct state **s, struct arena *a);
-
-/* omission_movable: bodies of m on joints that move. omission_mergeable: how many bodies omission_scene will merge of
- * `nbody`, `movable` of which are on joints that move. */
-int omission_movable(const struct model *m);
-int omission_mergeable(const struct run_spec *spec, int nbody, int movable);
-
-/* omission_kernel: the kernel that spec->kernel names, in the algebra that it asks for; auto: in three components where
- * the scene is planar and the operators are not dense, spec->keep obeyed. m, s NULL: kernels without a model. NULL
- * with *e set when there is no such kernel, or the scene is not planar as asked. */
-const struct kernel_type *omission_kernel(const struct run_spec *spec, const struct model *m, const struct state *s,
-                                          struct err *e);
-
-/* omission_job: what a kernel leaves out in a scene, spec->keep obeyed. m, s NULL: kernels without a model. */
-struct job_omit omission_job(const struct run_spec *spec, const struct model *m, const struct state *s);
-
-/* omission_list: what a run leaves out by its job's spec, model, state and omit, into out (RUN_MAX_OMISSIONS). Returns
- * how many. */
-int omission_list(const struct kernel_job *job, const struct kernel_type *kernel, struct omission *out);
-
-/* omission_unused: settings that act nowhere because of what a model's file says, "key: reason" (constant texts), into
- * out (2); what the settings alone decide is in the fields' tables. Returns how many. */
-int omission_unused(const struct kernel_job *job, const struct kernel_type *kernel, const char **out);
+/* omission_listing: all that a run leaves out, after open, into out (RUN_MAX_OMISSIONS). Returns how many. */
+int omission_listing(const struct program_run *r, struct omission *out);
 
 /* omission_largest_message, omission_machine, omission_record: what the world is told, with spec->keep obeyed. */
-int64_t omission_largest_message(const struct run_spec *spec, const struct kernel_type *kernel,
-                                 const struct kernel_job *job);
+int64_t omission_largest_message(const struct program_run *r);
 struct machine_spec omission_machine(const struct run_spec *spec);
 struct record_spec omission_record(const struct run_spec *spec);
 

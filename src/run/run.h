@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "base/err.h"
 #include "measure/run_result.h"
+#include "program/program.h"
 #include "spec/run_spec.h"
 
 /* run_one: build the model, run the kernel on the machine, compare with the serial references, fill the baselines.
@@ -18,11 +19,19 @@
  *   Returns false with ERR_CONFIG, ERR_DATA, ERR_NO_INPUT or ERR_INTERNAL when the run cannot be made. */
 bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e);
 
-struct scene_shelf; /* scene.h */
+/* What the runs of a campaign share: scenes and their serial answers. The caller owns it; destroy accepts NULL. */
+struct run_cache;
+struct run_cache *run_cache_create(void);
+void run_cache_destroy(struct run_cache *cache);
 
-/* run_sharing: run_one with the scenes on `shelf`, so that runs of one scene build it and its references once. */
-bool run_sharing(const struct run_spec *spec, struct scene_shelf *shelf, struct arena *a, struct run_result *out,
+/* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. */
+bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct run_result *out,
                  struct err *e);
+
+/* run_open: the program of `spec`, opened (program.h) but not prepared; memory from `a`, which must live as long as
+ * *r, as must `cache`. Returns false as run_one. */
+bool run_open(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct program_run *r,
+              struct err *e);
 
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {

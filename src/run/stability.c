@@ -45,14 +45,14 @@ void row_grade(struct stability_row *row, double error, bool single)
 }
 
 /* Points of a scenario by what their models have: bodies as built, a base that is not fixed. */
-static void name_scene(const struct scene *c, const struct model *m, char *name, int size)
+static void name_scene(const struct stability_scene *c, const struct model *m, char *name, int size)
 {
     static const char *const base[] = {"", ", moving", ", floating"};
     if (!c->complete) snprintf(name, (size_t)size, "%s", c->name);
     else snprintf(name, (size_t)size, "%.40s, n = %d%s", c->name, m->nbody, base[c->spec.base]);
 }
 
-static bool measure_scene(struct stability_report *r, const struct scene *c, int most_bodies, struct err *e)
+static bool measure_scene(struct stability_report *r, const struct stability_scene *c, int most_bodies, struct err *e)
 {
     struct arena *a = arena_create();
     struct model *m;
@@ -73,7 +73,7 @@ static bool measure_scene(struct stability_report *r, const struct scene *c, int
 static bool measure_suite(struct stability_report *r, int most_bodies, bool quiet, struct err *e)
 {
     int n;
-    const struct scene *c = scene_list(&n);
+    const struct stability_scene *c = scene_list(&n);
     struct progress p = progress_make("scenes", n, quiet);
     for (int i = 0; i < n; i++) {
         if (!measure_scene(r, &c[i], most_bodies, e)) return false;
@@ -96,7 +96,7 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
         char name[64];
         snprintf(name, sizeof name, "%.28s point %d", spec[i].scenario, i + 1);
-        struct scene c = {.name = name, .spec = spec[i].model, .complete = true};
+        struct stability_scene c = {.name = name, .spec = spec[i].model, .complete = true};
         c.moves = c.spec.stiffness > 0 || c.spec.damping > 0;
         if (!measure_scene(r, &c, most_bodies, e)) return false;
         progress_show(&p, i + 1);

@@ -5,9 +5,9 @@
 
 #include "base/text.h"
 #include "dynamics/dynamics_table.h"
+#include "kernel/trust.h"
 #include "run/stability_scene.h"
 #include "run/trial.h"
-#include "run/trust.h"
 
 enum {
     MOST_RANKS = 64,

@@ -14,7 +14,7 @@
 #define TWIST(n) .nbody = (n), .pose = POSE_STRAIGHT, .axes = AXES_TWISTED
 #define STIFF(k, c) COIL(4), .stiffness = (k), .damping = (c)
 
-static const struct scene scenes[] = {
+static const struct stability_scene scenes[] = {
     {.name = "mass even", .spec = {COIL(64)}},
     {.name = "mass heavy tip 1e6", .spec = {COIL(64)}, .spread = SPREAD_HEAVY_TIP, .ratio = 1e6},
     {.name = "mass heavy tip 1e12", .spec = {COIL(64)}, .spread = SPREAD_HEAVY_TIP, .ratio = 1e12},
@@ -91,13 +91,13 @@ static const struct scene scenes[] = {
     {.name = "springs 1e8 damped", .spec = {STIFF(1e8, 1e6)}, .moves = true},
 };
 
-const struct scene *scene_list(int *n)
+const struct stability_scene *scene_list(int *n)
 {
     *n = (int)(sizeof scenes / sizeof *scenes);
     return scenes;
 }
 
-static double mass_factor(const struct scene *c, int i, int n)
+static double mass_factor(const struct stability_scene *c, int i, int n)
 {
     struct random r = random_make(1, STREAM_INERTIA, (uint64_t)i);
     switch (c->spread) {
@@ -114,7 +114,7 @@ static double mass_factor(const struct scene *c, int i, int n)
 }
 
 /* The generated model with its masses and inertias changed; the model itself when nothing is to change. */
-static struct model *reshape(const struct scene *c, struct model *m, struct arena *a, struct err *e)
+static struct model *reshape(const struct stability_scene *c, struct model *m, struct arena *a, struct err *e)
 {
     double point = c->point > 0 ? c->point : 1;
     if (c->spread == SPREAD_EVEN && point == 1) return m;
@@ -132,7 +132,7 @@ static struct model *reshape(const struct scene *c, struct model *m, struct aren
 }
 
 /* The spec with everything that its scene does not say. */
-static struct model_spec complete(const struct scene *c)
+static struct model_spec complete(const struct stability_scene *c)
 {
     struct model_spec x = c->spec;
     if (c->complete) return x;
@@ -148,7 +148,7 @@ static struct model_spec complete(const struct scene *c)
     return x;
 }
 
-bool scene_build(const struct scene *c, struct arena *a, struct model **m, struct state **s, struct err *e)
+bool scene_build(const struct stability_scene *c, struct arena *a, struct model **m, struct state **s, struct err *e)
 {
     struct model_spec spec = complete(c);
     *m = model_build(&spec, a, e);

@@ -11,7 +11,7 @@ enum spread {
     SPREAD_ALTERNATING
 };
 
-struct scene {
+struct stability_scene {
     const char *name;
     struct model_spec spec;
     enum spread spread;
@@ -24,10 +24,10 @@ struct scene {
 };
 
 /* scene_list: the suite, (*n) scenes. */
-const struct scene *scene_list(int *n);
+const struct stability_scene *scene_list(int *n);
 
 /* scene_build: model and state; false with *e set. */
-bool scene_build(const struct scene *c, struct arena *a, struct model **m, struct state **s, struct err *e);
+bool scene_build(const struct stability_scene *c, struct arena *a, struct model **m, struct state **s, struct err *e);
 
 /* row_add: a failed row without numbers. The pointer holds until the next is added. */
 struct stability_row *row_add(struct stability_report *r, const char *subject, const char *algorithm,

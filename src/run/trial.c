@@ -4,10 +4,10 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "kernel/kernel.h"
+#include "kernel/dynamics_program.h"
+#include "kernel/programs.h"
+#include "kernel/trust.h"
 #include "run/launch.h"
-#include "run/trust.h"
-#include "run/omission.h"
 
 double trial_error(const double *x, const double *reference, int n)
 {
@@ -44,47 +44,42 @@ struct machine_spec trial_machine(int nrank)
     };
 }
 
-static bool job_make(struct kernel_job *job, const struct kernel_type *kernel, const struct run_spec *spec,
-                     const struct model *m, const struct state *s, struct arena *a, struct err *e)
+bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m, const struct state *s,
+                struct arena *a, struct err *e)
 {
-    *job = (struct kernel_job){.spec = spec, .model = m, .state = s, .nrank = spec->nrank};
-    job->omit = omission_job(spec, m, s);
-    job_want(job, OUTPUT_RESIDUAL, spec->nrank, a);
-    job_want(job, OUTPUT_RESIDUAL_SCALE, spec->nrank, a);
-    job_want(job, OUTPUT_CONDITION, spec->nrank, a);
-    job_want(job, OUTPUT_REFINED, 1, a);
-    if (m && kernel->does_inverse) job_want(job, OUTPUT_TAU, m->nu, a);
-    if (m && kernel->does_forward) job_want(job, OUTPUT_QDD, m->nu, a);
-    if (m && m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, a);
-    return kernel->accepts(spec, m, e) && kernel->prepare(job, a, e);
+    *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    if (!r->type) return err_set(e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
+    return m ? dynamics_open(r, m, s, e) : r->type->open(r, e);
 }
 
-static void answer(struct trial *t, const struct kernel_job *job, const struct run_result *r)
+static void answer(struct trial *t, const struct program_run *r, const struct run_result *result)
 {
-    t->answered = r->status == RUN_OK;
-    text_copy(t->text, sizeof t->text, r->text);
-    t->tau = job_output(job, OUTPUT_TAU);
-    t->qdd = job_output(job, OUTPUT_QDD);
-    t->residual = trust_residual(job);
-    t->condition = trust_condition(job);
-    t->refined = (int)*job_output(job, OUTPUT_REFINED);
-    t->makespan_ps = r->makespan_ps;
-    t->finish_ps = r->finish_ps;
-    t->host_s = r->host_s;
+    t->answered = result->status == RUN_OK;
+    text_copy(t->text, sizeof t->text, result->text);
+    t->makespan_ps = result->makespan_ps;
+    t->finish_ps = result->finish_ps;
+    t->host_s = result->host_s;
+    if (!r->type->has_scene) return;
+    t->tau = program_output(r, OUTPUT_TAU);
+    t->qdd = program_output(r, OUTPUT_QDD);
+    t->lambda = program_output(r, OUTPUT_LAMBDA);
+    t->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
+    t->residual = trust_residual(r);
+    t->condition = trust_condition(r);
+    t->refined = (int)*program_output(r, OUTPUT_REFINED);
 }
 
 struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a)
 {
     struct trial t = {.residual = NAN};
     struct run_result *result = TAKE(a, 1, struct run_result);
-    struct kernel_job job;
+    struct program_run *r = TAKE(a, 1, struct program_run);
     struct err e;
     err_clear(&e);
-    const struct kernel_type *kernel = omission_kernel(spec, m, s, &e);
-    bool good = kernel && job_make(&job, kernel, spec, m, s, a, &e);
-    good = good && launch_job(kernel, &job, &spec->machine, &spec->record, spec->seed,
-                              launch_largest_message(kernel, &job), a, a, result, &e);
-    if (good) answer(&t, &job, result);
+    const bool good = trial_open(r, spec, m, s, a, &e) && r->type->prepare(r, a, &e) &&
+                      launch_run(r, &spec->machine, &spec->record, spec->seed, launch_largest_message(r), a, a, result,
+                                 &e);
+    if (good) answer(&t, r, result);
     else text_copy(t.text, sizeof t.text, e.text);
     return t;
 }

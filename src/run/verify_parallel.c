@@ -5,9 +5,9 @@
 
 #include "base/text.h"
 #include "dynamics/planar.h"
-#include "kernel/kernel.h"
+#include "kernel/dynamics_program.h"
 #include "run/launch.h"
-#include "run/omission.h"
+#include "run/trial.h"
 #include "run/verify_rows.h"
 
 /* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
@@ -67,22 +67,6 @@ struct outcome {
     char text[96];       /* refused, broken: why */
 };
 
-static bool job_make(struct verify_case *v, const struct kernel_type *kernel, const struct run_spec *spec, bool lumped,
-                     struct kernel_job *job, struct err *e)
-{
-    const struct model *m = lumped ? v->lumped : v->model;
-    *job = (struct kernel_job){.spec = spec, .model = m, .state = lumped ? v->lumped_state : v->state,
-                               .nrank = spec->nrank};
-    job_want(job, OUTPUT_RESIDUAL, spec->nrank, v->arena);
-    job_want(job, OUTPUT_CONDITION, spec->nrank, v->arena);
-    job_want(job, OUTPUT_LOOP_RANK, 1, v->arena);
-    job->omit = omission_job(spec, m, job->state);
-    if (kernel->does_inverse) job_want(job, OUTPUT_TAU, m->nu, v->arena);
-    if (kernel->does_forward) job_want(job, OUTPUT_QDD, m->nu, v->arena);
-    if (m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, v->arena);
-    return kernel->accepts(spec, m, e) && kernel->prepare(job, v->arena, e);
-}
-
 /* Answers do not depend on the machine; this one is simple, and as large as it must be. */
 static struct machine_spec machine_make(const struct verify_options *o, int nrank)
 {
@@ -98,31 +82,28 @@ static struct machine_spec machine_make(const struct verify_options *o, int nran
     return o->machine ? *o->machine : crossbar;
 }
 
-/* Run a kernel on nrank virtual processors. */
-static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel_spec, int nrank, struct outcome *out,
+/* Run a kernel on nrank virtual processors; in space unless the plane is asked for. */
+static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank, struct outcome *out,
                        struct err *e)
 {
-    const struct kernel_type *kernel = kernel_spec->algebra == ALGEBRA_PLANAR
-                                           ? kernel_find_planar(kernel_spec->name, kernel_spec->precision)
-                                           : kernel_find_precision(kernel_spec->name, kernel_spec->precision);
-    struct run_spec *spec = TAKE(v->arena, 1, struct run_spec);
+    struct program_run *r = TAKE(v->arena, 1, struct program_run);
     struct run_result *result = TAKE(v->arena, 1, struct run_result);
-    struct kernel_job job;
+    struct run_spec spec = {.machine = machine_make(v->options, nrank), .kernel = *kernel, .nrank = nrank};
+    const bool lumped = strcmp(kernel->name, "inverse") != 0;
     struct err refused;
     err_clear(&refused);
+    if (spec.kernel.algebra == ALGEBRA_AUTO) spec.kernel.algebra = ALGEBRA_SPATIAL;
     *out = (struct outcome){.kind = REFUSED};
-    *spec = (struct run_spec){.machine = machine_make(v->options, nrank), .kernel = *kernel_spec, .nrank = nrank};
-    if (!kernel) err_set(&refused, ERR_CONFIG, "there is no such kernel");
-    if (!kernel || !job_make(v, kernel, spec, kernel->does_forward, &job, &refused)) {
+    if (!trial_open(r, &spec, lumped ? v->lumped : v->model, lumped ? v->lumped_state : v->state, v->arena, &refused) ||
+        !r->type->prepare(r, v->arena, &refused)) {
         text_copy(out->text, sizeof out->text, refused.text);
         return true;
     }
-    if (!launch_job(kernel, &job, &spec->machine, &spec->record, 0, launch_largest_message(kernel, &job), v->arena,
-                    v->arena, result, e))
+    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena, v->arena, result, e))
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
-                            .x = job_output(&job, kernel->does_forward ? OUTPUT_QDD : OUTPUT_TAU),
-                            .lambda = job_output(&job, OUTPUT_LAMBDA)};
+                            .x = program_output(r, lumped ? OUTPUT_QDD : OUTPUT_TAU),
+                            .lambda = program_output(r, OUTPUT_LAMBDA)};
     text_copy(out->text, sizeof out->text, result->text);
     return true;
 }

@@ -13,6 +13,9 @@
 #include "dynamics/dynamics.h"
 #include "dynamics/system.h"
 #include "evaluation.h"
+#include "kernel/dynamics_program.h"
+#include "kernel/micro_program.h"
+#include "kernel/programs.h"
 
 struct run_spec evaluation_spec(const char *name, int n, int P)
 {
@@ -39,15 +42,14 @@ struct run_spec evaluation_spec(const char *name, int n, int P)
 }
 
 struct running {
-    const struct kernel_type *kernel;
-    const struct kernel_job *job;
+    const struct program_run *run;
     char **workspace;
 };
 
 static void program(struct comm *c, void *context)
 {
     struct running *r = context;
-    r->kernel->run(c, r->job, r->workspace[comm_rank(c)]);
+    r->run->rank->run(c, r->run->job, r->workspace[comm_rank(c)]);
 }
 
 static double relative_error(int n, const double *x, const double *reference)
@@ -62,55 +64,71 @@ static double relative_error(int n, const double *x, const double *reference)
 }
 
 /* compare: with RNEA and ABA. */
-static void compare(const struct kernel_job *job, struct arena *a, struct evaluation *v)
+static void compare(const struct program_run *r, struct arena *a, struct evaluation *v)
 {
-    const struct model *m = job->model;
-    const struct state *s = job->state;
+    const struct model *m = dynamics_run_of(r)->job.model;
+    const struct state *s = dynamics_run_of(r)->job.state;
     struct dynamics *d = dynamics_take(m, a);
     struct work w = {0};
     double *reference = TAKE(a, m->nu + 1, double), *tau = TAKE(a, m->nu + 1, double);
     dynamics_load(d, s);
-    if (job_output(job, OUTPUT_TAU)) {
+    if (v->tau) {
         rnea(d, s->q, s->qd, s->qdd, reference, &w);
-        v->tau_error = relative_error(m->nu, job_output(job, OUTPUT_TAU), reference);
+        v->tau_error = relative_error(m->nu, v->tau, reference);
     }
-    if (!job_output(job, OUTPUT_QDD)) return;
+    if (!v->qdd) return;
     memcpy(tau, s->tau, (size_t)m->nu * sizeof *tau);
     springs_add(d, s->q, s->qd, tau);
     if (m->nloop == 0) assert_true(aba(d, s->q, s->qd, tau, reference, &w));
     else assert_true(closed_forward(d, s->q, s->qd, tau, reference, NULL, NULL, &w));
-    v->qdd_error = relative_error(m->nu, job_output(job, OUTPUT_QDD), reference);
+    v->qdd_error = relative_error(m->nu, v->qdd, reference);
 }
 
-/* want: every output of the program `k` for the job's model. */
-static void want(struct kernel_job *job, const struct kernel_type *k, struct arena *a)
+/* keep: what a program of dynamics published. */
+static void keep(const struct program_run *r, struct evaluation *v)
 {
-    const struct model *m = job->model;
-    if (k->does_inverse) job_want(job, OUTPUT_TAU, m->nu, a);
-    if (k->does_forward) job_want(job, OUTPUT_QDD, m->nu, a);
-    if (job->spec->kernel.steps > 0) {
-        job_want(job, OUTPUT_Q_END, m->nq, a);
-        job_want(job, OUTPUT_QD_END, m->nu, a);
+    v->tau = program_output(r, OUTPUT_TAU);
+    v->qdd = program_output(r, OUTPUT_QDD);
+    v->q_end = program_output(r, OUTPUT_Q_END);
+    v->qd_end = program_output(r, OUTPUT_QD_END);
+    v->lambda = program_output(r, OUTPUT_LAMBDA);
+    v->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
+    for (int k = 0; k < r->spec.nrank; k++) {
+        v->residual = fmax(v->residual, program_output(r, OUTPUT_RESIDUAL)[k]);
+        v->condition = fmax(v->condition, program_output(r, OUTPUT_CONDITION)[k]);
     }
-    if (m->nrow > 0) job_want(job, OUTPUT_LAMBDA, m->nrow, a);
-    job_want(job, OUTPUT_LOOP_RANK, 1, a);
-    job_want(job, OUTPUT_RESIDUAL, job->nrank, a);
-    job_want(job, OUTPUT_CONDITION, job->nrank, a);
 }
 
-/* keep: what it published. */
-static void keep(const struct kernel_job *job, struct evaluation *v)
+/* go: every rank to its end, without a simulator. */
+static void go(const struct program_run *r, struct arena *a, struct evaluation *v)
 {
-    v->tau = job_output(job, OUTPUT_TAU);
-    v->qdd = job_output(job, OUTPUT_QDD);
-    v->q_end = job_output(job, OUTPUT_Q_END);
-    v->qd_end = job_output(job, OUTPUT_QD_END);
-    v->lambda = job_output(job, OUTPUT_LAMBDA);
-    v->loop_rank = (int)*job_output(job, OUTPUT_LOOP_RANK);
-    for (int r = 0; r < job->nrank; r++) {
-        v->residual = fmax(v->residual, job_output(job, OUTPUT_RESIDUAL)[r]);
-        v->condition = fmax(v->condition, job_output(job, OUTPUT_CONDITION)[r]);
+    const int nrank = r->spec.nrank;
+    char **workspace = TAKE(a, nrank, char *);
+    for (int k = 0; k < nrank; k++) {
+        const size_t bytes = r->rank->workspace_bytes(r->job, k);
+        v->rank_bytes = bytes > v->rank_bytes ? bytes : v->rank_bytes;
+        workspace[k] = arena_take(a, bytes);
     }
+    struct running running = {.run = r, .workspace = workspace};
+    v->counts = many_ranks_publishing(nrank, program, &running, r->output, PROGRAM_OUTPUTS);
+    assert_int_equal(v->counts.blocked, 0);
+    assert_int_equal(v->counts.unread, 0);
+}
+
+/* open_scene: whether a scene is planar is asked in double precision, whatever the program computes in. */
+static void open_scene(struct program_run *r, const struct model *model, const struct state *state,
+                       struct job_omit omit)
+{
+    struct err e = {0};
+    const struct kernel_spec given = r->spec.kernel;
+    r->spec.kernel.precision = PRECISION_DOUBLE;
+    if (!dynamics_open(r, model, state, &e)) fail_msg("%s", e.text);
+    struct dynamics_run *d = dynamics_run_of(r);
+    r->spec.kernel.precision = given.precision;
+    d->kernel = d->kernel->planar ? kernel_find_planar(given.name, given.precision)
+                                  : kernel_find_precision(given.name, given.precision);
+    d->job.omit = omit;
+    r->rank = &d->kernel->rank;
 }
 
 struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
@@ -118,27 +136,17 @@ struct evaluation evaluate_omitting(const struct run_spec *spec, const struct mo
 {
     struct err e = {0};
     struct evaluation v = {0};
-    const struct kernel_type *k = spec->kernel.algebra == ALGEBRA_PLANAR
-                                      ? kernel_find_planar(spec->kernel.name, spec->kernel.precision)
-                                      : kernel_find_precision(spec->kernel.name, spec->kernel.precision);
-    assert_non_null(k);
-    struct kernel_job job = {.spec = spec, .model = model, .state = state, .omit = omit, .nrank = spec->nrank};
-    if (model) want(&job, k, a);
-    else job_want(&job, OUTPUT_SECONDS, spec->nrank, a);
-    if (!k->accepts(spec, model, &e) || !k->prepare(&job, a, &e)) fail_msg("%s", e.text);
-    char **workspace = TAKE(a, spec->nrank, char *);
-    for (int r = 0; r < spec->nrank; r++) {
-        const size_t bytes = k->workspace_bytes(&job, r);
-        v.rank_bytes = bytes > v.rank_bytes ? bytes : v.rank_bytes;
-        workspace[r] = arena_take(a, bytes);
-    }
-    struct running running = {.kernel = k, .job = &job, .workspace = workspace};
-    v.counts = many_ranks_publishing(spec->nrank, program, &running, job.output, KERNEL_OUTPUTS);
-    assert_int_equal(v.counts.blocked, 0);
-    assert_int_equal(v.counts.unread, 0);
-    if (model) keep(&job, &v);
-    else v.measured = job_output(&job, OUTPUT_SECONDS);
-    if (k->needs_model && spec->kernel.steps == 0) compare(&job, a, &v);
+    struct program_run *r = TAKE(a, 1, struct program_run);
+    *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    if (r->spec.kernel.algebra == ALGEBRA_AUTO) r->spec.kernel.algebra = ALGEBRA_SPATIAL;
+    assert_non_null(r->type);
+    if (!model && !r->type->open(r, &e)) fail_msg("%s", e.text);
+    if (model) open_scene(r, model, state, omit);
+    if (!r->type->prepare(r, a, &e)) fail_msg("%s", e.text);
+    go(r, a, &v);
+    if (model) keep(r, &v);
+    else v.measured = program_output(r, OUTPUT_SECONDS);
+    if (model && spec->kernel.steps == 0) compare(r, a, &v);
     return v;
 }
 
@@ -151,9 +159,9 @@ struct evaluation evaluate_model(const struct run_spec *spec, const struct model
 struct evaluation evaluate(const struct run_spec *spec, struct arena *a)
 {
     struct err e = {0};
-    const struct kernel_type *k = kernel_find(spec->kernel.name);
-    assert_non_null(k);
-    if (!k->needs_model) return evaluate_model(spec, NULL, NULL, a);
+    const struct program_type *type = program_find(spec->kernel.name);
+    assert_non_null(type);
+    if (!type->has_scene) return evaluate_model(spec, NULL, NULL, a);
     const struct model *model = model_build(&spec->model, a, &e);
     if (!model) fail_msg("%s", e.text);
     return evaluate_model(spec, model, state_make(model, &spec->model, a), a);

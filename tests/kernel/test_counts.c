@@ -130,11 +130,10 @@ static void estimates_equal_what_is_sent(void **state)
             spec.kernel.solver = variant & 4 ? SOLVER_PARTITION : SOLVER_PCR_SYMMETRIC;
             if (sizes[k][0] > sizes[k][1]) spec.kernel.solver = SOLVER_PARTITION;
             const struct many_ranks_result r = counts_of(spec);
-            struct kernel_estimate e;
+            struct program_estimate e;
             struct err err = {0};
             struct arena *a = arena_create();
-            const struct kernel_type *kernel = kernel_find("dynamics");
-            kernel->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
+            kernel_find("dynamics")->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);
             arena_destroy(a);
             assert_int_equal((int64_t)e.messages, r.messages);
             assert_int_equal((int64_t)e.bytes, r.bytes);
@@ -166,7 +165,7 @@ static void estimates_know_what_is_left_out(void **state)
         const struct job_omit omit = {.velocity = true, .load = true, .base = bits & 1, .bias = bits & 1};
         const struct evaluation whole = evaluate(&spec, a);
         const struct evaluation lean = evaluate_omitting(&spec, m, state_make(m, &spec.model, a), omit, a);
-        struct kernel_estimate e;
+        struct program_estimate e;
         kernel->estimate(&spec, m, &omit, &e);
         assert_int_equal((int64_t)e.messages, lean.counts.messages);
         assert_int_equal((int64_t)e.bytes, lean.counts.bytes);
@@ -201,7 +200,7 @@ static void estimates_of_all_rows_and_of_trees(void **state)
             spec.model.generator = cases[k].generator;
             spec.kernel.solver = cases[k].solver;
             const struct many_ranks_result r = counts_of(spec);
-            struct kernel_estimate e;
+            struct program_estimate e;
             struct err err = {0};
             struct arena *a = arena_create();
             kernel_find("forward")->estimate(&spec, model_build(&spec.model, a, &err), &(struct job_omit){0}, &e);

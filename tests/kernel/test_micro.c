@@ -11,6 +11,14 @@
 #include "comm/collective_rules.h"
 #include "evaluation.h"
 #include "kernel/micro_collective.h"
+#include "kernel/programs.h"
+
+/* micro: the kernel of a micro-benchmark; NULL when there is none. */
+static const struct kernel_type *micro(const char *name)
+{
+    const struct program_type *t = program_find(name);
+    return t ? t->context : NULL;
+}
 
 static void messages_and_bytes_are_as_announced(void **state)
 {
@@ -26,8 +34,8 @@ static void messages_and_bytes_are_as_announced(void **state)
                 s.kernel.message_bytes = bytes;
                 s.kernel.distance = 5;
                 const struct evaluation v = evaluate(&s, a);
-                struct kernel_estimate e;
-                kernel_find(names[k])->estimate(&s, NULL, NULL, &e);
+                struct program_estimate e;
+                micro(names[k])->estimate(&s, NULL, NULL, &e);
                 assert_int_equal(v.counts.messages, (int64_t)e.messages);
                 assert_int_equal(v.counts.bytes, (int64_t)e.bytes);
                 assert_int_equal(v.counts.reports, 0);
@@ -53,12 +61,12 @@ static void collectives_are_as_announced(void **state)
                 const struct collective_algorithm *row = collective_algorithms(micro_collective_shape(&s).kind, &n);
                 for (int i = -1; i < n; i++) {
                     struct err e = {0};
-                    struct kernel_estimate wanted;
+                    struct program_estimate wanted;
                     struct arena *a = arena_create();
                     strcpy(s.kernel.algorithm, i < 0 ? "auto" : row[i].name);
-                    if (kernel_find(names[k])->accepts(&s, NULL, &e)) {
+                    if (micro(names[k])->accepts(&s, NULL, &e)) {
                         const struct evaluation v = evaluate(&s, a);
-                        kernel_find(names[k])->estimate(&s, NULL, NULL, &wanted);
+                        micro(names[k])->estimate(&s, NULL, NULL, &wanted);
                         assert_int_equal(v.counts.messages, (int64_t)wanted.messages);
                         assert_int_equal(v.counts.bytes, (int64_t)wanted.bytes);
                         assert_int_equal(v.counts.stage_work[0].flop, (uint64_t)wanted.flops);
@@ -121,40 +129,48 @@ static void what_makes_no_sense_is_refused(void **state)
     (void)state;
     struct err e = {0};
     struct run_spec s = evaluation_spec("pingpong", 1, 1);
-    assert_false(kernel_find("pingpong")->accepts(&s, NULL, &e));
+    assert_false(micro("pingpong")->accepts(&s, NULL, &e));
     assert_int_equal(e.kind, ERR_CONFIG);
     err_clear(&e);
     s.nrank = 3;
-    assert_false(kernel_find("bisection")->accepts(&s, NULL, &e));
-    assert_null(kernel_find("ping"));
+    assert_false(micro("bisection")->accepts(&s, NULL, &e));
+    assert_null(micro("ping"));
     err_clear(&e);
     s = evaluation_spec("alltoall", 1, 3);
     strcpy(s.kernel.algorithm, "xor");
-    assert_false(kernel_find("alltoall")->accepts(&s, NULL, &e));
+    assert_false(micro("alltoall")->accepts(&s, NULL, &e));
     assert_non_null(strstr(e.text, "power of two"));
     err_clear(&e);
     s = evaluation_spec("broadcast", 1, 3);
     s.kernel.root = 3;
-    assert_false(kernel_find("broadcast")->accepts(&s, NULL, &e));
+    assert_false(micro("broadcast")->accepts(&s, NULL, &e));
     err_clear(&e);
     s.kernel.ring_ranks = 1;
-    assert_false(kernel_find("ring")->accepts(&s, NULL, &e));
+    assert_false(micro("ring")->accepts(&s, NULL, &e));
 }
 
-static void every_kernel_is_complete_in_every_precision(void **state)
+static void expect_complete(const struct kernel_type *t, const char *name)
+{
+    assert_non_null(t);
+    assert_string_equal(t->name, name);
+    assert_true(t->title && t->rank.nstage > 0 && t->rank.stage_name && t->accepts && t->prepare &&
+                t->rank.workspace_bytes && t->rank.run && t->estimate);
+}
+
+static void every_program_is_complete_in_every_precision(void **state)
 {
     (void)state;
     int n;
-    const struct kernel_type *const *list = kernel_list(&n);
-    assert_true(n >= 9);
-    for (int k = 0; k < n; k++)
-        for (int precision = 0; precision < 3; precision++) {
-            const struct kernel_type *t = kernel_find_precision(list[k]->name, (enum precision)precision);
-            assert_non_null(t);
-            assert_string_equal(t->name, list[k]->name);
-            assert_true(t->title && t->nstage > 0 && t->stage_name && t->accepts && t->prepare && t->workspace_bytes &&
-                        t->run && t->estimate);
-        }
+    const struct program_type *const *list = program_list(&n);
+    assert_true(n >= 22);
+    for (int k = 0; k < n; k++) {
+        const struct program_type *t = list[k];
+        assert_true(t->name && t->title && t->open && t->prepare && t->estimate);
+        assert_ptr_equal(program_find(t->name), t);
+        for (int precision = 0; precision < 3 && t->has_scene; precision++)
+            expect_complete(kernel_find_precision(t->name, (enum precision)precision), t->name);
+        if (!t->has_scene) expect_complete(t->context, t->name);
+    }
 }
 
 int main(void)
@@ -165,7 +181,7 @@ int main(void)
         cmocka_unit_test(the_machine_may_state_the_algorithms),
         cmocka_unit_test(bad_rules_say_what_is_expected),
         cmocka_unit_test(what_makes_no_sense_is_refused),
-        cmocka_unit_test(every_kernel_is_complete_in_every_precision),
+        cmocka_unit_test(every_program_is_complete_in_every_precision),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -232,7 +232,7 @@ static void estimates_equal_what_is_sent(void **state)
             struct arena *a = arena_create();
             struct run_spec s = planar_spec("dynamics", sizes[k][0], sizes[k][1]);
             struct err err = {0};
-            struct kernel_estimate e;
+            struct program_estimate e;
             s.model.axes = AXES_PARALLEL;
             s.model.generator = variant & 8 ? MODEL_DENDRIMER : MODEL_SERIAL_CHAIN;
             s.kernel.formulation = variant & 1 ? FORMULATION_DIRECT : FORMULATION_PAPER;

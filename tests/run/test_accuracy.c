@@ -10,12 +10,13 @@
 #include <math.h>
 
 #include "base/random.h"
+#include "kernel/dynamics_program.h"
+#include "kernel/trust.h"
 #include "plan/plan.h"
 #include "run/accuracy_ladder.h"
 #include "run/run.h"
 #include "run/stability_scene.h"
 #include "run/trial.h"
-#include "run/trust.h"
 
 static struct run_spec chain_spec(int n, int nrank)
 {
@@ -190,40 +191,41 @@ static void untrustworthy_answers_are_told(void **state)
     double residual[2] = {1e-12, 1e-9}, condition[2] = {10, 20}, qdd[1] = {0};
     struct run_spec spec = chain_spec(2, 2);
     const struct model chain = {.nbody = 2, .is_chain = true};
-    struct kernel_job job = {.spec = &spec, .model = &chain, .nrank = 2,
-                             .output = {[OUTPUT_QDD] = {qdd, 1}, [OUTPUT_RESIDUAL] = {residual, 2},
-                                        [OUTPUT_CONDITION] = {condition, 2}}};
+    struct dynamics_run own = {.job = {.spec = &spec, .model = &chain, .nrank = 2}};
+    struct program_run run = {.spec = spec, .own = &own, .output = {[OUTPUT_QDD] = {qdd, 1},
+                              [OUTPUT_RESIDUAL] = {residual, 2}, [OUTPUT_CONDITION] = {condition, 2}}};
+    own.job.spec = &run.spec;
     struct run_result r = {.status = RUN_OK};
-    spec.kernel.refinement = REFINEMENT_AS_GIVEN;
-    trust_check(&job, &r);
+    run.spec.kernel.refinement = REFINEMENT_AS_GIVEN;
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_OK);
     assert_true(r.residual == 1e-9 && r.condition == 20);
     residual[0] = 0.01;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_INVALID);
     assert_non_null(strstr(r.text, "inner_refinements"));
-    spec.kernel.refinement = REFINEMENT_AS_NEEDED; /* the run has tried that */
+    run.spec.kernel.refinement = REFINEMENT_AS_NEEDED; /* the run has tried that */
     r.status = RUN_OK;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_null(strstr(r.text, "inner_refinements"));
     r.status = RUN_OK, residual[0] = NAN;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_INVALID);
     assert_non_null(strstr(r.text, "residual is no number"));
     double scale[2] = {1e-20, 1}; /* the first rank has nothing but rounding */
-    r.status = RUN_OK, residual[0] = 1, job.output[OUTPUT_RESIDUAL_SCALE].x = scale;
-    trust_check(&job, &r);
+    r.status = RUN_OK, residual[0] = 1, run.output[OUTPUT_RESIDUAL_SCALE].x = scale;
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_OK);
     assert_true(r.residual == 1e-9);
     residual[1] = 0.1;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_INVALID);
     r.status = RUN_OK, residual[0] = residual[1] = 0, condition[1] = 1e17;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_INVALID);
-    spec.kernel.residual = RESIDUAL_TWICE; /* factors of no digit would leave a residual there */
+    run.spec.kernel.residual = RESIDUAL_TWICE; /* factors of no digit would leave a residual there */
     r.status = RUN_OK;
-    trust_check(&job, &r);
+    trust_check(&run, &r);
     assert_int_equal(r.status, RUN_OK);
 }
 
@@ -240,7 +242,7 @@ static const struct stability_row *row_of(const struct stability_report *r, cons
 static struct stability_report rows_of(const char *name, struct arena *rows)
 {
     int n;
-    const struct scene *c = scene_list(&n);
+    const struct stability_scene *c = scene_list(&n);
     while (n > 0 && strcmp(c->name, name) != 0) c++, n--;
     assert_true(n > 0);
     struct arena *a = arena_create();
@@ -294,7 +296,7 @@ static void the_suite_tells_what_moves_and_what_was_refined(void **state)
     (void)state;
     struct arena *a = arena_create(), *rows = arena_create();
     struct stability_report r = {.arena = rows};
-    struct scene c = {.name = "even", .spec = {.nbody = 8, .pose = POSE_COILED, .axes = AXES_TWISTED}};
+    struct stability_scene c = {.name = "even", .spec = {.nbody = 8, .pose = POSE_COILED, .axes = AXES_TWISTED}};
     struct model *m;
     struct state *s;
     struct err e;

@@ -9,7 +9,7 @@
 
 #include "base/arena.h"
 #include "model/model.h"
-#include "run/dense_tally.h"
+#include "kernel/dense_tally.h"
 #include "spec/field.h"
 
 static struct model *chain(struct arena *a, int n, enum model_joint joint)

@@ -50,11 +50,11 @@ static bool entry_read(FILE *f, struct entry *x)
     return false;
 }
 
-static struct scene scene_of(const struct entry *x, const char *name)
+static struct stability_scene scene_of(const struct entry *x, const char *name)
 {
     static const char *const spread[] = {"even", "heavy-tip", "light-tip", "light-base", "up", "down", "random",
                                          "alternating"};
-    struct scene c = {.name = name, .spec = {.nbody = x->n}, .ratio = x->ratio};
+    struct stability_scene c = {.name = name, .spec = {.nbody = x->n}, .ratio = x->ratio};
     if (strcmp(x->family, "twist") == 0) c.spec.axes = AXES_TWISTED;
     if (strcmp(x->family, "coil") == 0) c.spec.axes = AXES_TWISTED, c.spec.pose = POSE_COILED;
     if (strcmp(x->family, "sphere") == 0) c.spec.joint = JOINT_SPHERICAL;
@@ -80,7 +80,7 @@ static void subject_make(struct subject *t, const struct entry *x)
     subject_end(t);
     *t = (struct subject){.a = arena_create(), .rows = arena_create()};
     snprintf(t->name, sizeof t->name, "%s", name);
-    const struct scene c = scene_of(x, t->name);
+    const struct stability_scene c = scene_of(x, t->name);
     struct err e = {0};
     if (!scene_build(&c, t->a, &t->m, &t->s, &e)) fail_msg("%s: %s", name, e.text);
     t->system = design_system_make(t->m, t->s, t->a);

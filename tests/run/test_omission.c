@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "dynamics/system.h"
+#include "kernel/dynamics_program.h"
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/run.h"
@@ -118,43 +118,34 @@ static struct run_spec draw(int number)
     return s;
 }
 
+static void keep_answer(const struct program_run *r, const struct run_result *result, struct answer *v)
+{
+    *v = (struct answer){.nrank = r->spec.nrank, .makespan_ps = result->makespan_ps};
+    for (int i = 0; i < result->nrank * result->nstage; i++) v->flops += result->stage[i].work.flop;
+    for (int k = OUTPUT_TAU; k <= OUTPUT_LAMBDA; k++) append(v, k, r->output[k].x, (int)r->output[k].n);
+    memcpy(v->finish_ps, result->finish_ps, (size_t)r->spec.nrank * sizeof(int64_t));
+}
+
 /* answer_of: the spec's run with what spec->keep says; false: the kernel does not do such scenes. `left_out` (may be
  * NULL): what it leaves out. */
 static bool answer_of(const struct run_spec *spec, struct arena *a, struct answer *v, struct omission *left_out, int *n)
 {
     struct err e = {0};
-    struct model *m = model_build(&spec->model, a, &e);
-    if (!m) fail_msg("%s", e.text);
-    struct state *s = state_make(m, &spec->model, a);
-    struct kernel_job job = {.spec = spec, .model = m, .nrank = spec->nrank};
-    const int fixed = omission_scene(spec, &m, &s, a);
-    const struct kernel_type *k = omission_kernel(spec, m, s, &e);
-    job.model = m, job.state = s;
-    job.omit = omission_job(spec, m, s);
-    job.omit.fixed = fixed;
-    if (left_out) *n = omission_list(&job, k, left_out);
-    const bool steps = spec->kernel.steps > 0;
-    if (k->does_inverse) job_want(&job, OUTPUT_TAU, m->nu, a);
-    if (k->does_forward) job_want(&job, OUTPUT_QDD, m->nu, a);
-    if (steps) job_want(&job, OUTPUT_Q_END, m->nq, a);
-    if (steps) job_want(&job, OUTPUT_QD_END, m->nu, a);
-    if (m->nrow) job_want(&job, OUTPUT_LAMBDA, m->nrow, a);
-    if (!k->accepts(spec, job.model, &e) || !k->prepare(&job, a, &e)) return false;
-    struct machine_spec machine = omission_machine(spec);
-    struct record_spec record = omission_record(spec);
+    struct run_cache *cache = run_cache_create();
+    struct program_run r;
     struct run_result *result = TAKE(a, 1, struct run_result);
-    if (!launch_job(k, &job, &machine, &record, 1, omission_largest_message(spec, k, &job), a, a, result, &e))
-        fail_msg("%s", e.text);
-    assert_int_equal(result->status, RUN_OK);
-    *v = (struct answer){.nrank = spec->nrank, .makespan_ps = result->makespan_ps};
-    for (int i = 0; i < result->nrank * result->nstage; i++) v->flops += result->stage[i].work.flop;
-    append(v, 0, job_output(&job, OUTPUT_TAU), m->nu);
-    append(v, 1, job_output(&job, OUTPUT_QDD), m->nu);
-    append(v, 2, job_output(&job, OUTPUT_Q_END), m->nq);
-    append(v, 3, job_output(&job, OUTPUT_QD_END), m->nu);
-    append(v, 4, job_output(&job, OUTPUT_LAMBDA), m->nrow);
-    memcpy(v->finish_ps, result->finish_ps, (size_t)spec->nrank * sizeof(int64_t));
-    return true;
+    const bool done = run_open(spec, cache, a, &r, &e) && r.type->prepare(&r, a, &e);
+    if (done) {
+        if (left_out) *n = omission_listing(&r, left_out);
+        const struct machine_spec machine = omission_machine(spec);
+        const struct record_spec record = omission_record(spec);
+        if (!launch_run(&r, &machine, &record, 1, omission_largest_message(&r), a, a, result, &e))
+            fail_msg("%s", e.text);
+        assert_int_equal(result->status, RUN_OK);
+        keep_answer(&r, result, v);
+    }
+    run_cache_destroy(cache);
+    return done;
 }
 
 /* change: largest difference of two answers, each quantity relative to its largest number; 0: all numbers are equal, a

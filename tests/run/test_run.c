@@ -11,10 +11,10 @@
 
 #include "dynamics/dynamics_table.h"
 #include "dynamics/system.h"
+#include "kernel/dynamics_program.h"
 #include "kernel/kernel.h"
 #include "model/model.h"
 #include "plan/plan.h"
-#include "run/references.h"
 #include "run/run.h"
 
 enum { MOST_SETTINGS = 12 };
@@ -94,35 +94,23 @@ static void contention_is_never_charged_without_links(void **unused)
     plan_free(&p);
 }
 
-/* Answers of the serial programs in a job, to be spoilt. */
-static struct kernel_job serial_job(const struct run_spec *spec, struct arena *a)
+/* A run with the answers of the serial programs, to be spoilt. */
+static void serial_run(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct program_run *r)
 {
     struct err e;
     err_clear(&e);
-    struct kernel_job job = {.spec = spec, .nrank = spec->nrank};
-    struct model *m = model_build(&spec->model, a, &e);
-    assert_non_null(m);
-    job.model = m;
-    job.state = state_make(m, &spec->model, a);
-    job_want(&job, OUTPUT_TAU, m->nu, a);
-    job_want(&job, OUTPUT_QDD, m->nu, a);
+    assert_true(run_open(spec, cache, a, r, &e) && r->type->prepare(r, a, &e));
+    const struct kernel_job *job = &dynamics_run_of(r)->job;
     struct work w = {0};
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
-    t->inverse(m, job.state, a, job_output(&job, OUTPUT_TAU), &w);
-    assert_true(t->forward(m, job.state, FORWARD_CRBA, a, job_output(&job, OUTPUT_QDD), NULL, NULL, &w));
-    return job;
+    t->inverse(job->model, job->state, a, program_output(r, OUTPUT_TAU), &w);
+    assert_true(t->forward(job->model, job->state, FORWARD_CRBA, a, program_output(r, OUTPUT_QDD), NULL, NULL, &w));
 }
 
-static struct run_result checked(const struct kernel_job *job, struct arena *a)
+static struct run_result checked(struct program_run *run, struct arena *a)
 {
     struct run_result r = {.status = RUN_OK};
-    struct err e;
-    err_clear(&e);
-    struct scene_shelf *shelf = scene_shelf_create();
-    struct scene *scene = scene_take(shelf, job->spec, &e);
-    assert_non_null(scene);
-    references_check(job, scene, a, &r);
-    scene_shelf_destroy(shelf);
+    run->type->check(run, a, &r);
     return r;
 }
 
@@ -132,9 +120,11 @@ static void a_wrong_number_makes_the_run_invalid(void **unused)
     struct plan p;
     struct run_spec spec = SPEC(&p, "level=loggp", "n=12");
     struct arena *a = arena_create();
-    struct kernel_job job = serial_job(&spec, a);
-    double *qdd = job_output(&job, OUTPUT_QDD), *tau = job_output(&job, OUTPUT_TAU);
-    struct run_result r = checked(&job, a);
+    struct run_cache *cache = run_cache_create();
+    struct program_run run;
+    serial_run(&spec, cache, a, &run);
+    double *qdd = program_output(&run, OUTPUT_QDD), *tau = program_output(&run, OUTPUT_TAU);
+    struct run_result r = checked(&run, a);
     assert_int_equal(r.status, RUN_OK);
     assert_int_equal(r.nerror, 2);
     assert_true(r.error[1].relative > 0 && r.error[1].relative < 1e-10); /* CRBA beside ABA */
@@ -142,19 +132,20 @@ static void a_wrong_number_makes_the_run_invalid(void **unused)
         double good = qdd[i], good_tau = tau[i], largest = 0;
         for (int k = 0; k < 12; k++) largest = fmax(largest, fabs(qdd[k]));
         qdd[i] += 1e-6 * largest;
-        r = checked(&job, a);
+        r = checked(&run, a);
         assert_int_equal(r.status, RUN_INVALID);
         assert_non_null(strstr(r.text, "qdd differs from aba"));
         assert_true(fabs(r.error[1].relative / 1e-6 - 1) < 1e-3);
         qdd[i] = NAN;
-        assert_int_equal(checked(&job, a).status, RUN_INVALID);
+        assert_int_equal(checked(&run, a).status, RUN_INVALID);
         qdd[i] = good;
         tau[i] = -2 * good_tau - 1;
-        r = checked(&job, a);
+        r = checked(&run, a);
         assert_int_equal(r.status, RUN_INVALID);
         assert_non_null(strstr(r.text, "tau differs from rnea"));
         tau[i] = good_tau;
     }
+    run_cache_destroy(cache);
     arena_destroy(a);
     plan_free(&p);
 }

@@ -1,5 +1,5 @@
 /* dense_tally.c - sums over the bodies of products of full matrices; see dense_tally.h. */
-#include "run/dense_tally.h"
+#include "kernel/dense_tally.h"
 
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
 /* references.c - serial answers, tolerances and baselines; see references.h. */
-#include "run/references.h"
+#include "kernel/references.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,8 +8,8 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "dynamics/dynamics_table.h"
-#include "machine/node_cost.h"
-#include "run/dense_tally.h"
+#include "kernel/dense_tally.h"
+#include "kernel/dynamics_program.h"
 
 enum { CRBA_MOST_DOFS = 512 };
 
@@ -24,26 +24,11 @@ static double relative_error(const double *x, const double *reference, int n)
     return difference == 0 ? 0 : difference / largest;
 }
 
-static void record(struct run_result *out, const char *quantity, const char *reference, double relative,
-                   double tolerance)
+static void check_inverse(const struct program_run *r, struct scene *scene, struct run_result *out)
 {
-    CHECK(out->nerror < RUN_MAX_ERRORS);
-    struct error_check *c = &out->error[out->nerror++];
-    text_copy(c->quantity, sizeof c->quantity, quantity);
-    text_copy(c->reference, sizeof c->reference, reference);
-    c->relative = relative;
-    c->tolerance = tolerance;
-    if (relative <= tolerance) return; /* a NaN does not pass */
-    if (out->status == RUN_OK)
-        snprintf(out->text, sizeof out->text, "%s differs from %s by %.3g (relative), more than %.3g", quantity,
-                 reference, relative, tolerance);
-    out->status = RUN_INVALID;
-}
-
-static void check_inverse(const struct kernel_job *job, struct scene *scene, struct run_result *out)
-{
-    record(out, "tau", "rnea", relative_error(job_output(job, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu),
-           references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
+    const struct kernel_job *job = &dynamics_run_of(r)->job;
+    const double error = relative_error(program_output(r, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu);
+    program_check_add(out, "tau", "rnea", error, references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
 }
 
 /* A hundred times the error of the serial code of the same formulation: what rounding does to this very system. */
@@ -60,14 +45,15 @@ static double rounding_of(const struct kernel_job *job, const double *reference,
     return isfinite(error) ? fmin(error, 1e-2) : 0;
 }
 
-static void check_forward(const struct kernel_job *job, struct scene *scene, struct arena *scratch,
+static void check_forward(const struct program_run *r, struct scene *scene, struct arena *scratch,
                           struct run_result *out)
 {
+    const struct kernel_job *job = &dynamics_run_of(r)->job;
     const struct serial_answer *aba = scene_forward(scene, FORWARD_ABA);
-    const double error = aba->found ? relative_error(job_output(job, OUTPUT_QDD), aba->x, job->model->nu) : NAN;
+    const double error = aba->found ? relative_error(program_output(r, OUTPUT_QDD), aba->x, job->model->nu) : NAN;
     double tolerance = references_tolerance(&job->spec->kernel, job->model->nbody);
     if (error > tolerance) tolerance = fmax(tolerance, rounding_of(job, aba->x, scratch));
-    record(out, "qdd", "aba", error, tolerance);
+    program_check_add(out, "qdd", "aba", error, tolerance);
 }
 
 /* The state at the end of the job's time steps by the serial integrator, begun at q + change. False: broke down. */
@@ -85,8 +71,9 @@ static bool end_state(const struct kernel_job *job, double change, struct arena 
         ->advance(m, end, k->step, k->step_size / m->second, k->steps, scratch, &w);
 }
 
-static void check_steps(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+static void check_steps(const struct program_run *r, struct arena *scratch, struct run_result *out)
 {
+    const struct kernel_job *job = &dynamics_run_of(r)->job;
     const double change = 1e-8;
     const int nq = job->model->nq, nu = job->model->nu;
     struct state end, other;
@@ -95,52 +82,33 @@ static void check_steps(const struct kernel_job *job, struct arena *scratch, str
     if (found)
         growth = fmax(growth, fmax(relative_error(other.q, end.q, nq), relative_error(other.qd, end.qd, nu)) / change);
     const double tolerance = fmin(references_tolerance(&job->spec->kernel, job->model->nbody) * growth, 1e-2);
-    record(out, "q", "steps", found ? relative_error(job_output(job, OUTPUT_Q_END), end.q, nq) : NAN, tolerance);
-    record(out, "qd", "steps", found ? relative_error(job_output(job, OUTPUT_QD_END), end.qd, nu) : NAN, tolerance);
+    const double *q = program_output(r, OUTPUT_Q_END), *qd = program_output(r, OUTPUT_QD_END);
+    program_check_add(out, "q", "steps", found ? relative_error(q, end.q, nq) : NAN, tolerance);
+    program_check_add(out, "qd", "steps", found ? relative_error(qd, end.qd, nu) : NAN, tolerance);
 }
 
-void references_loops(const struct kernel_job *job, struct arena *scratch, struct run_result *out)
+void references_loops(const struct program_run *r, struct arena *scratch, struct run_result *out)
 {
-    if (!job->model || job->model->nrow == 0) return;
+    const struct kernel_job *job = &dynamics_run_of(r)->job;
+    if (job->model->nrow == 0) return;
     struct arena_mark mark = arena_mark(scratch);
     struct state end = *job->state;
-    if (job_output(job, OUTPUT_Q_END)) end.q = job_output(job, OUTPUT_Q_END);
-    if (job_output(job, OUTPUT_QD_END)) end.qd = job_output(job, OUTPUT_QD_END);
+    if (program_output(r, OUTPUT_Q_END)) end.q = program_output(r, OUTPUT_Q_END);
+    if (program_output(r, OUTPUT_QD_END)) end.qd = program_output(r, OUTPUT_QD_END);
     dynamics_type_of(PRECISION_DOUBLE)->drift(job->model, &end, scratch, &out->drift_position, &out->drift_velocity);
     out->loop_rows = job->model->nrow;
-    out->loop_rank = (int)*job_output(job, OUTPUT_LOOP_RANK);
+    out->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
     arena_release(scratch, mark);
 }
 
-void references_check(const struct kernel_job *job, struct scene *scene, struct arena *scratch,
+void references_check(const struct program_run *r, struct scene *scene, struct arena *scratch,
                       struct run_result *out)
 {
-    if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
-    if (job_output(job, OUTPUT_TAU)) check_inverse(job, scene, out);
-    if (job_output(job, OUTPUT_QDD) && job->spec->kernel.steps == 0) check_forward(job, scene, scratch, out);
-    if (job_output(job, OUTPUT_QDD) && job_output(job, OUTPUT_Q_END)) check_steps(job, scratch, out);
+    if (program_output(r, OUTPUT_TAU)) check_inverse(r, scene, out);
+    if (program_output(r, OUTPUT_QDD) && r->spec.kernel.steps == 0) check_forward(r, scene, scratch, out);
+    if (program_output(r, OUTPUT_QDD) && program_output(r, OUTPUT_Q_END)) check_steps(r, scratch, out);
     arena_release(scratch, mark);
-}
-
-static void add_baseline(struct run_result *out, const struct node_cost *cost, const char *name, const struct work *w)
-{
-    CHECK(out->nbaseline < RUN_MAX_BASELINES);
-    struct baseline *b = &out->baseline[out->nbaseline++];
-    text_copy(b->name, sizeof b->name, name);
-    b->time_ps = node_cost_ps(cost, w);
-    b->work = *w;
-}
-
-static void add_fastest(struct run_result *out, int first)
-{
-    int best = first;
-    for (int i = first; i < out->nbaseline; i++)
-        if (out->baseline[i].time_ps < out->baseline[best].time_ps) best = i;
-    if (best == out->nbaseline) return;
-    struct baseline fastest = out->baseline[best];
-    text_copy(fastest.name, sizeof fastest.name, "fastest serial");
-    out->baseline[out->nbaseline++] = fastest;
 }
 
 /* How often a run computes the accelerations. */
@@ -175,15 +143,16 @@ static struct work least_work(const struct model *m, enum forward_method method,
 
 /* Whether `method` takes more than the articulated-body algorithm's work `aba`, known from that bound; false when it is
  * not known, or aba is NULL. */
-static bool never_fastest(const struct model *m, enum forward_method method, bool dense, const struct node_cost *cost,
+static bool never_fastest(const struct model *m, enum forward_method method, bool dense, const struct work_price *price,
                           const struct work *aba)
 {
     const struct work least = least_work(m, method, dense);
-    return method != FORWARD_ABA && aba && node_cost_ps(cost, &least) > node_cost_ps(cost, aba);
+    return method != FORWARD_ABA && aba &&
+           price->price_ps(price->context, &least) > price->price_ps(price->context, aba);
 }
 
 /* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
-static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
+static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct work_price *price,
                        struct scene *scene, struct run_result *out)
 {
     static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT};
@@ -192,7 +161,7 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     if (kernel->does_inverse) {
         inverse = scene_inverse(scene)->work;
         if (dense) dense_tally_inverse(job->model, &inverse);
-        add_baseline(out, cost, "rnea", &inverse);
+        program_baseline_add(out, price, "rnea", &inverse);
     }
     const bool keep = job->spec->keep & KEEP_BASELINE;
     const bool choose = job->spec->record.baselines == BASELINES_NEEDED && !keep;
@@ -201,7 +170,7 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
         if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !keep) continue;
-        if (choose && never_fastest(job->model, methods[i], dense, cost, aba)) continue;
+        if (choose && never_fastest(job->model, methods[i], dense, price, aba)) continue;
         const struct serial_answer *serial = scene_forward(scene, methods[i]);
         struct work w = serial->work;
         if (!serial->found) continue;
@@ -211,14 +180,14 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
         work_add(&w, &inverse);
         char name[40];
         snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "", forward_method_name(methods[i]));
-        add_baseline(out, cost, name, &w);
+        program_baseline_add(out, price, name, &w);
     }
-    add_fastest(out, first);
+    program_fastest_add(out, first);
 }
 
 /* The same in three components, for programs that compute in these: nothing else would be a fair match. Dense operators
  * have no serial code of that kind. */
-static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel, const struct node_cost *cost,
+static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel, const struct work_price *price,
                        struct scene *scene, struct run_result *out)
 {
     struct work inverse = {0};
@@ -226,32 +195,30 @@ static void add_planar(const struct kernel_job *job, const struct kernel_type *k
     const int first = out->nbaseline;
     if (kernel->does_inverse) {
         inverse = scene_planar_inverse(scene)->work;
-        add_baseline(out, cost, "rnea", &inverse);
+        program_baseline_add(out, price, "rnea", &inverse);
     }
     if (kernel->does_forward && scene_planar_forward(scene)->found) {
         struct work w = scene_planar_forward(scene)->work;
         repeat(&w, evaluations(&job->spec->kernel));
         work_add(&w, &inverse);
-        add_baseline(out, cost, kernel->does_inverse ? "rnea+aba" : "aba", &w);
+        program_baseline_add(out, price, kernel->does_inverse ? "rnea+aba" : "aba", &w);
     }
-    add_fastest(out, kernel->does_inverse && kernel->does_forward ? first + 1 : first);
+    program_fastest_add(out, kernel->does_inverse && kernel->does_forward ? first + 1 : first);
 }
 
-static void add_parallel_work(const struct node_cost *cost, struct run_result *out)
+static void add_parallel_work(const struct work_price *price, struct run_result *out)
 {
     struct work all = {0};
     for (int64_t k = 0; k < (int64_t)out->nrank * out->nstage; k++) work_add(&all, &out->stage[k].work);
-    add_baseline(out, cost, "parallel code on one processor", &all);
+    program_baseline_add(out, price, "parallel code on one processor", &all);
 }
 
 void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,
-                          struct arena *scratch, struct run_result *out)
+                          const struct work_price *price, struct arena *scratch, struct run_result *out)
 {
-    if (!job->model) return;
     struct arena_mark mark = arena_mark(scratch);
-    struct node_cost cost = node_cost_make(&job->spec->machine.node);
-    add_parallel_work(&cost, out);
-    if (kernel->planar) add_planar(job, kernel, &cost, scene, out);
-    else add_serial(job, kernel, &cost, scene, out);
+    add_parallel_work(price, out);
+    if (kernel->planar) add_planar(job, kernel, price, scene, out);
+    else add_serial(job, kernel, price, scene, out);
     arena_release(scratch, mark);
 }

@@ -4,8 +4,8 @@
  * code with dense operators has to be held against serial codes of the same style, which are tallied here: products
  * of full matrices, inertias moved and inverted every time. For a revolute joint: Newton-Euler 2000 flops a body,
  * articulated bodies 3000, the constraint force algorithm 6400. */
-#ifndef RUN_DENSE_TALLY_H
-#define RUN_DENSE_TALLY_H
+#ifndef KERNEL_DENSE_TALLY_H
+#define KERNEL_DENSE_TALLY_H
 
 #include "base/work.h"
 #include "dynamics/dynamics_table.h"

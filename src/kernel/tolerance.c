@@ -1,7 +1,7 @@
 /* tolerance.c - how far a correct parallel answer may be from the serial one (references.h). */
 #include <math.h>
 
-#include "run/references.h"
+#include "kernel/references.h"
 
 static double precision_scale(enum precision p) { return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1; }
 

@@ -1,12 +1,13 @@
 /* trust.c - residual and condition of a run; see trust.h. */
-#include "run/trust.h"
+#include "kernel/trust.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "base/text.h"
+#include "kernel/dynamics_program.h"
 #include "kernel/estimate.h"
-#include "run/references.h"
+#include "kernel/references.h"
 
 /* A number that is none must not hide behind the others. */
 static double worst(const double *x, int n)
@@ -18,12 +19,12 @@ static double worst(const double *x, int n)
     return largest;
 }
 
-double trust_residual(const struct kernel_job *job)
+double trust_residual(const struct program_run *r)
 {
-    const double *x = job_output(job, OUTPUT_RESIDUAL), *of = job_output(job, OUTPUT_RESIDUAL_SCALE);
+    const double *x = program_output(r, OUTPUT_RESIDUAL), *of = program_output(r, OUTPUT_RESIDUAL_SCALE);
     double residual = 0, scale = 0;
-    if (!of) return worst(x, job->nrank);
-    for (int i = 0; i < job->nrank; i++) {
+    if (!of) return worst(x, r->spec.nrank);
+    for (int i = 0; i < r->spec.nrank; i++) {
         if (isnan(x[i])) return x[i];
         residual = fmax(residual, x[i] * of[i]);
         scale = fmax(scale, of[i]);
@@ -31,7 +32,10 @@ double trust_residual(const struct kernel_job *job)
     return scale > 0 ? residual / scale : residual;
 }
 
-double trust_condition(const struct kernel_job *job) { return worst(job_output(job, OUTPUT_CONDITION), job->nrank); }
+double trust_condition(const struct program_run *r)
+{
+    return worst(program_output(r, OUTPUT_CONDITION), r->spec.nrank);
+}
 
 /* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. What the run has
  * tried by itself is not named again. */
@@ -93,22 +97,22 @@ bool trust_refine(struct run_spec *spec, const struct model *m, const struct run
     return refine_more(k, chain || !kernel_spec_implicit(k), chain && k->formulation == FORMULATION_DIRECT);
 }
 
-void trust_check(const struct kernel_job *job, struct run_result *out)
+void trust_check(const struct program_run *r, struct run_result *out)
 {
     out->residual = NAN;
-    if (!job->model || !job_output(job, OUTPUT_QDD) || !job_output(job, OUTPUT_RESIDUAL)) return;
-    const struct kernel_spec *k = &job->spec->kernel;
+    if (!program_output(r, OUTPUT_QDD) || !program_output(r, OUTPUT_RESIDUAL)) return;
+    const struct kernel_spec *k = &r->spec.kernel;
     bool single = k->precision == PRECISION_FLOAT;
     double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
     if (k->residual == RESIDUAL_TWICE) resolved = INFINITY; /* what the factors lack, the residual would show */
-    out->residual = trust_residual(job);
-    out->condition = trust_condition(job);
+    out->residual = trust_residual(r);
+    out->condition = trust_condition(r);
     if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
     out->status = RUN_INVALID;
     char residual[32] = "no number"; /* whose sign would differ from host to host */
     if (!isnan(out->residual)) snprintf(residual, sizeof residual, "%.2g", out->residual);
     snprintf(out->text, sizeof out->text,
              "the answer is not to be trusted: the constraints' residual is %s, the condition at least %.2g; try %s",
-             residual, out->condition, remedy(job));
+             residual, out->condition, remedy(&dynamics_run_of(r)->job));
 }

@@ -1,5 +1,5 @@
 /* scene.c - see scene.h. */
-#include "run/scene.h"
+#include "kernel/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -7,30 +7,30 @@
 #include "base/check.h"
 #include "dynamics/planar_dynamics.h"
 #include "dynamics/system.h"
-#include "run/omission.h"
+#include "kernel/omission.h"
 
 /* Bodies: what may stay in memory beside the scene in use. */
 enum { MOST_SCENES = 32, MOST_BODIES = 1 << 17 };
 
-struct scene_shelf {
+struct program_cache {
     long clock;
     int nscene;
     struct scene *scene[MOST_SCENES];
 };
 
-struct scene_shelf *scene_shelf_create(void)
+struct program_cache *scene_cache_create(void)
 {
-    struct scene_shelf *shelf = calloc(1, sizeof *shelf);
-    CHECK(shelf);
-    return shelf;
+    struct program_cache *cache = calloc(1, sizeof *cache);
+    CHECK(cache);
+    return cache;
 }
 
 static void scene_destroy(struct scene *s) { arena_destroy(s->arena); }
 
-void scene_shelf_destroy(struct scene_shelf *shelf)
+void scene_cache_destroy(struct program_cache *cache)
 {
-    for (int i = 0; shelf && i < shelf->nscene; i++) scene_destroy(shelf->scene[i]);
-    free(shelf);
+    for (int i = 0; cache && i < cache->nscene; i++) scene_destroy(cache->scene[i]);
+    free(cache);
 }
 
 static struct scene *scene_make(const struct run_spec *spec, struct err *e)
@@ -57,37 +57,37 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
 }
 
 /* Give the least recently used scene away, until there is room for one of `nbody` bodies. */
-static void make_room(struct scene_shelf *shelf, int nbody)
+static void make_room(struct program_cache *cache, int nbody)
 {
     for (;;) {
         long bodies = nbody;
         int oldest = 0;
-        for (int i = 0; i < shelf->nscene; i++) {
-            bodies += shelf->scene[i]->model->nbody;
-            if (shelf->scene[i]->used < shelf->scene[oldest]->used) oldest = i;
+        for (int i = 0; i < cache->nscene; i++) {
+            bodies += cache->scene[i]->model->nbody;
+            if (cache->scene[i]->used < cache->scene[oldest]->used) oldest = i;
         }
-        if (shelf->nscene == 0 || (shelf->nscene < MOST_SCENES && bodies <= MOST_BODIES)) return;
-        scene_destroy(shelf->scene[oldest]);
-        shelf->scene[oldest] = shelf->scene[--shelf->nscene];
+        if (cache->nscene == 0 || (cache->nscene < MOST_SCENES && bodies <= MOST_BODIES)) return;
+        scene_destroy(cache->scene[oldest]);
+        cache->scene[oldest] = cache->scene[--cache->nscene];
     }
 }
 
-struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec, struct err *e)
+struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e)
 {
-    shelf->clock++;
-    for (int i = 0; i < shelf->nscene && !(spec->keep & KEEP_SCENES); i++) {
-        struct scene *s = shelf->scene[i];
+    cache->clock++;
+    for (int i = 0; i < cache->nscene && !(spec->keep & KEEP_SCENES); i++) {
+        struct scene *s = cache->scene[i];
         if (s->fixed != omission_mergeable(spec, s->nbody, s->movable)) continue;
         if (s->still != (spec->kernel.steps == 0)) continue;
         if (s->keep != spec->keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
-        s->used = shelf->clock;
+        s->used = cache->clock;
         return s;
     }
     struct scene *s = scene_make(spec, e);
     if (!s) return NULL;
-    make_room(shelf, s->model->nbody);
-    s->used = shelf->clock;
-    return shelf->scene[shelf->nscene++] = s;
+    make_room(cache, s->model->nbody);
+    s->used = cache->clock;
+    return cache->scene[cache->nscene++] = s;
 }
 
 /* Room for an answer, and an arena to compute it with; NULL when it has been asked for before. */

@@ -2,8 +2,8 @@
  *
  * Runs that differ in machine, network, processors or solver have the same scene: its model, the answers that theirs
  * are held against and the work of the serial codes. Sharing them changes no result. */
-#ifndef RUN_SCENE_H
-#define RUN_SCENE_H
+#ifndef KERNEL_SCENE_H
+#define KERNEL_SCENE_H
 
 #include <stdbool.h>
 
@@ -11,6 +11,7 @@
 #include "base/err.h"
 #include "dynamics/dynamics_table.h"
 #include "model/model.h"
+#include "program/program.h"
 #include "spec/run_spec.h"
 
 struct serial_answer {
@@ -20,7 +21,7 @@ struct serial_answer {
 };
 
 struct scene {
-    struct model *model;     /* as run/omission.h leaves it */
+    struct model *model;     /* as kernel/omission.h leaves it */
     struct state *state;
     struct arena *arena;     /* owned */
     struct model_spec spec;  /* what it was made from */
@@ -33,16 +34,15 @@ struct scene {
     struct serial_answer planar_inverse, planar_forward;     /* the same in three components */
 };
 
-/* A few scenes, the least recently used making room for new ones. */
-struct scene_shelf;
 
-/* scene_shelf_create, scene_shelf_destroy: the caller owns it; destroy accepts NULL. */
-struct scene_shelf *scene_shelf_create(void);
-void scene_shelf_destroy(struct scene_shelf *shelf);
+/* scene_cache_create, scene_cache_destroy: a few scenes, the least recently used making room for new ones. The caller
+ * owns it; destroy accepts NULL. */
+struct program_cache *scene_cache_create(void);
+void scene_cache_destroy(struct program_cache *cache);
 
-/* scene_take: the scene that `spec` asks for, from the shelf or made now; borrowed until the next call. NULL with *e
+/* scene_take: the scene that `spec` asks for, from the cache or made now; borrowed until the next call. NULL with *e
  * set when it cannot be built. */
-struct scene *scene_take(struct scene_shelf *shelf, const struct run_spec *spec, struct err *e);
+struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e);
 
 /* scene_inverse: joint forces for the state's accelerations by recursive Newton-Euler. scene_forward: accelerations by
  * `method`. Computed at the first call. */

@@ -1,0 +1,146 @@
+/* dynamics_program.c - see dynamics_program.h. */
+#include "kernel/dynamics_program.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "kernel/omission.h"
+#include "kernel/references.h"
+#include "kernel/trust.h"
+
+/* --- open and prepare --------------------------------------------------------------------------------------------- */
+
+bool dynamics_open(struct program_run *r, const struct model *m, const struct state *s, struct err *e)
+{
+    struct dynamics_run *d = TAKE(r->arena, 1, struct dynamics_run);
+    *d = (struct dynamics_run){.given = r->spec.kernel};
+    d->kernel = omission_kernel(&r->spec, m, s, e);
+    if (!d->kernel || !d->kernel->accepts(&r->spec, m, e)) return false;
+    d->job = (struct kernel_job){.spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = true};
+    d->job.omit = omission_job(&r->spec, m, s);
+    r->own = d;
+    r->rank = &d->kernel->rank;
+    r->job = &d->job;
+    r->nbody = m->nbody;
+    r->nu = m->nu;
+    r->metre = m->metre, r->kilogram = m->kilogram, r->second = m->second;
+    return true;
+}
+
+static bool open(struct program_run *r, struct err *e)
+{
+    struct scene *scene = scene_take(r->cache, &r->spec, e);
+    if (!scene || !dynamics_open(r, scene->model, scene->state, e)) return false;
+    struct dynamics_run *d = dynamics_run_of(r);
+    d->scene = scene;
+    d->job.omit.fixed = scene->fixed;
+    r->nbody += scene->fixed;
+    return true;
+}
+
+static bool prepare(struct program_run *r, struct arena *a, struct err *e)
+{
+    struct dynamics_run *d = dynamics_run_of(r);
+    const struct model *m = d->job.model;
+    memset(r->output, 0, sizeof r->output);
+    if (d->kernel->does_inverse) program_want(r, OUTPUT_TAU, m->nu, a);
+    if (d->kernel->does_forward) program_want(r, OUTPUT_QDD, m->nu, a);
+    if (m->nrow > 0) program_want(r, OUTPUT_LAMBDA, m->nrow, a);
+    if (r->spec.kernel.steps > 0) {
+        program_want(r, OUTPUT_Q_END, m->nq, a);
+        program_want(r, OUTPUT_QD_END, m->nu, a);
+    }
+    if (d->job.watch) {
+        program_want(r, OUTPUT_RESIDUAL, r->spec.nrank, a);
+        program_want(r, OUTPUT_RESIDUAL_SCALE, r->spec.nrank, a);
+        program_want(r, OUTPUT_CONDITION, r->spec.nrank, a);
+    }
+    program_want(r, OUTPUT_REFINED, 1, a);
+    program_want(r, OUTPUT_LOOP_RANK, 1, a);
+    *program_output(r, OUTPUT_LOOP_RANK) = -1;
+    return d->kernel->prepare(&d->job, a, e);
+}
+
+/* --- attempts ----------------------------------------------------------------------------------------------------- */
+
+static void judge(struct program_run *r, struct run_result *out) { trust_check(r, out); }
+
+/* The attempts are over: what was added to the given settings. */
+static void tell_added(const struct dynamics_run *d, const struct kernel_spec *now, struct run_result *out)
+{
+    out->inner_added = now->inner_refinements - d->given.inner_refinements;
+    out->outer_added = now->outer_refinements - d->given.outer_refinements;
+    out->twice_added = now->residual != d->given.residual;
+    out->residual_before = d->residual_before;
+}
+
+/* More refinement until the residual is small enough. When the last attempt is no better than the first, the first is
+ * what holds: it is made again. */
+static bool again(struct program_run *r, struct run_result *out)
+{
+    struct dynamics_run *d = dynamics_run_of(r);
+    struct kernel_spec *now = &r->spec.kernel;
+    if (d->attempts++ == 0) d->residual_before = out->residual;
+    const bool solves = d->kernel->does_forward && out->status != RUN_DEADLOCK;
+    if (solves && !d->reverted && trust_refine(&r->spec, d->job.model, out)) return true;
+    const bool added = now->inner_refinements > d->given.inner_refinements ||
+                       now->outer_refinements > d->given.outer_refinements;
+    const bool worse = out->residual >= d->residual_before || isnan(out->residual);
+    if (added && worse && !d->reverted) {
+        *now = d->given;
+        d->reverted = true;
+        return true;
+    }
+    tell_added(d, now, out);
+    return false;
+}
+
+/* --- what the answer is worth ------------------------------------------------------------------------------------- */
+
+static void check(struct program_run *r, struct arena *scratch, struct run_result *out)
+{
+    const struct dynamics_run *d = dynamics_run_of(r);
+    references_loops(r, scratch, out);
+    references_check(r, d->scene, scratch, out);
+}
+
+static void baselines(struct program_run *r, const struct work_price *price, struct arena *scratch,
+                      struct run_result *out)
+{
+    const struct dynamics_run *d = dynamics_run_of(r);
+    references_baselines(&d->job, d->kernel, d->scene, price, scratch, out);
+}
+
+/* --- before it runs ----------------------------------------------------------------------------------------------- */
+
+static void estimate(const struct program_run *r, struct program_estimate *out)
+{
+    const struct dynamics_run *d = dynamics_run_of(r);
+    d->kernel->estimate(&r->spec, d->job.model, &d->job.omit, out);
+}
+
+static void leave_out(const struct program_run *r, struct left_out *l)
+{
+    const struct dynamics_run *d = dynamics_run_of(r);
+    omission_list(&d->job, d->kernel, l);
+}
+
+static int unused(const struct program_run *r, const char **out)
+{
+    const struct dynamics_run *d = dynamics_run_of(r);
+    return omission_unused(&d->job, d->kernel, out);
+}
+
+/* All three are the same but for their names and for the text that the ranks run (kernel.h). */
+#define DYNAMICS(word, text)                                                                                           \
+    {                                                                                                                  \
+        .name = word, .title = text, .has_scene = true, .cache_create = scene_cache_create,                            \
+        .cache_destroy = scene_cache_destroy, .open = open, .prepare = prepare, .judge = judge, .again = again,        \
+        .check = check, .baselines = baselines, .estimate = estimate, .leave_out = leave_out, .unused = unused,        \
+    }
+
+const struct program_type inverse_program =
+    DYNAMICS("inverse", "inverse dynamics by recursive doubling (parallel Newton-Euler)");
+const struct program_type forward_program =
+    DYNAMICS("forward", "forward dynamics by the constraint force algorithm");
+const struct program_type dynamics_program = DYNAMICS("dynamics", "inverse, then forward dynamics");

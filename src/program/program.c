@@ -1,0 +1,63 @@
+/* program.c - what programs share: outputs, checks, baselines and lists of what is left out (program.h). */
+#include "program/program.h"
+
+#include <stdio.h>
+
+#include "base/check.h"
+#include "base/text.h"
+
+void program_want(struct program_run *r, int output, int64_t n, struct arena *a)
+{
+    CHECK(output >= 0 && output < PROGRAM_OUTPUTS);
+    r->output[output] = (struct comm_output){TAKE(a, n > 0 ? n : 1, double), n};
+}
+
+double *program_output(const struct program_run *r, int output) { return r->output[output].x; }
+
+void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why)
+{
+    if (l->keep & keep) return;
+    CHECK(l->n < RUN_MAX_OMISSIONS);
+    struct omission *o = &l->item[l->n++];
+    *o = (struct omission){.keep = keep, .bound = bound};
+    text_copy(o->what, sizeof o->what, what);
+    text_copy(o->why, sizeof o->why, why);
+}
+
+void program_check_add(struct run_result *out, const char *quantity, const char *reference, double relative,
+                       double tolerance)
+{
+    CHECK(out->nerror < RUN_MAX_ERRORS);
+    struct error_check *c = &out->error[out->nerror++];
+    text_copy(c->quantity, sizeof c->quantity, quantity);
+    text_copy(c->reference, sizeof c->reference, reference);
+    c->relative = relative;
+    c->tolerance = tolerance;
+    if (relative <= tolerance) return; /* a NaN does not pass */
+    if (out->status == RUN_OK)
+        snprintf(out->text, sizeof out->text, "%s differs from %s by %.3g (relative), more than %.3g", quantity,
+                 reference, relative, tolerance);
+    out->status = RUN_INVALID;
+}
+
+void program_baseline_add(struct run_result *out, const struct work_price *price, const char *name,
+                          const struct work *w)
+{
+    CHECK(out->nbaseline < RUN_MAX_BASELINES);
+    struct baseline *b = &out->baseline[out->nbaseline++];
+    text_copy(b->name, sizeof b->name, name);
+    b->time_ps = price->price_ps(price->context, w);
+    b->work = *w;
+}
+
+void program_fastest_add(struct run_result *out, int first)
+{
+    int best = first;
+    for (int i = first; i < out->nbaseline; i++)
+        if (out->baseline[i].time_ps < out->baseline[best].time_ps) best = i;
+    if (best == out->nbaseline) return;
+    struct baseline fastest = out->baseline[best];
+    text_copy(fastest.name, sizeof fastest.name, "fastest serial");
+    CHECK(out->nbaseline < RUN_MAX_BASELINES);
+    out->baseline[out->nbaseline++] = fastest;
+}

@@ -1,0 +1,147 @@
+/* program.h - what any parallel program is: its name, its ranks' text, its outputs, how it is judged and what it costs.
+ *
+ * Room run makes runs of programs and knows nothing of what they compute. A program knows its own settings, scenes,
+ * outputs and references; it is one `const struct program_type` and a line in a table (kernel/programs.c). Life of a
+ * run:
+ *
+ *     open      the scene and the settings are looked at: can the program run them, and with which text?
+ *     prepare   room for the outputs, tables that all ranks share
+ *     (the ranks run)
+ *     judge     what the program saw itself: may the answer be believed?
+ *     again     other settings, where the answer asks for them: back to prepare
+ *     check     the outputs against independent references; baselines: serial codes for the same task
+ *
+ * `estimate` and `leave_out` need no more than open. */
+#ifndef PROGRAM_PROGRAM_H
+#define PROGRAM_PROGRAM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/arena.h"
+#include "base/err.h"
+#include "comm/comm.h"
+#include "measure/run_result.h"
+#include "spec/run_spec.h"
+
+enum { PROGRAM_OUTPUTS = 12 };
+
+/* What every rank executes. `job` is the program's own, shared by all ranks and read-only to them. */
+struct rank_program {
+    int nstage;
+    const char *const *stage_name; /* (nstage) */
+
+    /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
+    size_t (*workspace_bytes)(const void *job, int rank);
+
+    /* largest_message: no message of this job is larger [B]; -1: not known. NULL: not known. */
+    int64_t (*largest_message)(const void *job);
+
+    /* run: the program of one rank. */
+    void (*run)(struct comm *c, const void *job, void *workspace);
+};
+
+/* One run of a program, from open to check. The caller fills the first part, open and prepare the second; after open
+ * it stays in place, since the program points into it. */
+struct program_run {
+    const struct program_type *type;
+    struct run_spec spec;        /* the settings in force: `again` may change those of the program */
+    struct program_cache *cache; /* what runs share; NULL: nothing */
+    struct arena *arena;         /* memory of open: lives as long as this struct */
+
+    void *own;                       /* the program's own, made by open in `arena` */
+    const struct rank_program *rank; /* set by open; open may choose among several texts */
+    const void *job;                 /* what the ranks get; set by prepare */
+    int nbody, nu;                   /* bodies and degrees of freedom of the scene; 0: it has none */
+    double metre, kilogram, second;  /* its units in SI; 0: it has none */
+    struct comm_output output[PROGRAM_OUTPUTS]; /* made by prepare */
+};
+
+/* What a run will cost, known before it runs (mimdsim explain). */
+struct program_estimate {
+    double messages, bytes; /* sent, all ranks */
+    double flops;           /* all ranks */
+    double rank_bytes;      /* host memory per rank, workspace and messages in flight */
+};
+
+/* What a run leaves out, collected by program_leave_out. */
+struct left_out {
+    unsigned keep;          /* KEEP_* of the run: what is put back is not listed */
+    struct omission *item;  /* (RUN_MAX_OMISSIONS) */
+    int n;
+};
+
+/* What counted work costs on the machine of the run [ps]. */
+struct work_price {
+    int64_t (*price_ps)(const void *context, const struct work *w);
+    const void *context;
+};
+
+struct program_type {
+    const char *name;
+    const char *title; /* one line for people */
+    bool has_scene;    /* it works on a multibody system: the model's settings act */
+    const void *context; /* the program's own constants; NULL: none */
+
+    /* cache_create, cache_destroy: what runs of this program may share (scenes, serial answers); NULL: nothing.
+     * Programs with the same cache_create share one. destroy accepts NULL. */
+    struct program_cache *(*cache_create)(void);
+    void (*cache_destroy)(struct program_cache *cache);
+
+    /* open: look at r->spec and make r->own, rank, nbody, nu and units. False with ERR_CONFIG when this program cannot
+     * run the settings (more ranks than bodies, a scene that it does not do), other kinds when a file is bad. */
+    bool (*open)(struct program_run *r, struct err *e);
+
+    /* prepare: outputs, job and shared tables from `scratch`, which lives until the run has been judged or, the last
+     * time, checked; costs no simulated time. */
+    bool (*prepare)(struct program_run *r, struct arena *scratch, struct err *e);
+
+    /* judge: what the program itself saw of its answer, into `out`; RUN_INVALID when it is not to be trusted. NULL:
+     * nothing. */
+    void (*judge)(struct program_run *r, struct run_result *out);
+
+    /* again: whether the run is to be made once more, with settings that this call has changed. Called after judge,
+     * not after a deadlock. NULL: never. */
+    bool (*again)(struct program_run *r, struct run_result *out);
+
+    /* check: outputs against independent references: out->error, RUN_INVALID beyond a tolerance. NULL: no check. */
+    void (*check)(struct program_run *r, struct arena *scratch, struct run_result *out);
+
+    /* baselines: predicted times of serial codes for the same task into out->baseline; out->stage is filled. NULL:
+     * there is none. */
+    void (*baselines)(struct program_run *r, const struct work_price *price, struct arena *scratch,
+                      struct run_result *out);
+
+    /* estimate: counts by formula, without running; after open. */
+    void (*estimate)(const struct program_run *r, struct program_estimate *out);
+
+    /* leave_out: what the program does not compute because its scene does not need it; after open. NULL: nothing. */
+    void (*leave_out)(const struct program_run *r, struct left_out *l);
+
+    /* unused: settings that act nowhere because of what the scene is, "key: reason" (constant texts), into out (2);
+     * what the settings alone decide is in the fields' tables. Returns how many. After open. NULL: none. */
+    int (*unused)(const struct program_run *r, const char **out);
+};
+
+/* program_want: output number `output` gathers n numbers, zero before the run, from `a`. program_output: them; NULL
+ * where the output is not wanted. */
+void program_want(struct program_run *r, int output, int64_t n, struct arena *a);
+double *program_output(const struct program_run *r, int output);
+
+/* leave_out_add: one more thing that is left out, unless `keep` of the run puts it back. bound: largest relative change
+ * of a result, 0: exact. Texts are copied. */
+void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why);
+
+/* program_check_add: one number that was compared with a reference, into out->error. A relative error above the
+ * tolerance, or one that is no number, makes the run RUN_INVALID with its text. */
+void program_check_add(struct run_result *out, const char *quantity, const char *reference, double relative,
+                       double tolerance);
+
+/* program_baseline_add: one serial code with its predicted time. program_fastest_add: "fastest serial", the fastest of
+ * the baselines from number `first` on; nothing when there are none. */
+void program_baseline_add(struct run_result *out, const struct work_price *price, const char *name,
+                          const struct work *w);
+void program_fastest_add(struct run_result *out, int first);
+
+#endif
