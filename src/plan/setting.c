@@ -156,14 +156,17 @@ const char *setting_value(const char *key, const struct yaml_node *leaf, const c
 {
     const struct yaml_node *value = leaf;
     if (leaf->kind == YAML_MAPPING) value = yaml_node_child(leaf, "value");
-    const char *text = value != NULL ? yaml_node_flow(value, a) : NULL;
-    if (text == NULL && value != NULL && setting_takes_maps(key)) text = yaml_node_flow_maps(value, a);
-    if (text == NULL && setting_takes_maps(key))
-        err_set_at(e, ERR_DATA, file, leaf->line,
-                   "%s: expected a list of mappings such as '- {from: 0 B, send.overhead: 1 us}'", key);
-    else if (text == NULL)
-        err_set_at(e, ERR_DATA, file, leaf->line, "%s: expected a value or {value: ..., class: ..., source: ...}", key);
-    return text;
+    bool maps = value != NULL && value->child != NULL && value->child->kind == YAML_MAPPING;
+    if (maps && value->kind == YAML_SEQUENCE && setting_takes_maps(key)) {
+        const char *text = yaml_node_flow_maps(value, a);
+        if (text == NULL)
+            err_set_at(e, ERR_DATA, file, leaf->line,
+                       "%s: expected a list of mappings such as '- {from: 0 B, send.overhead: 1 us}'", key);
+        return text;
+    }
+    if (value != NULL && value->kind != YAML_MAPPING) return yaml_node_flow(value, key, file, a, e);
+    err_set_at(e, ERR_DATA, file, leaf->line, "%s: expected a value or {value: ..., class: ..., source: ...}", key);
+    return NULL;
 }
 
 bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,

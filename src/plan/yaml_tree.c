@@ -204,24 +204,31 @@ struct yaml_node *yaml_node_child(const struct yaml_node *mapping, const char *k
     return NULL;
 }
 
-static bool add_flow(const struct yaml_node *node, struct text *out)
+/* The text of `node` onto *out; the mapping that stands in the way, or NULL. */
+static const struct yaml_node *add_flow(const struct yaml_node *node, struct text *out)
 {
-    if (node->kind == YAML_MAPPING) return false;
-    if (node->kind == YAML_SCALAR) return text_add(out, "%s", node->text), true;
+    if (node->kind == YAML_MAPPING) return node;
+    if (node->kind == YAML_SCALAR) return text_add(out, "%s", node->text), NULL;
     text_add(out, "[");
     for (const struct yaml_node *n = node->child; n != NULL; n = n->next) {
         if (n != node->child) text_add(out, ", ");
-        if (!add_flow(n, out)) return false;
+        const struct yaml_node *mapping = add_flow(n, out);
+        if (mapping != NULL) return mapping;
     }
     text_add(out, "]");
-    return true;
+    return NULL;
 }
 
-const char *yaml_node_flow(const struct yaml_node *node, struct arena *a)
+const char *yaml_node_flow(const struct yaml_node *node, const char *key, const char *file, struct arena *a,
+                           struct err *e)
 {
     if (node->kind == YAML_SCALAR) return node->text;
     struct text t = {0};
-    const char *flow = add_flow(node, &t) ? arena_text(a, t.s) : NULL;
+    const struct yaml_node *mapping = add_flow(node, &t);
+    const char *flow = mapping == NULL ? arena_text(a, t.s) : NULL;
+    if (mapping != NULL)
+        err_set_at(e, ERR_DATA, file, mapping->line, "%s: a mapping '{%.80s: ...}' where a value is expected", key,
+                   mapping->child != NULL ? mapping->child->key : "");
     text_free(&t);
     return flow;
 }

@@ -17,6 +17,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "store/beside.h"
 #include "store/connection.h"
 #include "store/schema.h"
 
@@ -217,21 +218,21 @@ static void remove_stale_logs(const char *path)
  * sees, and no failure leaves, half of one; when another program was faster, its file is the one. */
 static bool make_file(const char *path, struct err *e)
 {
-    char *folder = folder_of(path);
-    struct text beside = {0};
+    char *folder = folder_of(path), *beside = NULL;
     sqlite3_int64 size;
     unsigned char *image = make_image(&size, !on_network(folder), e);
     free(folder);
     if (image == NULL) return false;
     remove_stale_logs(path);
-    text_add(&beside, "%s.new-%ld", path, (long)getpid());
-    int file = open(beside.s, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int file = beside_open(path, &beside);
     bool ok = file >= 0 && write_all(file, image, size) && fdatasync(file) == 0;
-    if (ok && link(beside.s, path) != 0 && errno != EEXIST) ok = rename(beside.s, path) == 0;
+    if (ok && link(beside, path) != 0 && errno != EEXIST) ok = rename(beside, path) == 0;
     if (!ok) err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path, strerror(errno));
-    if (file >= 0) close(file);
-    unlink(beside.s);
-    text_free(&beside);
+    if (file >= 0) {
+        unlink(beside);
+        close(file);
+    }
+    free(beside);
     sqlite3_free(image);
     return ok;
 }
@@ -292,6 +293,7 @@ static bool open_memory(struct store *s, struct err *e)
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists = true;
+    if (mode == STORE_WRITE) beside_clean(path);
     if (mode != STORE_MEMORY && !check_path(path, mode, &exists, e)) return NULL;
     if (!exists && !make_file(path, e)) return NULL;
     struct store *s = calloc(1, sizeof *s);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -401,6 +402,52 @@ static void a_path_with_odd_characters_works(void **state)
     assert_int_equal(status, 0);
 }
 
+/* Names that beside_open draws, as a crash would leave them. */
+static void what_a_crash_left_beside_is_removed_and_nothing_else(void **state)
+{
+    struct fixture *f = *state;
+    char left[256], link_like[256], notes[256], held[256], victim[256];
+    write_file(scratch_path(left, sizeof left, f->folder, "t.db.new-aB3dE6.part"), "half");
+    write_file(scratch_path(notes, sizeof notes, f->folder, "t.db.new-my-notes.part"), "mine");
+    write_file(scratch_path(victim, sizeof victim, f->folder, "victim"), "precious");
+    assert_int_equal(symlink(victim, scratch_path(link_like, sizeof link_like, f->folder, "t.db.new-abcdef.part")), 0);
+    write_file(scratch_path(held, sizeof held, f->folder, "t.db.new-123456.part"), "being written");
+    int file = open(held, O_RDONLY);
+    assert_int_equal(flock(file, LOCK_EX), 0); /* as the process that writes it does */
+    fill(f->path, 1);
+    assert_int_equal(access(left, F_OK), -1);
+    assert_int_equal(access(notes, F_OK), 0);
+    assert_int_equal(access(held, F_OK), 0);
+    close(file);
+    struct stat info;
+    assert_int_equal(lstat(link_like, &info), 0);
+    assert_int_equal(stat(victim, &info), 0);
+    assert_int_equal(info.st_size, 8);
+    /* The database is there now: the next opening removes what its writer left. */
+    write_file(left, "half");
+    fill(f->path, 1);
+    assert_int_equal(access(left, F_OK), -1);
+    assert_int_equal(access(held, F_OK), -1);
+}
+
+static void a_new_database_goes_through_no_link_and_has_the_usual_mode(void **state)
+{
+    struct fixture *f = *state;
+    char victim[256], name[300];
+    write_file(scratch_path(victim, sizeof victim, f->folder, "victim"), "precious");
+    snprintf(name, sizeof name, "%s.new-%ld", f->path, (long)getpid()); /* a name that can be foreseen */
+    assert_int_equal(symlink(victim, name), 0);
+    mode_t mask = umask(027);
+    fill(f->path, 1);
+    umask(mask);
+    struct stat info;
+    assert_int_equal(stat(f->path, &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0640);
+    assert_int_equal(info.st_nlink, 1);
+    assert_int_equal(stat(victim, &info), 0);
+    assert_int_equal(info.st_size, 8);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
 
 int main(void)
@@ -422,6 +469,8 @@ int main(void)
         TEST(a_creation_that_was_killed_is_taken_up_again),
         TEST(two_writers_at_once_lose_nothing),
         TEST(a_path_with_odd_characters_works),
+        TEST(what_a_crash_left_beside_is_removed_and_nothing_else),
+        TEST(a_new_database_goes_through_no_link_and_has_the_usual_mode),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,90 @@
+/* beside.c - files that are written beside their place: new ones, never through a link, and what a crash left of them. */
+#include "store/beside.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/text.h"
+
+static const char middle[] = ".new-", ending[] = ".part";
+enum { DRAWN = 6 };
+
+/* Locked, where the file system has locks, and still there: a cleaner may have come between the making and the lock. */
+static bool is_ours(int file)
+{
+    struct stat info;
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+    return fstat(file, &info) == 0 && info.st_nlink > 0;
+}
+
+int beside_open(const char *path, char **name)
+{
+    for (int trial = 0; trial < 100; trial++) {
+        struct text t = {0};
+        text_add(&t, "%s%sXXXXXX%s", path, middle, ending);
+        int file = mkostemps(t.s, (int)strlen(ending), O_CLOEXEC);
+        if (file >= 0 && is_ours(file)) {
+            /* mkostemps makes it for its owner alone; others may read a database as they may any new file. */
+            mode_t mask = umask(0);
+            umask(mask);
+            fchmod(file, 0666 & ~mask);
+            *name = t.s;
+            return file;
+        }
+        int code = errno;
+        text_free(&t);
+        if (file < 0) {
+            *name = NULL;
+            errno = code;
+            return -1;
+        }
+        close(file);
+    }
+    *name = NULL;
+    errno = EAGAIN;
+    return -1;
+}
+
+/* Whether `name` is what beside_open calls a file beside `own`. */
+static bool is_beside(const char *name, const char *own)
+{
+    size_t n = strlen(own), m = sizeof middle - 1;
+    if (strlen(name) != n + m + DRAWN + sizeof ending - 1) return false;
+    if (strncmp(name, own, n) != 0 || strncmp(name + n, middle, m) != 0) return false;
+    for (int i = 0; i < DRAWN; i++)
+        if (!isalnum((unsigned char)name[n + m + (size_t)i])) return false;
+    return strcmp(name + n + m + DRAWN, ending) == 0;
+}
+
+/* Remove `name` in folder `dir` when it is a plain file of ours that nobody writes. */
+static void remove_left(int dir, const char *name)
+{
+    struct stat info, found;
+    int file = openat(dir, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return;
+    if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&
+        flock(file, LOCK_EX | LOCK_NB) == 0 && fstatat(dir, name, &found, AT_SYMLINK_NOFOLLOW) == 0 &&
+        found.st_dev == info.st_dev && found.st_ino == info.st_ino)
+        unlinkat(dir, name, 0);
+    close(file);
+}
+
+void beside_clean(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *own = slash == NULL ? path : slash + 1;
+    struct text folder = {0};
+    text_add(&folder, "%.*s.", slash == NULL ? 0 : (int)(slash - path) + 1, path);
+    DIR *dir = opendir(folder.s);
+    for (struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;)
+        if (is_beside(entry->d_name, own)) remove_left(dirfd(dir), entry->d_name);
+    if (dir != NULL) closedir(dir);
+    text_free(&folder);
+}
