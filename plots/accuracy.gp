@@ -55,11 +55,17 @@ exactly(x) = x < 1e-3 ? sprintf("%.4g µs", x*1e6) : x < 1 ? sprintf("%.4g ms", 
 short(s, n) = strlen(s) > n ? s[1:n-1]."…" : s
 
 do for [format in formats] {
-    eval page(format, wide, total); tiny = format eq "png" ? ",16" : ",11"; strong = format eq "png" ? ",20" : ",13.5"
+    page_wide = int(wide); page_high = int(total)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = format eq "png" ? ",16" : ",11"; strong = format eq "png" ? ",20" : ",13.5"
     # svg draws symbols larger and sets labels of axes lower
     symbol = format eq "png" ? 1.0 : 0.55; lift = format eq "png" ? 0.4 : 0.75
     set multiplot
-    eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey; eval foot(format)
+    set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
+    set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     do for [b=1:3] { if (header[b] ne "") {
         bottom = decade(least[b]) - (decade(top[b]) - decade(least[b]) > 6 ? 1.5 : 0.7)
         exact = 10**bottom; over = 10**(decade(top[b]) + 1)

@@ -4,10 +4,8 @@ stats data using "total_us" nooutput
 top = STATS_max*1.12
 stats data using "stage" nooutput
 last = STATS_max
-tics = ''
 stats data using (headline = "Time per stage on ".strcol("machine"), \
-    subline = strcol("formulation")." formulation, ".strcol("operators")." operators, network level ".strcol("level"), \
-    tics = tics.sprintf("%s\"%s\" %d", strlen(tics) ? ', ' : '', strcol("name"), column("stage")), 0) nooutput
+    subline = strcol("formulation")." formulation, ".strcol("operators")." operators, network level ".strcol("level"), 0) nooutput
 sizes = "16 128"
 parts = "compute_us send_us receive_us wait_us contention_us"
 array part_name[5] = ["computing", "sending", "receiving", "waiting", "contention"]
@@ -20,17 +18,22 @@ set yrange [0:top]
 set xrange [-0.6:last + 0.6]
 unset grid; set grid ytics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
 do for [format in formats] {
-    eval page(format, 800, 480)
+    page_wide = 800; page_high = 480
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # the legend, in a frame as wide as the page
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.22
     unset border; unset tics; unset title; unset ylabel
     set key at screen 0.53,0.905 center top horizontal maxrows 1 samplen 1.2 width 1
-    eval title_at(format, 0.965); eval foot(format)
+    set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
+    set label 98 subline at screen 0.5,0.933 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     plot NaN, for [j=1:5] keyentry with boxes linewidth 0.6 fillcolor rgb part_colour[j] title part_name[j]
     unset key; unset label 97; unset label 98; unset label 99
     set border 3; set ytics nomirror out scale 0.6
-    set xtics rotate by 40 right noenhanced scale 0 nomirror; eval "set xtics (".tics.")"
+    set xtics scale 0 nomirror format ""
     set tmargin at screen 0.79
     do for [s=1:2] {
         size = int(word(sizes, s))
@@ -40,7 +43,8 @@ do for [format in formats] {
         set title sprintf("n = P = %d: %.0f µs in all", size, total) offset 0,-0.6
         set ylabel (s == 1 ? "mean over the ranks [µs]" : ""); set format y (s == 1 ? "%g" : "")
         plot for [j=5:1:-1] data using (at(size, column("stage"))):(up_to(j)):(0.78) with boxes \
-                linewidth 0.6 fillcolor rgb part_colour[j]
+                linewidth 0.6 fillcolor rgb part_colour[j], \
+             data using (at(size, column("stage"))):(0):(strcol("name")) with labels rotate by 40 right noenhanced offset 0,-0.7
     }
     unset multiplot
     unset output

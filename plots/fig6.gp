@@ -27,12 +27,16 @@ set samples 200
 set xrange [pmin*0.93:pmax*1.07]
 set xtics (2, 3, 4, 6, 8, 12, 16, 24, 32, 45, "" 48, 64, 96, 128, 192, 256, 384, 512, 1024, 2048, 4096)
 do for [format in formats] {
-    eval page(format, 800, 840)
+    page_wide = 800; page_high = 840
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     set lmargin at screen 0.105; set rmargin at screen 0.93
     # speedup
     set tmargin at screen top; set bmargin at screen 0.475
-    eval title_at(format, 0.982)
+    set label 97 headline at screen 0.5,0.982 center noenhanced font large(format)
+    set label 98 subline at screen 0.5,0.95 center noenhanced textcolor rgb grey
     set key at screen 0.52,0.927 center top vertical maxrows rows samplen 3.5 width -1
     set logscale y 2
     set yrange [ymin:pmax*1.1]
@@ -40,7 +44,7 @@ do for [format in formats] {
     set ylabel "speedup S over the serial code"
     set xlabel ""
     set format x ""
-    eval foot(format)
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     do for [i=1:words(fractions)] {
         f = real(word(fractions, i))
         set label 10+i sprintf("%.2f", f) at pmax*1.09,amdahl(f, pmax) left font small(format) textcolor rgb grey

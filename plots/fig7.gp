@@ -17,12 +17,17 @@ values = "over_serial over_conventional"
 set xrange [pmin*0.9:pmax*1.12]
 do for [format in formats] {
     high = 164 + 230*panels
-    eval page(format, 800, high)
+    page_wide = 800; page_high = int(high)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # the legend, in a frame as wide as the page
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
     unset border; unset tics; unset logscale; set yrange [0:1]
-    eval title_at(format, 1.0 - 18.0/high); eval foot(format)
+    set label 97 headline at screen 0.5,1.0 - 18.0/high center noenhanced font large(format)
+    set label 98 subline at screen 0.5,1.0 - 18.0/high - 0.032 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,(1.0 - 73.0/high) center top horizontal maxrows 2 samplen 3 width -1
     plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \
             linecolor rgb colour[k] title method[k]
@@ -37,7 +42,7 @@ do for [format in formats] {
         set bmargin at screen 1.0 - (126.0 + 230*p - 42)/high
         if (side == 1) { set logscale y 2; set yrange [*:*]; set ylabel "speedup" } else { unset logscale y; set yrange [*<0.9:*]; set ylabel "factor" }
         set xlabel (p == panels ? "number of processors P" : "")
-        set title size_name[p].", ".over[side] offset 0,-0.7
+        set title size_name[p].", ".over[side] noenhanced offset 0,-0.7
         plot 1 with lines linewidth 0.8 linecolor rgb grey, \
              for [k=1:last] data using "P":(of(p, k, column(word(values, side)))) with linespoints linewidth 1.8 \
                 dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k]

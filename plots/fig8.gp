@@ -20,12 +20,17 @@ is(kind, v) = strcol("kind") eq kind ? v : NaN
 
 unset grid; set grid xtics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
 do for [format in formats] {
-    eval page(format, 800, 210 + 70*(last + 1))
+    page_wide = 800; page_high = int(210 + 70*(last + 1))
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # two legends, in frames as wide as the page
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
     unset border; unset tics; set xrange [0:1]; set yrange [0:1]
-    eval title_at(format, 0.965); eval foot(format)
+    set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
+    set label 98 subline at screen 0.5,0.933 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,0.905 center top horizontal maxrows 1 samplen 1.2 width -1
     plot NaN, for [j=1:5] keyentry with boxes linewidth 0.6 fillcolor rgb kind_colour[j] title kind_name[j]
     unset label 97; unset label 98; unset label 99

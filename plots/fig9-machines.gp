@@ -16,12 +16,17 @@ ymin = 2**floor(log(smin)/log(2)); if (ymin > 0.5) { ymin = 0.5 }
 
 set samples 200
 do for [format in formats] {
-    eval page(format, 800, 800)
+    page_wide = 800; page_high = 800
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # the legend, in a frame as wide as the page
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
     unset border; unset tics; unset logscale; set xrange [0:1]; set yrange [0:1]
-    eval title_at(format, 0.98); eval foot(format)
+    set label 97 headline at screen 0.5,0.98 center noenhanced font large(format)
+    set label 98 subline at screen 0.5,0.948 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,0.935 center top horizontal maxrows 2 samplen 3 width -1
     plot NaN, keyentry with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
          for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \

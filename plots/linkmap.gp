@@ -23,16 +23,22 @@ unset grid
 set style fill solid 1.0 noborder
 do for [format in formats] {
     tall = 140 + 190*rows
-    eval page(format, 860, tall); tiny = small(format)
+    page_wide = 860; page_high = int(tall)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = small(format)
     set multiplot
-    eval title_at(format, 1.0 - 20.0/tall); eval foot(format)
+    set label 97 headline at screen 0.5,1.0 - 20.0/tall center noenhanced font large(format)
+    set label 98 subline at screen 0.5,1.0 - 20.0/tall - 0.032 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     do for [p=1:panels] {
         column_of = int((p - 1) % 2)
         row_of = int((p - 1)/2)
         set lmargin at screen (column_of == 0 ? 0.08 : 0.49); set rmargin at screen (column_of == 0 ? 0.43 : 0.84)
         set tmargin at screen 1.0 - (78.0 + 190*row_of + 12)/tall
         set bmargin at screen 1.0 - (78.0 + 190*row_of + 150)/tall
-        set title direction[p] offset 0,-0.8
+        set title direction[p] noenhanced offset 0,-0.8
         set xlabel (row_of == rows - 1 ? "x" : "") offset 0,0.4
         set ylabel (column_of == 0 ? (high > wide ? "other coordinates" : "y") : "") offset 0.6,0
         if (p == 2) {

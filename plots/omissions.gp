@@ -20,9 +20,15 @@ array right_px[2] = [700.0, 1084.0]
 is(c, b) = column("measured") == 1 && column("bounded") == b && (c == 2 || column("told") == 1)
 
 do for [format in formats] {
-    eval page(format, wide, total); tiny = format eq "png" ? ",16" : ",11"
+    page_wide = int(wide); page_high = int(total)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = format eq "png" ? ",16" : ",11"
     set multiplot
-    eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey; eval foot(format)
+    set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
+    set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     unset ytics
     set yrange [n + 0.55:0.45]
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper + row_high*n)

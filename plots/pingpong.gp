@@ -33,12 +33,20 @@ left = panels == 1 ? 0.085 : 0.06
 gap = 0.02
 width = (0.985 - left - gap*(panels - 1))/panels
 do for [format in formats] {
-    eval page(format, panels == 1 ? 760 : panels < 4 ? 420*panels : 360*panels, 560); tiny = small(format)
+    page_wide = int(panels == 1 ? 760 : panels < 4 ? 420*panels : 360*panels); page_high = 560
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = small(format)
     set multiplot
     set tmargin at screen 0.88; set bmargin at screen 0.14
     do for [p=1:panels] {
         set lmargin at screen left + (p - 1)*(width + gap); set rmargin at screen left + (p - 1)*(width + gap) + width
-        if (p == 1) { eval title_at(format, 0.965); eval foot(format) } else { unset label 97; unset label 98; unset label 99 }
+        if (p == 1) {
+            set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
+            set label 98 subline at screen 0.5,0.933 center noenhanced textcolor rgb grey
+            set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
+        } else { unset label 97; unset label 98; unset label 99 }
         if (p == 1) { set ylabel "one way [µs]"; set format y "10^{%T}" } else { unset ylabel; set format y "" }
         set xlabel "message [B]"
         set key at graph 0.03, graph 0.985 left top vertical maxrows 8 samplen 2.6 spacing 1.15 font tiny

@@ -37,10 +37,16 @@ at_x(px) = px/wide; at_y(px) = 1.0 - px/total
 place(x) = x > explicit ? x + 0.25 : x    # explicit and implicit steppers stand apart
 
 do for [format in formats] {
-    eval page(format, wide, total); tiny = format eq "png" ? ",15" : ",10.5"; strong = format eq "png" ? ",20" : ",13.5"
+    page_wide = int(wide); page_high = int(total)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = format eq "png" ? ",15" : ",10.5"; strong = format eq "png" ? ",20" : ",13.5"
     set multiplot
     unset grid; unset border; unset tics
-    eval title_at(format, at_y(20)); set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey; eval foot(format)
+    set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
+    set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set label 1 "Accelerations and short motions" at screen at_x(14),at_y(72) left font strong
     set label 2 "number in a cell: power of ten of the relative error, against quad precision, of a short motion against a tight one;  =0: no error at all;  ×: no answer;  –: not known;  blank: does not apply" \
         at screen at_x(14),at_y(92) left noenhanced font tiny textcolor rgb "#505050"
@@ -56,14 +62,14 @@ do for [format in formats] {
     power(x) = x > 0 ? sprintf("%.0e", x) : x == 0 ? "=0" : ""
     plot for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(0.48):(0.47) with boxxyerror linewidth 0.3 \
             fillcolor rgb grade_colour[j+1] title grade_name[j+1], \
-         for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(stringcolumn("decade")) with labels font tiny textcolor rgb grade_ink[j+1], \
+         for [j=0:2] data using (is(0, j) ? column("x") : NaN):"y":(stringcolumn("decade")) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \
          cases using (column("motion") == 0 && column("heading") == 0 ? 0.35 : NaN):"y":(strcol("name")) with labels right noenhanced font tiny, \
          cases using (column("motion") == 0 && column("heading") == 1 ? 0.35 : NaN):(column("y") + 0.1):(strcol("name")) with labels right noenhanced \
             font tiny textcolor rgb "#0072b2", \
-         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 1.55 : NaN):"y":(power(column("condition"))) with labels font tiny textcolor rgb "#505050", \
-         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 2.9 : NaN):"y":(power(column("growth"))) with labels font tiny textcolor rgb "#505050", \
-         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 4.25 : NaN):"y":(power(column("residual"))) with labels font tiny textcolor rgb "#505050", \
-         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 5.6 : NaN):"y":(power(column("energy"))) with labels font tiny textcolor rgb "#505050"
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 1.55 : NaN):"y":(power(column("condition"))) with labels noenhanced font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 2.9 : NaN):"y":(power(column("growth"))) with labels noenhanced font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 4.25 : NaN):"y":(power(column("residual"))) with labels noenhanced font tiny textcolor rgb "#505050", \
+         cases using (column("motion") == 0 && column("heading") == 0 ? columns + 5.6 : NaN):"y":(power(column("energy"))) with labels noenhanced font tiny textcolor rgb "#505050"
     do for [i=1:columns] { unset label 10+i }
     do for [i=1:4] { unset label 50+i }
     unset label 97; unset label 98; unset label 99
@@ -83,16 +89,16 @@ do for [format in formats] {
         set label 54 "explicit / implicit" at first steppers + 1.5,graph 1.0 center font tiny offset 0,0.5 textcolor rgb "#505050"
         count(x) = x > 0 ? (x < 1e6 ? sprintf("%.0f", x) : sprintf("%.1e", x)) : "–"
         plot for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):"y":(0.49):(0.47) with boxxyerror linewidth 0.3 fillcolor rgb grade_colour[j+1], \
-             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.33):(strcol("error_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
-             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.11):(strcol("step_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
-             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.11):(count(column("evaluations"))) with labels font tiny textcolor rgb grade_ink[j+1], \
-             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.33):(strcol("drift_text")) with labels font tiny textcolor rgb grade_ink[j+1], \
-             cases using (column("motion") == 1 ? steppers + 1.5 : NaN):"y":(strcol("ratio")) with labels font tiny, \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.33):(strcol("error_text")) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") - 0.11):(strcol("step_text")) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.11):(count(column("evaluations"))) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \
+             for [j=0:2] data using (is(1, j) ? place(column("x")) : NaN):(column("y") + 0.33):(strcol("drift_text")) with labels noenhanced font tiny textcolor rgb grade_ink[j+1], \
+             cases using (column("motion") == 1 ? steppers + 1.5 : NaN):"y":(strcol("ratio")) with labels noenhanced font tiny, \
              cases using (column("motion") == 1 ? 0.5 - 84/unit : NaN):"y":(strcol("name")) with labels right noenhanced font tiny, \
-             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.33):("error") with labels right font tiny textcolor rgb grey, \
-             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.11):("step") with labels right font tiny textcolor rgb grey, \
-             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.11):("evaluations") with labels right font tiny textcolor rgb grey, \
-             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.33):("energy drift") with labels right font tiny textcolor rgb grey
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.33):("error") with labels right noenhanced font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") - 0.11):("step") with labels right noenhanced font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.11):("evaluations") with labels right noenhanced font tiny textcolor rgb grey, \
+             cases using (column("motion") == 1 ? 0.44 : NaN):(column("y") + 0.33):("energy drift") with labels right noenhanced font tiny textcolor rgb grey
         do for [i=1:steppers] { unset label 10+i }
         do for [i=51:55] { unset label i }
     }

@@ -1,15 +1,22 @@
-# style.gp - what all figures share. `figure` and `provenance` are set before; data is in figure.".csv".
+# style.gp - what all figures share. The variable figure, a file's name, is set before; data is in figure.".csv".
+# Texts of a database are read as columns of data files and shown as strings that are not enhanced. None becomes a part of
+# a command: nothing in this folder evaluates a text, expands a macro, starts a program or loads a file.
 # Colours: Okabe and Ito, told apart by colour-blind readers; dashes and points differ too, for print in grey.
 set encoding utf8
+set datafile commentschars ""
+# who made the numbers: one line of text
+provenance = ""
+set datafile separator tab
+stats figure.".provenance" using (provenance = strcol(1), 0) nooutput
 set datafile separator comma
 set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
-# A format begins as the first did: what the last panel of the one before was called is forgotten.
-page(format, w, h) = "unset title; unset xlabel; unset ylabel; ".(format eq "png" ? \
-    sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,%d' linewidth 2 enhanced; set output figure.'.png'", 2*w, 2*h, 19) : \
-    sprintf("set terminal svg size %d,%d font 'DejaVu Sans,%d' linewidth 1.2 enhanced; set output figure.'.svg'", w, h, 13))
+png_font = "DejaVu Sans,19"; svg_font = "DejaVu Sans,13"
+large(format) = format eq "png" ? ",23" : ",16"
+small(format) = format eq "png" ? ",15" : ",10"
+least(format) = format eq "png" ? ",11" : ",8"
 
 array colour[8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f"]
 array point[8] = [7, 5, 9, 13, 11, 6, 4, 8]
@@ -33,10 +40,3 @@ set key noautotitle Left reverse noenhanced
 headline = ""; subline = ""
 set style fill solid 1.0 border linecolor rgb "#303030"
 set boxwidth 0.8
-footer = sprintf("set label 99 \"%s\" at screen 0.99,0.012 right noenhanced font ',%%s' textcolor rgb '%s'", provenance, grey)
-# The figure's own title and the line below it, at the height y of the page.
-title_at(format, y) = sprintf("set label 97 headline at screen 0.5,%f center noenhanced font ',%d'; ". \
-    "set label 98 subline at screen 0.5,%f center noenhanced textcolor rgb '%s'", y, format eq "png" ? 23 : 16, y - 0.032, grey)
-small(format) = format eq "png" ? ",15" : ",10"
-foot(format) = sprintf(footer, format eq "png" ? "11" : "8")
-

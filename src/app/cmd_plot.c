@@ -9,7 +9,7 @@
 #include "report/report.h"
 
 static const char doc[] =
-    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv and the script .gp.\n\n"
+    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv, the script .gp and .provenance.\n\n"
     "Example: mimdsim plot mimdsim.db fig6 --dir figures\n\v"
     "Without FIGURE: list the figures there are, what each shows, and the command that makes the rows it needs.";
 

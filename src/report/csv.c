@@ -1,8 +1,10 @@
 /* csv.c - tables as comma-separated values after RFC 4180. */
 #include "report/csv.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "base/text.h"
 
 struct writer {
@@ -29,6 +31,23 @@ void csv_cell(FILE *out, const char *s, bool last)
     fputs(last ? "\r\n" : ",", out);
 }
 
+void csv_plain(char *s)
+{
+    for (; *s; s++)
+        if ((unsigned char)*s < ' ' || *s == 127) *s = ' ';
+        else if (*s == '"') *s = '\'';
+}
+
+/* A text of the database, which may hold anything. */
+static void plain_cell(FILE *out, const char *s, bool last)
+{
+    char *copy = strdup(s);
+    CHECK(copy != NULL);
+    csv_plain(copy);
+    csv_cell(out, copy, last);
+    free(copy);
+}
+
 static bool header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
 {
     struct writer *w = context;
@@ -42,11 +61,10 @@ static bool row(void *context, int ncolumn, const char *const *name, const struc
     struct writer *w = context;
     for (int i = 0; i < ncolumn; i++) {
         char buffer[40] = "";
-        const char *s = buffer;
         if (value[i].kind == STORE_INT) snprintf(buffer, sizeof buffer, "%lld", (long long)value[i].integer);
         else if (value[i].kind == STORE_REAL) text_real(buffer, value[i].real);
-        else if (value[i].kind == STORE_TEXT) s = value[i].text;
-        csv_cell(w->out, s, i + 1 == ncolumn);
+        if (value[i].kind == STORE_TEXT) plain_cell(w->out, value[i].text, i + 1 == ncolumn);
+        else csv_cell(w->out, buffer, i + 1 == ncolumn);
         if (w->run_id != NULL && value[i].kind == STORE_INT && strcmp(name[i], "run_id") == 0)
             w->run_id(w->context, value[i].integer);
     }

@@ -12,7 +12,10 @@
 /* csv_cell: one cell, quoted when it holds a quote, a comma, a line end or an outer blank; NULL writes nothing. */
 void csv_cell(FILE *out, const char *s, bool last);
 
-/* csv_write: the rows of `sql` to `out`. SQL NULL is an empty cell.
+/* csv_plain: what gnuplot cannot read in a text, in place: control characters become blanks, double quotes apostrophes. */
+void csv_plain(char *s);
+
+/* csv_write: the rows of `sql` to `out`, texts as csv_plain makes them. SQL NULL is an empty cell.
  *
  *   run_id  called, when not NULL, with each value of a column named run_id
  *   nrow    out, number of rows */

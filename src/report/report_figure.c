@@ -3,8 +3,12 @@
  * NAME.sql holds one statement, or several of which each after the first follows a line "-- table: x"; the first
  * gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command fills the database for it, a line
  * "-- each: QUERY" that there is a drawing for each row of QUERY: ?1 is its first column, the files are called after
- * its second. The script that is run is made of the figure's name and provenance, style.gp and NAME.gp, and stays
- * beside the images: gnuplot NAME.gp redraws them from the CSV without this program. */
+ * its second. The script that is run is made of the figure's name, style.gp and NAME.gp, and stays beside the
+ * images: gnuplot NAME.gp redraws them from the CSV without this program.
+ *
+ * A database may come from a stranger. Its texts go into data files alone, NAME.csv and NAME.provenance, never into a
+ * script; of a name that one gives to a drawing, what has a meaning to a shell, to gnuplot or in a path is replaced. */
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -224,7 +228,7 @@ static bool add_source(void *context, int ncolumn, const char *const *name, cons
 {
     (void)ncolumn;
     (void)name;
-    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "", value[0]);
+    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "", value[0] ? value[0] : "");
     return true;
 }
 
@@ -232,7 +236,7 @@ static bool add_hash(void *context, int ncolumn, const char *const *name, const 
 {
     (void)ncolumn;
     (void)name;
-    text_add(context, "%s", value[0]);
+    text_add(context, "%s", value[0] ? value[0] : "");
     return true;
 }
 
@@ -264,24 +268,14 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
                            "ORDER BY config_hash, seed, rep",
                            1, ids, add_hash, &hashes, e);
     size_t nrun = hashes.length / 64;
-    if (ok && nrun == 1) text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
-    else if (ok && nrun > 1) {
+    if (ok && nrun == 1 && sources.s) text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
+    else if (ok && nrun > 1 && sources.s) {
         digest_sha256_hex(hashes.s, hashes.length, hash);
         text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
     }
     text_free(&sources);
     text_free(&hashes);
     return ok;
-}
-
-/* name = 'value' in gnuplot's language, where a quote inside quotes is doubled. */
-static void add_assignment(struct text *script, const char *name, const char *value)
-{
-    text_add(script, "%s = '", name);
-    for (; *value; value++)
-        if (*value == '\'') text_add(script, "''");
-        else if ((unsigned char)*value >= ' ') text_add_bytes(script, value, 1);
-    text_add(script, "'\n");
 }
 
 static bool add_file(struct text *script, const char *plots, const char *name, struct err *e)
@@ -295,17 +289,32 @@ static bool add_file(struct text *script, const char *plots, const char *name, s
     return ok;
 }
 
+/* Who made the numbers, as one line beside them. */
+static bool write_provenance(struct figure *f, struct err *e)
+{
+    struct text source = {0}, path = {0};
+    bool ok = provenance(f, &source, e);
+    if (source.length == 0) text_add(&source, "unknown");
+    csv_plain(source.s);
+    text_add(&source, "\n");
+    text_add(&path, "%s/%s.provenance", f->dir, f->as);
+    ok = ok && write_file(path.s, source.s, source.length, e);
+    text_free(&source);
+    text_free(&path);
+    return ok;
+}
+
+/* The name is ours, or went through drawing_name: no more than a quote in it needs care. */
 static bool write_script(struct figure *f, struct err *e)
 {
-    struct text script = {0}, source = {0}, path = {0};
-    bool ok = provenance(f, &source, e);
-    add_assignment(&script, "figure", f->as);
-    add_assignment(&script, "provenance", source.s ? source.s : "");
-    ok = ok && add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
+    struct text script = {0}, path = {0};
+    text_add(&script, "figure = '");
+    for (const char *c = f->as; *c; c++) text_add(&script, *c == '\'' ? "''" : "%c", *c);
+    text_add(&script, "'\n");
+    bool ok = add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
     text_add(&path, "%s/%s.gp", f->dir, f->as);
     ok = ok && write_file(path.s, script.s, script.length, e);
     text_free(&script);
-    text_free(&source);
     text_free(&path);
     return ok;
 }
@@ -356,7 +365,7 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     if (ok && f->nrow == 0) return no_rows(f, sql, e);
     remove_images(f);
     text_add(&script, "%s.gp", f->as);
-    ok = ok && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
+    ok = ok && write_provenance(f, e) && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
     if (!ok) remove_images(f);
     text_free(&script);
     return ok;
@@ -393,16 +402,46 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
 
 /* --- figures with a drawing for each of several rows -------------------------------------------------------------- */
 
+/* Letters of any alphabet, digits and signs that mean nothing in a path, in gnuplot and in a shell's quotes. */
+static bool harmless(char c)
+{
+    return (unsigned char)c >= 0x80 || isalnum((unsigned char)c) || strchr(" '%-_.,+=()", c) != NULL;
+}
+
+enum { DRAWING_NAME_LENGTH = 120 };
+
+/* The file name of the drawing that a database calls `s`, for the caller to free. Names that differ stay different: one
+ * that had to change ends in a fingerprint of what it was. */
+static char *drawing_name(const char *figure, const char *s)
+{
+    struct text name = {0};
+    char hash[65];
+    size_t n = strlen(figure);
+    bool changed = strncmp(s, figure, n) != 0 || (s[n] != '\0' && s[n] != '-');
+    if (changed) text_add(&name, "%s-", figure);
+    for (const char *c = s; *c && name.length < DRAWING_NAME_LENGTH; c++) {
+        bool keep = harmless(*c) && (*c != '\'' || c[1] != '\''); /* gnuplot misreads a row of quotes */
+        text_add_bytes(&name, keep ? c : "_", 1);
+        changed = changed || !keep;
+    }
+    if (changed || strlen(s) > DRAWING_NAME_LENGTH) {
+        digest_sha256_hex(s, strlen(s), hash);
+        text_add(&name, "-%.8s", hash);
+    }
+    return name.s;
+}
+
 static bool add_drawing(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     struct report_drawings *d = context;
     (void)name;
-    CHECK(ncolumn == 2 && value[0] != NULL && value[1] != NULL);
+    CHECK(ncolumn == 2);
+    if (value[0] == NULL || value[1] == NULL) return true; /* a row that was left without its name */
     d->which = realloc(d->which, ((size_t)d->n + 1) * sizeof *d->which);
     d->as = realloc(d->as, ((size_t)d->n + 1) * sizeof *d->as);
     CHECK(d->which != NULL && d->as != NULL);
     d->which[d->n] = strdup(value[0]);
-    d->as[d->n++] = strdup(value[1]);
+    d->as[d->n++] = drawing_name(d->figure, value[1]);
     return true;
 }
 

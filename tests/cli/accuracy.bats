@@ -216,7 +216,7 @@ scenario() {
     grep -q "^$counts" mimdsim.md
     saved=$(sql mimdsim.db "SELECT format('%.4g us', machine_saved_ps / 1e6) FROM omission WHERE what = 'external forces'")
     grep -q "external forces .* $saved" mimdsim.md
-    grep -q "provenance = 'mimdsim " figures/stability-small.gp
+    grep -q '^mimdsim ' figures/stability-small.provenance
     works mimdsim report --json
     json_is_valid
     json_is '$[0]' mimdsim.md

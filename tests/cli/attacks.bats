@@ -20,3 +20,135 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
     done
     nothing_left_behind
 }
+
+# --- texts of a database and gnuplot ----------------------------------------------------------------------------------
+
+figures() { (cd "$MIMDSIM_DATA/plots" && for f in *.gp; do [ "$f" = style.gp ] || echo "${f%.gp}"; done); }
+
+# every_figure: all.db, a database with rows for every figure.
+every_figure() {
+    if [ -e "$BATS_FILE_TMPDIR/all.db" ]; then cp "$BATS_FILE_TMPDIR/all.db" .; return; fi
+    printf '%s\n' 'schema_version: 1' 'question: Small?' 'machine: t3e-300' \
+        'model: {generator: serial-chain}' 'kernel: dynamics' 'ranks: n' 'n: 4' >small.yaml
+    for scenario in fig5 fig6 fig8 bisection pingpong-machines; do works mimdsim run $scenario -o all.db --quiet; done
+    works mimdsim run fig7 --set n=16 -o all.db --quiet
+    works mimdsim run fig9 --set ranks=1,2,4,8 -o all.db --quiet
+    works mimdsim run fig9-machines --set ranks=1,2,4,8 -o all.db --quiet
+    works mimdsim run fig6-machines --set n=2,4,8 -o all.db --quiet
+    works mimdsim accuracy small.yaml -o all.db --quiet
+    works mimdsim stability small.yaml -o all.db --quiet
+    works mimdsim explain small.yaml --measure -o all.db --quiet
+    run mimdsim validate paragon -o all.db --quiet
+    run mimdsim claims all.db
+    cp all.db "$BATS_FILE_TMPDIR/"
+}
+
+# text_columns: TABLE.COLUMN of every text column of every table.
+text_columns() {
+    sql all.db "SELECT m.name || '.' || c.name FROM sqlite_schema m, pragma_table_info(m.name) c
+                WHERE m.type = 'table' AND c.type = 'TEXT' ORDER BY 1"
+}
+
+# add_to FILE COLUMNS: each text of COLUMNS gets what FILE holds at its end. A column under a CHECK takes it all the same.
+add_to() {
+    local column where
+    cp all.db bad.db
+    {
+        echo 'PRAGMA ignore_check_constraints = ON; PRAGMA foreign_keys = OFF; BEGIN;'
+        for column in $2; do
+            # one stage has to keep its name for figure 7
+            if [ "$column" = stage.name ]; then where="WHERE name <> 'CFA[2]'"; else where=; fi
+            echo "UPDATE ${column%.*} SET ${column#*.} = ${column#*.} || CAST(readfile('$1') AS TEXT) $where;"
+        done
+        echo 'COMMIT;'
+    } | sqlite3 bad.db
+}
+
+# draw_all STATUS...: every figure of bad.db ends with one of STATUS; no command of a text has run, no picture is active.
+draw_all() {
+    local figure
+    rm -rf drawn
+    for figure in $(figures); do
+        run --separate-stderr -- mimdsim plot bad.db "$figure" --dir drawn
+        case " $* " in *" $status "*) ;; *) echo "$figure"; show; return 1 ;; esac
+    done
+    [ -z "$(find "$BATS_TEST_TMPDIR" -name 'PWNED?')" ] || { echo 'a text was run as a command'; return 1; }
+    ! grep -rqi '<script' --include='*.svg' . || { echo 'a text became a part of a picture'; return 1; }
+}
+
+@test "no text of a database is a command of gnuplot, whatever it holds" {
+    if ! command -v gnuplot >/dev/null; then skip; fi
+    every_figure
+    # What is left of a figure when these are changed is told by the next test.
+    chosen='run.kernel run.status run.base run.placement run.solver run.part_solver run.formulation run.operators run.level run.scenario run.machine run.topology run.precision
+            baseline.name stage.name check_point.suite check_point.quantity check_point.unit check_point.verdict
+            setting.key span.kind claim.verdict claim.variant claim.id ladder.ladder ladder.quantity ladder.method ladder.rung
+            ladder.status ladder.at ladder.scenario ladder_choice.ladder stability.precision stability.algorithm
+            stability.status omission.class run_omission.class setting.value run.config_text'
+    shown=
+    for column in $(text_columns); do case " $(echo $chosen) " in *" $column "*) ;; *) shown="$shown $column" ;; esac; done
+    shown="$shown run.machine stage.name claim.id claim.statement ladder.method stability.algorithm"
+    [ "$(echo $shown | wc -w)" -gt 30 ]
+    cp all.db bad.db
+    draw_all 0
+    pictures=$(find drawn -name '*.svg' | wc -l)
+    printf '"; system("touch PWNED1"); set label 98 "<script>' >text
+    add_to text "$shown"
+    draw_all 0
+    printf "'; system('touch PWNED2'); set label 98 '; ! touch PWNED2" >text
+    add_to text "$shown"
+    draw_all 0
+    printf '`touch PWNED3` $(touch PWNED3) ${PWD} @figure @PWNED |touch PWNED3 < touch PWNED3 > PWNED3' >text
+    add_to text "$shown"
+    draw_all 0
+    printf '\n system("touch PWNED4")\n! touch PWNED4\r\n"; system("touch PWNED4")\n\t\001\033[2J' >text
+    add_to text "$shown"
+    draw_all 0
+    printf '{/Symbol %%s%%n%%d%%*d%%%%\\\\101\\" {}}{{@_^~&{\\\\\n# %% "" \x27\x27 \\' >text
+    add_to text "$shown"
+    draw_all 0
+    [ "$(find drawn -name '*.svg' | wc -l)" -eq "$pictures" ]
+}
+
+@test "a text that chooses rows is no command of gnuplot either" {
+    if ! command -v gnuplot >/dev/null; then skip; fi
+    every_figure
+    printf '"; system("touch PWNED1"); `touch PWNED2` $(touch PWNED3) \x27; system("touch PWNED4") #\x27 @x {/x} %%s%%n\\ |touch PWNED5 <x>\nsystem("touch PWNED6")' >text
+    for column in run.kernel run.topology run.level run.formulation run.solver baseline.name setting.value \
+        check_point.quantity claim.variant build.version; do
+        add_to text "$column"
+        draw_all 0 65 66
+    done
+    # all at once: most figures find none of their rows
+    add_to text "$(text_columns)"
+    draw_all 0 65 66 69
+    works mimdsim report bad.db --dir drawn
+    [ -z "$(find "$BATS_TEST_TMPDIR" -name 'PWNED?')" ]
+}
+
+@test "the name that a database gives a drawing leads nowhere else" {
+    if ! command -v gnuplot >/dev/null; then skip; fi
+    every_figure
+    for name in '/../../gone' '../x' '|touch PWNED1' '<touch PWNED2' '`touch PWNED3`' '-e system("touch PWNED4")' "a'b"; do
+        cp all.db bad.db
+        sqlite3 bad.db "UPDATE omission SET scenario = '${name//\'/\'\'}'; UPDATE ladder SET scenario = '${name//\'/\'\'}'"
+        rm -rf drawn
+        works mimdsim plot bad.db omissions accuracy --dir drawn
+        [ "$(find drawn -name '*.svg' -size +0 | wc -l)" -eq 2 ]
+        [ -z "$(find "$BATS_TEST_TMPDIR" -name 'PWNED?' -o -name 'gone*' -o -path './x*')" ]
+    done
+    # names that a path cannot tell apart stay two drawings
+    cp all.db bad.db
+    sqlite3 bad.db "UPDATE omission SET scenario = iif(ordinal % 2, 'a/b', 'a|b')"
+    rm -rf drawn
+    works mimdsim plot bad.db omissions --dir drawn
+    [ "$(find drawn -name '*.svg' | wc -l)" -eq 2 ]
+}
+
+@test "no script of a figure evaluates, includes or starts anything" {
+    for script in "$MIMDSIM_DATA"/plots/*.gp; do
+        # commands that make commands of text, in any of gnuplot's abbreviations, where a command may begin
+        if grep -nE '(^|[;{])[[:space:]]*(ev[a-z]*|sys[a-z]*|lo?a?d?|cal?l?|she?l?l?|python|!)([[:space:](]|$)' "$script"; then return 1; fi
+        if grep -nE 'system *\(|[`]|(^|[^"a-zA-Z_^])@[A-Za-z]|set macros|["'\''][<|]' "$script"; then return 1; fi
+    done
+}
