@@ -36,8 +36,8 @@ struct yaml_node *yaml_tree_parse(const char *data, size_t size, const char *pat
 /* yaml_node_child: the entry `key` of a mapping, NULL when it is not there. */
 struct yaml_node *yaml_node_child(const struct yaml_node *mapping, const char *key);
 
-/* yaml_node_flow: a scalar's text, or a sequence of scalars and sequences as "[a, b, [c, d]]", in `a`. Returns NULL with
- * ERR_DATA at the line of the mapping when there is one in it; `key` and `file` are what the message calls the place. */
+/* yaml_node_flow: a scalar's text, or a sequence of scalars and sequences as "[a, b, [c, d]]", in `a`. When there is a
+ * mapping in it, returns NULL with ERR_DATA at its line; `key` and `file` are what the message calls the place. */
 const char *yaml_node_flow(const struct yaml_node *node, const char *key, const char *file, struct arena *a,
                            struct err *e);
 

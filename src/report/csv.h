@@ -12,7 +12,7 @@
 /* csv_cell: one cell, quoted when it holds a quote, a comma, a line end or an outer blank; NULL writes nothing. */
 void csv_cell(FILE *out, const char *s, bool last);
 
-/* csv_plain: what gnuplot cannot read in a text, in place: control characters become blanks, double quotes apostrophes. */
+/* csv_plain: change what gnuplot cannot read in a text: control characters to blanks, double quotes to apostrophes. */
 void csv_plain(char *s);
 
 /* csv_write: the rows of `sql` to `out`, texts as csv_plain makes them. SQL NULL is an empty cell.

@@ -8,7 +8,6 @@
  *
  * A database may come from a stranger. Its texts go into data files alone, NAME.csv and NAME.provenance, never into a
  * script; of a name that one gives to a drawing, what has a meaning to a shell, to gnuplot or in a path is replaced. */
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -21,6 +20,7 @@
 #include "base/digest.h"
 #include "base/text.h"
 #include "report/csv.h"
+#include "report/figure_text.h"
 #include "report/gnuplot.h"
 #include "report/report.h"
 
@@ -94,80 +94,6 @@ static bool no_such_figure(const char *data_dir, const char *wanted, struct err 
     return false;
 }
 
-/* The rest of the line in `sql` that begins with `mark`, copied into `word`; returns what follows the line. */
-static const char *marked_line(const char *sql, const char *mark, char *word, size_t size)
-{
-    size_t n = strlen(mark);
-    for (const char *line = sql; *line;) {
-        const char *end = strchrnul(line, '\n');
-        if (strncmp(line, mark, n) == 0) {
-            size_t length = (size_t)(end - line) - n;
-            if (length >= size) length = size - 1;
-            memcpy(word, line + n, length);
-            word[length] = '\0';
-            return *end ? end + 1 : end;
-        }
-        line = *end ? end + 1 : end;
-    }
-    return NULL;
-}
-
-enum { TITLE_LENGTH = 110 };
-
-/* Where a sentence ends in [line, end): at a full stop that is none of several; NULL when it does not. */
-static const char *sentence_end(const char *line, const char *end)
-{
-    for (const char *c = line; c < end; c++)
-        if (*c == '.' && (c + 1 == end || c[1] == ' ') && (c == line || c[-1] != '.')) return c;
-    return NULL;
-}
-
-/* A title too long for a line ends before a clause, where there is one. */
-static void shorten(struct text *title)
-{
-    static const char *const marks[] = {";:", ","};
-    if (title->length <= TITLE_LENGTH) return;
-    size_t at = TITLE_LENGTH;
-    for (int k = 0; k < 2 && at == TITLE_LENGTH; k++)
-        for (size_t i = TITLE_LENGTH - 1; i > TITLE_LENGTH / 4 && at == TITLE_LENGTH; i--)
-            if (title->s[i + 1] == ' ' && strchr(marks[k], title->s[i])) at = i;
-    bool clause = at < TITLE_LENGTH;
-    while (!clause && at > 0 && title->s[at] != ' ') at--;
-    title->s[at] = '\0';
-    title->length = at;
-    if (!clause) text_add(title, " ...");
-}
-
-/* The comment that `sql` begins with, up to the end of its first sentence or the line of what it needs. */
-static void first_sentence(const char *sql, struct text *out)
-{
-    for (const char *line = sql; strncmp(line, "-- ", 3) == 0 && strncmp(line, "-- needs: ", 10) != 0 &&
-                             strncmp(line, "-- each: ", 9) != 0;) {
-        const char *end = strchrnul(line, '\n'), *stop = sentence_end(line, end);
-        text_add(out, "%s%.*s", out->length > 0 ? " " : "", (int)((stop ? stop : end) - line - 3), line + 3);
-        if (stop || !*end) return;
-        line = end + 1;
-    }
-}
-
-void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs)
-{
-    struct text path = {0}, sql = {0};
-    char line[200] = "";
-    struct err ignored;
-    err_clear(&ignored);
-    text_add(&path, "%s/plots/%s.sql", data_dir, name);
-    if (text_read_file(&sql, path.s, &ignored) && sql.s != NULL) {
-        first_sentence(sql.s, title);
-        shorten(title);
-        marked_line(sql.s, "-- needs: ", line, sizeof line);
-    }
-    text_add(title, "%s", "");
-    text_add(needs, "%s", line);
-    text_free(&path);
-    text_free(&sql);
-}
-
 static void remember_run(void *context, int64_t id)
 {
     struct text *ids = context;
@@ -207,7 +133,7 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
 {
     char table[64] = "", next[64];
     for (const char *from = sql; from != NULL;) {
-        const char *after = marked_line(from, "-- table: ", next, sizeof next);
+        const char *after = figure_line(from, "-- table: ", next, sizeof next);
         struct text statement = {0};
         int64_t nrow;
         text_add(&statement, "%s", from);
@@ -304,7 +230,7 @@ static bool write_provenance(struct figure *f, struct err *e)
     return ok;
 }
 
-/* The name is ours, or went through drawing_name: no more than a quote in it needs care. */
+/* The name is ours, or went through figure_file_name: no more than a quote in it needs care. */
 static bool write_script(struct figure *f, struct err *e)
 {
     struct text script = {0}, path = {0};
@@ -353,7 +279,7 @@ static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
     if (f->folder_made) rmdir(f->dir);
-    marked_line(sql, "-- needs: ", needs, sizeof needs);
+    figure_line(sql, "-- needs: ", needs, sizeof needs);
     return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s), f->name,
                    *needs ? "; first: " : "", needs);
 }
@@ -402,35 +328,6 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
 
 /* --- figures with a drawing for each of several rows -------------------------------------------------------------- */
 
-/* Letters of any alphabet, digits and signs that mean nothing in a path, in gnuplot and in a shell's quotes. */
-static bool harmless(char c)
-{
-    return (unsigned char)c >= 0x80 || isalnum((unsigned char)c) || strchr(" '%-_.,+=()", c) != NULL;
-}
-
-enum { DRAWING_NAME_LENGTH = 120 };
-
-/* The file name of the drawing that a database calls `s`, for the caller to free. Names that differ stay different: one
- * that had to change ends in a fingerprint of what it was. */
-static char *drawing_name(const char *figure, const char *s)
-{
-    struct text name = {0};
-    char hash[65];
-    size_t n = strlen(figure);
-    bool changed = strncmp(s, figure, n) != 0 || (s[n] != '\0' && s[n] != '-');
-    if (changed) text_add(&name, "%s-", figure);
-    for (const char *c = s; *c && name.length < DRAWING_NAME_LENGTH; c++) {
-        bool keep = harmless(*c) && (*c != '\'' || c[1] != '\''); /* gnuplot misreads a row of quotes */
-        text_add_bytes(&name, keep ? c : "_", 1);
-        changed = changed || !keep;
-    }
-    if (changed || strlen(s) > DRAWING_NAME_LENGTH) {
-        digest_sha256_hex(s, strlen(s), hash);
-        text_add(&name, "-%.8s", hash);
-    }
-    return name.s;
-}
-
 static bool add_drawing(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     struct report_drawings *d = context;
@@ -441,7 +338,7 @@ static bool add_drawing(void *context, int ncolumn, const char *const *name, con
     d->as = realloc(d->as, ((size_t)d->n + 1) * sizeof *d->as);
     CHECK(d->which != NULL && d->as != NULL);
     d->which[d->n] = strdup(value[0]);
-    d->as[d->n++] = drawing_name(d->figure, value[1]);
+    d->as[d->n++] = figure_file_name(d->figure, value[1]);
     return true;
 }
 
@@ -482,7 +379,7 @@ static bool find_description(const char *data_dir, const char *name, struct repo
     if (read_description(data_dir, name, sql, e)) return true;
     for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
         *hyphen = '\0';
-        if (read_description(data_dir, d->figure, sql, e) && marked_line(sql->s, "-- each: ", each, sizeof each))
+        if (read_description(data_dir, d->figure, sql, e) && figure_line(sql->s, "-- each: ", each, sizeof each))
             return true;
         text_free(sql);
     }
@@ -497,10 +394,10 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
     *d = (struct report_drawings){0};
     if (!find_description(data_dir, name, d, &sql, e)) return false;
     bool ok = true;
-    if (marked_line(sql.s, "-- each: ", each, sizeof each)) {
+    if (figure_line(sql.s, "-- each: ", each, sizeof each)) {
         ok = store_select(s, each, 0, NULL, add_drawing, d, e);
         if (ok && strcmp(d->figure, name) != 0) keep_drawing(d, name);
-        marked_line(sql.s, "-- needs: ", needs, sizeof needs);
+        figure_line(sql.s, "-- needs: ", needs, sizeof needs);
         if (ok && d->n == 0)
             ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s", store_path(s), name,
                          *needs ? "; first: " : "", needs);

@@ -1,4 +1,4 @@
-/* beside.c - files that are written beside their place: new ones, never through a link, and what a crash left of them. */
+/* beside.c - files that are written beside their place, never through a link, and what a crash left of them. */
 #include "store/beside.h"
 
 #include <ctype.h>

@@ -1,4 +1,4 @@
-/* beside.h - files that are written beside their place: new ones, never through a link, and what a crash left of them. */
+/* beside.h - files that are written beside their place, never through a link, and what a crash left of them. */
 #ifndef STORE_BESIDE_H
 #define STORE_BESIDE_H
 
