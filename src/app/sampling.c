@@ -134,8 +134,8 @@ static bool read_plan(struct sampler *p, int sample, int scene)
 
 static bool read_plans(struct sampler *p)
 {
-    p->drawn = TAKE(p->arena, p->nsample * p->nuncertain + 1, double);
-    p->plan = TAKE(p->arena, p->nsample * p->nscene, struct plan);
+    p->drawn = TAKE(p->arena, size_sum(size_product(p->nsample, p->nuncertain), 1), double);
+    p->plan = TAKE(p->arena, size_product(p->nsample, p->nscene), struct plan);
     for (int s = 0; s < p->nsample; s++)
         for (int i = 0; i < p->nuncertain; i++) p->drawn[s * p->nuncertain + i] = draw(&p->uncertain[i], s);
     for (int s = 0; s < p->nsample; s++)

@@ -122,7 +122,7 @@ static struct block *arena_grow(struct arena *a, size_t size)
 
 void *arena_take(struct arena *a, size_t size)
 {
-    CHECK(size < SIZE_MAX / 2);
+    if (size >= SIZE_MAX / 2) check_memory(size);
     size_t room = (size + ALIGN - 1) / ALIGN * ALIGN + GAP;
     struct block *b = a->top;
     if (!b || b->capacity - b->used < room) b = arena_grow(a, room);

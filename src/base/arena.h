@@ -7,6 +7,8 @@
 
 #include <stddef.h>
 
+#include "base/size.h"
+
 struct arena;
 struct arena_mark {
     void *block;
@@ -32,7 +34,8 @@ void arena_release(struct arena *a, struct arena_mark m);
 /* arena_peak: largest number of bytes ever in use [B]. */
 size_t arena_peak(const struct arena *a);
 
-/* TAKE(a, n, type): an array of n zeroed elements of `type`. */
-#define TAKE(a, n, type) ((type *)arena_take((a), (size_t)(n) * sizeof(type)))
+/* TAKE(a, n, type): an array of n zeroed elements of `type`. Where n is a product it is a size_product: what wraps in
+ * an int is small again before this macro sees it. A size that does not fit, or is negative, is refused as memory. */
+#define TAKE(a, n, type) ((type *)arena_take((a), size_product((size_t)(n), sizeof(type))))
 
 #endif

@@ -33,7 +33,7 @@ static void accelerations(struct cfa_run *r)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
-    real *net = TAKE(d->arena, 6 * d->nbody, real), t[6];
+    real *net = TAKE(d->arena, size_product(6, d->nbody), real), t[6];
     for (int i = 0; i < d->nbody; i++) {
         screw_add(net + 6 * i, r->f + 6 * i);
         if (r->full) screw_sub(net + 6 * i, r->gyro + 6 * i);
@@ -75,7 +75,7 @@ static void answer_joints(struct cfa_run *r)
 {
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
-    real *x = TAKE(d->arena, 6 * d->nbody, real);
+    real *x = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int k = 0; k < 6 * d->nbody; k++) r->z[k] = -r->z[k];
     cfa_solve(d, &r->system, r->z, x, &r->work);
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] += x[k];
@@ -118,7 +118,7 @@ static void answer_loops(struct cfa_run *r, real *residual)
     struct dynamics *d = r->d;
     int m = r->loops.nrow, size = 6 * d->nbody;
     struct arena_mark mark = arena_mark(d->arena);
-    real *s = TAKE(d->arena, m * m, real), *room = TAKE(d->arena, m * m + 2 * m, real);
+    real *s = TAKE(d->arena, size_product(m, m), real), *room = TAKE(d->arena, size_product(m, m + 2), real);
     for (int k = 0; k < m * m; k++) s[k] = r->s[k];
     for (int k = 0; k < m; k++) residual[k] = -residual[k];
     r->rank = least_norm_solve(m, r->reference, s, residual, room, &r->work);
@@ -229,10 +229,10 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
 {
     int n = d->nbody, m = d->model->nrow;
     r->d = d;
-    r->f = TAKE(d->arena, 6 * n, real);
-    r->y = TAKE(d->arena, 6 * n, real);
-    r->z = TAKE(d->arena, 6 * n, real);
-    r->gyro = TAKE(d->arena, 6 * n, real);
+    r->f = TAKE(d->arena, size_product(6, n), real);
+    r->y = TAKE(d->arena, size_product(6, n), real);
+    r->z = TAKE(d->arena, size_product(6, n), real);
+    r->gyro = TAKE(d->arena, size_product(6, n), real);
     r->bias = TAKE(d->arena, d->nu, real);
     if (direct) {
         dynamics_place(d, q);
@@ -245,8 +245,8 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     loops_take(d, &r->loops);
     r->lambda = TAKE(d->arena, m, real);
     if (m == 0) return true;
-    r->response = TAKE(d->arena, (size_t)m * 6 * (size_t)n, real);
-    r->s = TAKE(d->arena, m * m, real);
+    r->response = TAKE(d->arena, size_product(m, size_product(6, n)), real);
+    r->s = TAKE(d->arena, size_product(m, m), real);
     r->reference = TAKE(d->arena, m, real);
     border(r);
     return true;

@@ -208,7 +208,7 @@ static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i,
 void cfa_solve(struct dynamics *d, const struct cfa_system *s, real *r, real *x, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
-    real *beta = TAKE(d->arena, 6 * d->nbody, real), *g = TAKE(d->arena, 6 * d->nbody, real);
+    real *beta = TAKE(d->arena, size_product(6, d->nbody), real), *g = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int i = d->nbody - 1; i >= 0; i--) solve_inward(d, s, i, r, beta, w);
     for (int i = 0; i < d->nbody; i++) solve_outward(d, s, i, r, g, x, w);
     arena_release(d->arena, mark);

@@ -17,7 +17,7 @@ static bool delassus(struct dynamics *d, const struct loops *l, real *ud, real *
 {
     int m = l->nrow;
     struct arena_mark mark = arena_mark(d->arena);
-    real *load = TAKE(d->arena, 6 * d->nbody, real), *r = TAKE(d->arena, m, real);
+    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *r = TAKE(d->arena, m, real);
     bool good = true;
     for (int k = 0; k < m && good; k++) {
         real *before = with_loads(d, NULL, load);
@@ -38,7 +38,8 @@ static bool correct(struct dynamics *d, const struct loops *l, const real *s, co
                     int *rank, struct work *w)
 {
     int m = l->nrow;
-    real *copy = TAKE(d->arena, m * m, real), *r = TAKE(d->arena, m, real), *room = TAKE(d->arena, m * m + 2 * m, real);
+    real *copy = TAKE(d->arena, size_product(m, m), real), *r = TAKE(d->arena, m, real);
+    real *room = TAKE(d->arena, size_product(m, m + 2), real);
     loops_residual(l, d->a, d->base, false, r);
     for (int k = 0; k < m * m; k++) copy[k] = s[k];
     for (int k = 0; k < m; k++) r[k] = -r[k];
@@ -66,9 +67,10 @@ bool closed_forward(struct dynamics *d, const real *q, const real *u, const real
     int rank = 0, m = d->model->nrow;
     real *given = d->load;
     loops_take(d, &l);
-    real *s = TAKE(d->arena, m * m, real), *reference = TAKE(d->arena, m, real), *x = TAKE(d->arena, m, real);
-    real *load = TAKE(d->arena, 6 * d->nbody, real), *first = TAKE(d->arena, d->nu, real);
-    real *a = TAKE(d->arena, 6 * d->nbody, real);
+    real *s = TAKE(d->arena, size_product(m, m), real);
+    real *reference = TAKE(d->arena, m, real), *x = TAKE(d->arena, m, real);
+    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *first = TAKE(d->arena, d->nu, real);
+    real *a = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int k = 0; k < 6 * d->nbody; k++) a[k] = d->a[k];
     good = good && delassus(d, &l, first, s, &own);
     loops_reference(d, &l, reference);

@@ -21,12 +21,12 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a)
     d->body = bodies_make(m, a);
     d->revolute = all_revolute(m) ? revolutes_take(m, d->body, a) : NULL;
     d->pose = TAKE(a, m->nbody, struct body_pose);
-    d->v = TAKE(a, 6 * m->nbody, real);
-    d->a = TAKE(a, 6 * m->nbody, real);
-    d->f = TAKE(a, 6 * m->nbody, real);
-    d->bias = TAKE(a, 6 * m->nbody, real);
+    d->v = TAKE(a, size_product(6, m->nbody), real);
+    d->a = TAKE(a, size_product(6, m->nbody), real);
+    d->f = TAKE(a, size_product(6, m->nbody), real);
+    d->bias = TAKE(a, size_product(6, m->nbody), real);
     d->zero = TAKE(a, m->nu, real);
-    if (d->revolute) d->scratch = TAKE(a, DYNAMICS_SCRATCH * (m->nbody + 2), real);
+    if (d->revolute) d->scratch = TAKE(a, size_product(DYNAMICS_SCRATCH, m->nbody + 2), real);
     d->arena = a;
     for (int i = 0; i < 3; i++) d->base[3 + i] = -(real)m->gravity[i];
     return d;
@@ -42,7 +42,7 @@ void dynamics_load(struct dynamics *d, const struct state *s)
         d->load = NULL;
         return;
     }
-    if (!d->load) d->load = TAKE(d->arena, 6 * d->nbody, real);
+    if (!d->load) d->load = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int i = 0; i < d->nbody; i++) body_load(&d->body[i], s->fext + 6 * i, d->load + 6 * i);
 }
 

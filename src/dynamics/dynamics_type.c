@@ -80,7 +80,7 @@ static void mass_matrix(const struct model *m, const struct state *s, struct are
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch);
-    real *out = TAKE(scratch, (size_t)m->nu * (size_t)m->nu, real);
+    real *out = TAKE(scratch, size_product(m->nu, m->nu), real);
     crba(p.d, p.q, out, w);
     to_double(mass, out, m->nu * m->nu);
     arena_release(scratch, mark);

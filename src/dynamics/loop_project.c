@@ -7,7 +7,7 @@
 static bool responses(struct dynamics *d, const struct loops *l, real *response, real *s, struct work *w)
 {
     int m = l->nrow, n = d->nu;
-    real *load = TAKE(d->arena, 6 * d->nbody, real), *column = TAKE(d->arena, m, real), *given = d->load;
+    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *column = TAKE(d->arena, m, real), *given = d->load;
     bool good = true;
     d->load = load;
     for (int k = 0; k < m && good; k++) {
@@ -32,9 +32,9 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     dynamics_place(d, q);
     dynamics_velocities(d, u);
     loops_take(d, &l);
-    real *response = TAKE(d->arena, (size_t)m * (size_t)n, real), *s = TAKE(d->arena, m * m, real);
+    real *response = TAKE(d->arena, size_product(m, n), real), *s = TAKE(d->arena, size_product(m, m), real);
     real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
-    real *room = TAKE(d->arena, m * m + 2 * m, real);
+    real *room = TAKE(d->arena, size_product(m, m + 2), real);
     bool good = responses(d, &l, response, s, w);
     for (int k = 0; k < l.nloop; k++)
         for (int i = 0; i < l.pose[k].c; i++)

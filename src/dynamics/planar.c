@@ -110,7 +110,7 @@ static bool settle(const struct body_def *b, quad tolerance, quad *n)
 
 quad *planar_normals(const struct model *m, quad tolerance, struct arena *a, struct err *e)
 {
-    quad *normal = TAKE(a, 3 * (m->nbody + 1), quad), r[9];
+    quad *normal = TAKE(a, size_product(3, m->nbody + 1), quad), r[9];
     first_normal(m, normal);
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *b = &m->body[i];

@@ -338,9 +338,9 @@ static struct closing closing_take(const struct scene *x, struct arena *scratch,
 {
     const struct model *m = x->model;
     struct closing c = {loop_rows(m), TAKE(scratch, m->nloop, struct loop), TAKE(scratch, m->nloop, struct loop_pose),
-                        TAKE(scratch, SPACE * m->nbody, real)};
+                        TAKE(scratch, size_product(SPACE, m->nbody), real)};
     struct xform *place = TAKE(scratch, m->nbody + 1, struct xform);
-    real *v = TAKE(scratch, SPACE * (m->nbody + 1), real); /* of the base, then of the bodies */
+    real *v = TAKE(scratch, size_product(SPACE, m->nbody + 1), real); /* of the base, then of the bodies */
     xform_identity(&place[0]);
     for (int i = 0; i < m->nbody; i++) {
         const int p = x->body[i].parent + 1;
@@ -418,8 +418,8 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
 {
     const struct closing c = closing_take(x, scratch, w);
     const int n = c.n;
-    real *S = TAKE(scratch, n * n, real), *copy = TAKE(scratch, n * n, real),
-         *room = TAKE(scratch, n * n + 2 * n, real);
+    real *S = TAKE(scratch, size_product(n, n), real), *copy = TAKE(scratch, size_product(n, n), real),
+         *room = TAKE(scratch, size_product(n, n + 2), real);
     real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real), *r = TAKE(scratch, n, real);
     const double *none = TAKE(scratch, x->model->nu, double);
     struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;

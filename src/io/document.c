@@ -189,8 +189,8 @@ bool document_numbers(const struct node *map, const char *key, const char *path,
 }
 
 /* Depth first over the nested lists; *filled counts the numbers met so far. */
-static bool flat_take(const struct node *node, const char *what, const char *path, double *x, int n, int *filled,
-                      struct err *e)
+static bool flat_take(const struct node *node, const char *what, const char *path, double *x, int64_t n,
+                      int64_t *filled, struct err *e)
 {
     if (node->kind == NODE_LIST) {
         for (const struct node *c = node->child; c; c = c->next)
@@ -200,17 +200,28 @@ static bool flat_take(const struct node *node, const char *what, const char *pat
     if (node->kind != NODE_NUMBER || !isfinite(node->number))
         return err_set_at(e, ERR_DATA, path, node->line, "'%s' must hold finite numbers", what);
     if (*filled == n)
-        return err_set_at(e, ERR_DATA, path, node->line, "'%s' has more than the %d numbers expected", what, n);
+        return err_set_at(e, ERR_DATA, path, node->line, "'%s' has more than the %lld numbers expected",
+                          what, (long long)n);
     x[(*filled)++] = node->number;
     return true;
 }
 
-bool document_flat(const struct node *node, const char *what, const char *path, double *x, int n, struct err *e)
+int64_t document_count(const struct node *node)
 {
-    int filled = 0;
+    int64_t n = 0;
+    if (node->kind != NODE_LIST) return 1;
+    for (const struct node *c = node->child; c; c = c->next) n += document_count(c);
+    return n;
+}
+
+bool document_flat(const struct node *node, const char *what, const char *path, double *x, int64_t n,
+                   struct err *e)
+{
+    int64_t filled = 0;
     if (!flat_take(node, what, path, x, n, &filled, e)) return false;
     if (filled < n)
-        return err_set_at(e, ERR_DATA, path, node->line, "'%s' has %d of the %d numbers expected", what, filled, n);
+        return err_set_at(e, ERR_DATA, path, node->line, "'%s' has %lld of the %lld numbers expected", what,
+                          (long long)filled, (long long)n);
     return true;
 }
 

@@ -6,6 +6,7 @@
 #define IO_DOCUMENT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/arena.h"
 #include "base/err.h"
@@ -41,9 +42,13 @@ bool document_number(const struct node *map, const char *key, const char *path, 
 /* document_numbers: the list `key` of exactly n finite numbers into x (n). Returns false with ERR_DATA. */
 bool document_numbers(const struct node *map, const char *key, const char *path, double *x, int n, struct err *e);
 
+/* document_count: how many numbers, or what stands in their place, the nested lists under `node` hold. */
+int64_t document_count(const struct node *node);
+
 /* document_flat: all n numbers of the nested lists under `node`, in the order written, into x (n). Returns false with
  * ERR_DATA when there are more or fewer, or one is no finite number. */
-bool document_flat(const struct node *node, const char *what, const char *path, double *x, int n, struct err *e);
+bool document_flat(const struct node *node, const char *what, const char *path, double *x, int64_t n,
+                   struct err *e);
 
 /* document_integer: the integer `key` of `map` in lo .. hi into *i. Returns false with ERR_DATA. */
 bool document_integer(const struct node *map, const char *key, const char *path, int lo, int hi, int *i, struct err *e);

@@ -10,7 +10,7 @@ enum { VECTOR_BYTES = SPACE * (int)sizeof(real), PAIR_BYTES = (XFORM_NUMBERS + S
 /* side_owners: of the 2 nloop loop sides. */
 static const int *side_owners(const struct model *m, const struct tree_plan *plan, struct arena *a)
 {
-    int *owner = TAKE(a, 2 * m->nloop + 1, int);
+    int *owner = TAKE(a, size_sum(size_product(2, m->nloop), 1), int);
     for (int l = 0; l < m->nloop; l++) {
         owner[2 * l] = m->loop[l].body_a < 0 ? -1 : plan->owner[m->loop[l].body_a];
         owner[2 * l + 1] = m->loop[l].body_b < 0 ? -1 : plan->owner[m->loop[l].body_b];

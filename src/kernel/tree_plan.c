@@ -117,7 +117,7 @@ static struct tree_lists lists_make(int nkey, int n, const int *key, struct aren
 static void jump(struct tree_plan *p, struct arena *a)
 {
     const int n = p->npiece;
-    p->ancestor = TAKE(a, 32 * (size_t)n, int);
+    p->ancestor = TAKE(a, size_product(32, n), int);
     p->descendants = TAKE(a, 32, struct tree_lists);
     int *now = TAKE(a, n, int);
     memcpy(now, p->parent, (size_t)n * sizeof *now);
@@ -224,7 +224,7 @@ static void assign(struct tree_plan *p, struct arena *a)
 {
     struct tree_lists *l = &p->ops;
     l->at = TAKE(a, p->nrank + 1, int);
-    l->item = TAKE(a, 2 * p->nop + 1, int);
+    l->item = TAKE(a, size_sum(size_product(2, p->nop), 1), int);
     int *fill = TAKE(a, p->nrank + 1, int);
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < p->nop; i++) {

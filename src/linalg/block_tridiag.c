@@ -8,8 +8,8 @@
 struct block_tridiag block_tridiag_make(struct arena *a, int nrow, const unsigned char *size)
 {
     struct block_tridiag t = {.nrow = nrow, .size = size};
-    t.D = TAKE(a, (size_t)nrow * BLOCK_PACKED, real);
-    t.L = TAKE(a, (size_t)nrow * BLOCK_FULL, real);
+    t.D = TAKE(a, size_product(nrow, BLOCK_PACKED), real);
+    t.L = TAKE(a, size_product(nrow, BLOCK_FULL), real);
     return t;
 }
 

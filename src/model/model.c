@@ -215,11 +215,17 @@ static void index_coordinates(struct model *m)
 
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
 {
+    if (m->nbody > MODEL_MAX_BODIES || m->nloop > MODEL_MAX_BODIES)
+        return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "more than %d bodies or loops", MODEL_MAX_BODIES);
     if (m->nbody == 0) return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0, "the model has no body");
     for (int i = 0; i < m->nbody; i++)
         if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
     index_children(m);
     index_coordinates(m);
+    if (m->nrow > MODEL_MAX_ROWS)
+        return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0,
+                          "the loops have %d rows together; at most %d: their matrix would take %.3g GB", m->nrow,
+                          MODEL_MAX_ROWS, (double)m->nrow * m->nrow * sizeof(double) / 1e9);
     m->constants = NULL;
     return true;
 }

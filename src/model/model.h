@@ -94,6 +94,9 @@ struct state {
     bool at_rest;            /* all rates are zero, and serial forward and inverse dynamics may leave their terms out */
 };
 
+/* The largest models. Serial dynamics of closed chains keeps a dense matrix of the loops' rows, 8 GiB at this limit. */
+enum { MODEL_MAX_BODIES = 1 << 27, MODEL_MAX_ROWS = 32768 };
+
 /* model_begin: an empty model in `a`; gravity 0, units SI. `file` (may be NULL) is quoted in messages. */
 struct model *model_begin(struct arena *a, const char *file);
 
@@ -110,7 +113,7 @@ int model_add_loop(struct model *m, const struct loop_def *def, struct err *e);
  *                      must be finite all the same
  *
  *   Returns false with ERR_DATA naming the body and its line: not finite, mass <= 0, inertia not positive definite,
- *   triangle inequality violated (1e-9 relative slack for rounding in files), no body at all. */
+ *   triangle inequality violated (1e-9 relative slack for rounding in files), no body at all, more than the limits. */
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e);
 
 /* model_build: the system that `spec` asks for, from the generators; URDF and vector files through urdf.h, vector.h.

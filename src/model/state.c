@@ -24,7 +24,7 @@ struct state *state_take(const struct model *m, struct arena *a)
 
 double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
 {
-    if (!s->fext) s->fext = TAKE(a, 6 * m->nbody, double);
+    if (!s->fext) s->fext = TAKE(a, size_product(6, m->nbody), double);
     return s->fext;
 }
 

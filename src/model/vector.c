@@ -38,16 +38,23 @@ static bool numbers(struct reader *r, const struct node *map, const char *key, d
 }
 
 /* A list of n numbers, nested or not; required. */
-static const double *array_need(struct reader *r, const struct node *map, const char *key, int n)
+static const double *array_need(struct reader *r, const struct node *map, const char *key, int64_t n)
 {
     const struct node *node = document_need(map, key, r->path, r->e);
     if (!node) return NULL;
+    /* Counted first: memory is taken for numbers that the file holds, not for those that its counts promise. */
+    int64_t there = document_count(node);
+    if (there < n) {
+        err_set_at(r->e, ERR_DATA, r->path, node->line, "'%s' has %lld of the %lld numbers expected (%.3g GB of them)",
+                   key, (long long)there, (long long)n, (double)n * sizeof(double) / 1e9);
+        return NULL;
+    }
     double *x = TAKE(r->a, n > 0 ? n : 1, double);
     return document_flat(node, key, r->path, x, n, r->e) ? x : NULL;
 }
 
 /* The same when the file may leave it out: true and NULL. */
-static bool array_maybe(struct reader *r, const struct node *map, const char *key, int n, const double **x)
+static bool array_maybe(struct reader *r, const struct node *map, const char *key, int64_t n, const double **x)
 {
     *x = NULL;
     if (!document_find(map, key)) return true;
@@ -293,7 +300,7 @@ static bool answers_read(struct reader *r, const struct node *root, struct vecto
     return array_maybe(r, root, "tau_id", c->nv, &c->tau_id) && array_maybe(r, root, "qdd_fd", c->nv, &c->qdd_fd) &&
            array_maybe(r, root, "bias", c->nv, &c->bias) && array_maybe(r, root, "lambda", c->nrow, &c->lambda) &&
            array_maybe(r, root, "gravity_torque", c->nv, &c->gravity_torque) &&
-           array_maybe(r, root, "M", c->nv * c->nv, &c->mass_matrix) &&
+           array_maybe(r, root, "M", size_count(c->nv, c->nv), &c->mass_matrix) &&
            array_maybe(r, root, "joint_wrench_id", 6 * c->nbody, &c->joint_wrench) && totals_read(r, root, c) &&
            poses_read(r, root, c) && trajectory_read(r, root, c);
 }

@@ -66,7 +66,7 @@ static struct vc *vcs_of(struct flits *g, int r)
     int n = g->fabric.nchannel;
     int64_t buffer = net_is_ejection(g->fabric.net, r) ? 0 : g->fabric.buffer;
     x->vc = TAKE(g->fabric.net->arena, n, struct vc);
-    sim_ps *slot = buffer ? TAKE(g->fabric.net->arena, n * buffer, sim_ps) : NULL;
+    sim_ps *slot = buffer ? TAKE(g->fabric.net->arena, size_product(n, buffer), sim_ps) : NULL;
     for (int i = 0; slot && i < n; i++) x->vc[i].slot = slot + i * buffer;
     return x->vc;
 }

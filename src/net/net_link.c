@@ -33,7 +33,7 @@ static bool link_create(struct net *n, struct err *e)
     struct link_level *g = TAKE(n->arena, 1, struct link_level);
     g->nprocessor = n->topology->spec->processors_per_node;
     g->free = TAKE(n->arena, n->nresource, sim_ps);
-    g->own_port = g->nprocessor == 1 ? g->free : TAKE(n->arena, (int64_t)n->nnode * g->nprocessor, sim_ps);
+    g->own_port = g->nprocessor == 1 ? g->free : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
     n->state = g;
     return true;
 }

@@ -18,7 +18,7 @@ static bool loggp_create(struct net *n, struct err *e)
     struct loggp *g = TAKE(n->arena, 1, struct loggp);
     g->nprocessor = n->topology->spec->processors_per_node;
     g->port = TAKE(n->arena, n->nnode, sim_ps);
-    g->own_port = g->nprocessor == 1 ? g->port : TAKE(n->arena, (int64_t)n->nnode * g->nprocessor, sim_ps);
+    g->own_port = g->nprocessor == 1 ? g->port : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
     n->state = g;
     return true;
 }

@@ -79,7 +79,7 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     f->resource = TAKE(n->arena, n->nresource, struct resource);
     f->source = TAKE(n->arena, n->nnode, struct source);
     f->way = TAKE(n->arena, n->topology->max_hops + 2, struct hop);
-    f->own_port = TAKE(n->arena, (int64_t)n->nnode * f->nprocessor, sim_ps);
+    f->own_port = TAKE(n->arena, size_product(n->nnode, f->nprocessor), sim_ps);
     f->free_flight = TAKE(n->arena, (n->topology->max_hops + 2) / FLIGHT_STEP + 1, struct flight *);
     return f;
 }
@@ -149,7 +149,7 @@ static struct flight *flight_alloc(struct fabric *f, int nhop)
         size_t npass = (size_t)(kind + 1) * FLIGHT_STEP, size = sizeof *w + npass * sizeof(struct pass);
         size = (size + 63) / 64 * 64;
         size_t count = size > 16384 ? 1 : 32768 / size;
-        char *chunk = arena_take(f->net->arena, count * size);
+        char *chunk = arena_take(f->net->arena, size_product(count, size));
         for (size_t i = 0; i < count; i++) {
             w = (struct flight *)(void *)(chunk + i * size);
             w->next = f->free_flight[kind];

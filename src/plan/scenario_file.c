@@ -37,7 +37,7 @@ static bool add_setting(struct setting_list *list, const char *key, const char *
                               list->at[i].line);
     if (list->n == SCENARIO_MAX_SETTINGS) return err_set_at(e, ERR_DATA, file, line, "too many settings");
     if ((list->n & (list->n - 1)) == 0) { /* full: room for twice as many */
-        struct setting *at = TAKE(a, 2 * list->n + 1, struct setting);
+        struct setting *at = TAKE(a, size_sum(size_product(2, list->n), 1), struct setting);
         if (list->n > 0) memcpy(at, list->at, (size_t)list->n * sizeof *at);
         list->at = at;
     }

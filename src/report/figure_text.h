@@ -4,13 +4,13 @@
 
 #include <stddef.h>
 
-/* figure_line: the rest of the line in `sql` that begins with `mark`, copied into `word` and cut to `size` bytes. Returns
+/* figure_line: copy the rest of the line in `sql` that begins with `mark` into `word`, cut to `size` bytes. Returns
  * what follows the line; NULL, with `word` as it was, when there is none. */
 const char *figure_line(const char *sql, const char *mark, char *word, size_t size);
 
-/* figure_file_name: the name for the files of the drawing of `figure` that a database calls `s`, for the caller to free.
- * It begins with the figure's name and holds nothing that has a meaning in a path, to a shell or to gnuplot. Names that
- * differ stay different: one that had to change ends in a fingerprint of what it was. */
+/* figure_file_name: the name for the files of the drawing of `figure` that a database calls `s`, to be freed by the
+ * caller. It begins with the figure's name and holds nothing that has a meaning in a path, to a shell or to gnuplot.
+ * Names that differ stay different: one that had to change ends in a fingerprint of what it was. */
 char *figure_file_name(const char *figure, const char *s);
 
 #endif

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/size.h"
 
 #ifdef SANITIZERS
 #include <sanitizer/asan_interface.h>
@@ -228,7 +229,7 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
 {
     enum { BATCH = 1024 };
     size_t npage = p->stride / p->page, deepest = 0;
-    unsigned char *resident = malloc(npage * BATCH);
+    unsigned char *resident = malloc(size_product(npage, BATCH));
     CHECK(resident);
     for (int first = 0; first < p->n; first += BATCH) {
         size_t n = (size_t)(p->n - first < BATCH ? p->n - first : BATCH);

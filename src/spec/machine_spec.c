@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/size.h"
 #include "comm/collective_rules.h"
 #include "spec/spec_fields.h"
 
@@ -341,18 +342,18 @@ const struct field_table machine_table = {
     .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
 };
 
-/* Product of the first n dimensions, capped far above what can be simulated. */
+/* Product of the first n dimensions; INT64_MAX where it is larger. */
 static int64_t product(const int *dims, int n)
 {
     int64_t p = 1;
-    for (int i = 0; i < n; i++) p = p > INT64_C(1) << 40 ? p : p * dims[i];
+    for (int i = 0; i < n; i++) p = size_count(p, dims[i]);
     return p;
 }
 
 static int64_t power(int64_t base, int exponent)
 {
     int64_t p = 1;
-    for (int i = 0; i < exponent && p < INT64_C(1) << 40; i++) p *= base;
+    for (int i = 0; i < exponent && base > 1 && p < INT64_MAX; i++) p = size_count(p, base);
     return p;
 }
 
@@ -363,7 +364,7 @@ static int64_t router_count(const struct topology_spec *t)
     case TOPOLOGY_MESH: return product(t->dims, t->ndim);
     case TOPOLOGY_HYPERCUBE: return power(2, t->dims[0]);
     case TOPOLOGY_FAT_TREE: return power(t->dims[0], t->dims[1]);
-    case TOPOLOGY_DRAGONFLY: return (int64_t)t->dims[0] * t->dims[1] * t->dims[3];
+    case TOPOLOGY_DRAGONFLY: return size_count(size_count(t->dims[0], t->dims[1]), t->dims[3]);
     case TOPOLOGY_CROSSBAR:
     case TOPOLOGY_BUS:
     case TOPOLOGY_FULL_MESH:
@@ -376,5 +377,5 @@ int64_t machine_spec_processors(const struct machine_spec *m)
 {
     const struct topology_spec *t = &m->topology;
     bool own_nodes = t->family == TOPOLOGY_FAT_TREE || t->family == TOPOLOGY_DRAGONFLY;
-    return router_count(t) * (own_nodes ? 1 : t->nodes_per_router) * t->processors_per_node;
+    return size_count(size_count(router_count(t), own_nodes ? 1 : t->nodes_per_router), t->processors_per_node);
 }

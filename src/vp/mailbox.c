@@ -10,7 +10,7 @@ static struct message *refill(struct world *w, int class)
 {
     size_t size = sizeof(struct message) + (size_t) class * CLASS_BYTES;
     size = (size + 15) / 16 * 16;
-    char *chunk = arena_take(w->scratch, size * CHUNK_MESSAGES);
+    char *chunk = arena_take(w->scratch, size_product(size, CHUNK_MESSAGES));
     struct message *head = NULL;
     for (int k = CHUNK_MESSAGES - 1; k >= 0; k--) {
         struct message *m = (struct message *)(chunk + size * (size_t)k);

@@ -76,7 +76,7 @@ static void make_ranks(struct world *w, uint64_t seed)
     int row = w->nstage + 1;
     w->vp = TAKE(w->scratch, w->nrank, struct vp);
     w->ready = TAKE(w->scratch, w->nrank, int);
-    w->result->stage = TAKE(w->arena, (size_t)w->nrank * (size_t)row, struct stage_time);
+    w->result->stage = TAKE(w->arena, size_product(w->nrank, row), struct stage_time);
     w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
     for (int i = 0; i < w->nrank; i++) {
         struct vp *v = &w->vp[i];

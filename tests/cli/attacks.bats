@@ -21,6 +21,35 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
     nothing_left_behind
 }
 
+@test "a vector file whose counts multiply beyond an int is refused with key, numbers and bytes" {
+    awk 'BEGIN {
+        n = 7724
+        printf "{\"format\": \"dynref-1\", \"name\": \"x\", \"group\": \"x\", \"gravity\": [0, 0, 0], \"nq\": %d, \"nv\": %d,\n\"bodies\": [", 7*n, 6*n
+        for (i = 0; i < n; i++)
+            printf "%s{\"parent\": %d, \"joint\": {\"type\": \"floating\"}, \"placement\": {\"p\": [0, 0, 0], \"quat\": [0, 0, 0, 1], \"R\": [1, 0, 0, 0, 1, 0, 0, 0, 1]}, \"mass\": 1, \"com\": [0, 0, 0], \"inertia_com\": [1, 0, 0, 1, 0, 1]}", i ? "," : "", i - 1
+        printf "],\n\"q\": ["
+        for (i = 0; i < n; i++) printf "%s0,0,0,0,0,0,1", i ? "," : ""
+        printf "],\n\"qd\": ["
+        for (i = 0; i < 6*n; i++) printf "%s0", i ? "," : ""
+        printf "],\n\"M\": ["
+        for (i = 0; i < 100000; i++) printf "%s1.5", i ? "," : ""
+        print "]}"
+    }' >large.json
+    fails_with 65 mimdsim verify large.json
+    stderr_says "large.json:5: 'M' has 100000 of the 2147766336 numbers expected (17.2 GB of them)"
+}
+
+@test "a machine whose numbers multiply beyond an int is no machine" {
+    for verb in check machines; do
+        fails_with 78 mimdsim $verb "$attacks/dragonfly-overflow.yaml"
+        stderr_says 'gives more than 16777216 processors'
+    done
+    fails_with 78 mimdsim run speedup-t3e --set machine.topology.dims='[16777216, 65536, 16777216]'
+    stderr_says 'gives more than 16777216 processors'
+    fails_with 78 mimdsim run speedup-t3e --set machine.topology.family=fat-tree --set machine.topology.dims='[16777216, 16777216]'
+    stderr_says 'gives more than 16777216 processors'
+}
+
 # --- texts of a database and gnuplot ----------------------------------------------------------------------------------
 
 figures() { (cd "$MIMDSIM_DATA/plots" && for f in *.gp; do [ "$f" = style.gp ] || echo "${f%.gp}"; done); }

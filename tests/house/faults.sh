@@ -68,7 +68,7 @@ planted() {
 
 clean_house
 compile clean
-for check in includes symbols globals documented lengths listed words readme; do
+for check in includes symbols globals documented lengths listed words readme sizes; do
     said=$(HOUSE=$place/clean HOUSE_BUILD=$place/clean bash "$HERE/$check.sh" 2>&1) ||
         complain "$check.sh does not pass a clean house: $said"
 done
@@ -119,6 +119,7 @@ planted listed 'src/vp/extra.c: not in src/vp/local.am' 'cp src/vp/vp.c src/vp/e
 planted listed 'tests/base/test_more.c: not in' 'cp tests/base/test_base.c tests/base/test_more.c'
 planted listed 'tests/data/a.csv: not in tests/data/README.md' 'touch tests/data/a.csv'
 
+planted sizes 'src/vp/vp.c:8: TAKE of n * n' 'echo "double *k(int n) { return TAKE(a, n * n, double); }" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* TO""DO: later */" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* see /wo""rk/shared */" >>src/vp/vp.c'
 planted words 'src/README.md:' 'echo "leaves /t""mp/x" >>src/README.md'

@@ -1,0 +1,23 @@
+/* size.c - how much memory there is to ask for. */
+#include "base/size.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+size_t size_available(void)
+{
+    long page = sysconf(_SC_PAGESIZE), pages = sysconf(_SC_PHYS_PAGES);
+    size_t room = page > 0 && pages > 0 ? size_product((size_t)page, (size_t)pages) : SIZE_MAX;
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur < room)
+        room = (size_t)limit.rlim_cur;
+    return room;
+}
+
+bool size_fits(size_t bytes, const char *file, int line, const char *what, struct err *e)
+{
+    size_t room = size_available();
+    if (bytes <= room) return true;
+    return err_set_at(e, ERR_CONFIG, file, line, "%s would take %.3g GB of memory; this computer has %.3g GB", what,
+                      (double)bytes / 1e9, (double)room / 1e9);
+}
