@@ -111,7 +111,7 @@ struct rate_count rate_linpack(int n)
     if (n > RATE_EXECUTED) return rate_linpack_summed(n);
     struct rate_count c = {.nominal = nominal_linpack(n)};
     struct arena *memory = arena_create();
-    double *a = TAKE(memory, n * n, double), *b = TAKE(memory, n, double);
+    double *a = TAKE(memory, size_product(n, n), double), *b = TAKE(memory, n, double);
     int *pivot = TAKE(memory, n, int);
     matgen(a, b, n);
     dgefa(a, n, pivot, &c.work);

@@ -114,7 +114,7 @@ static void put_inverse(const struct verify_answers *x, const struct model *m, c
 {
     struct state bias = *s, rest = *s;
     struct work w = {0};
-    double *tau = TAKE(a, m->nu + 1, double), *wrench = TAKE(a, 6 * (size_t)m->nbody, double);
+    double *tau = TAKE(a, m->nu + 1, double), *wrench = TAKE(a, size_product(6, m->nbody), double);
     bias.qdd = rest.qdd = rest.qd = TAKE(a, m->nu + 1, double);
     rest.fext = NULL;
     type->inverse(m, s, a, tau, &w);
@@ -145,7 +145,7 @@ static void put_poses(const struct verify_answers *x, const struct vector_case *
                       const struct state *s, const struct dynamics_type *type, struct arena *a, double *y)
 {
     if (c->npose == 0) return;
-    double *pose = TAKE(a, POSE_NUMBERS * (size_t)m->nbody, double), *to = y + x->at[VERIFY_FK];
+    double *pose = TAKE(a, size_product(POSE_NUMBERS, m->nbody), double), *to = y + x->at[VERIFY_FK];
     type->kinematics(m, s, a, pose);
     for (int i = 0; i < c->npose; i++)
         memcpy(to + POSE_NUMBERS * i, pose + POSE_NUMBERS * (size_t)c->pose[i].body, POSE_NUMBERS * sizeof *to);
