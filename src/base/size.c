@@ -14,7 +14,7 @@ size_t size_available(void)
     return room;
 }
 
-bool size_fits(size_t bytes, const char *file, int line, const char *what, struct err *e)
+bool size_in_memory(size_t bytes, const char *file, int line, const char *what, struct err *e)
 {
     size_t room = size_available();
     if (bytes <= room) return true;
