@@ -40,8 +40,8 @@ static inline int64_t size_count(int64_t a, int64_t b)
  * process says so. SIZE_MAX when it does not tell. */
 size_t size_available(void);
 
-/* size_in_memory: whether `bytes` may be asked for. When not, ERR_CONFIG at `file` and `line` ("" and 0: none) with what
- * needs them, such as "machine.topology.dims '[4096, 4096]': the routing tables", and the bytes. */
+/* size_in_memory: whether `bytes` may be asked for. When not, ERR_CONFIG at `file` and `line` ("" and 0: none) with
+ * what needs them, such as "machine.topology.dims '[4096, 4096]': the routing tables", and the bytes. */
 bool size_in_memory(size_t bytes, const char *file, int line, const char *what, struct err *e);
 
 #endif
