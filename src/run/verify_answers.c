@@ -212,7 +212,7 @@ static void wrenches_of(const struct sampler *p, const struct model *m, const st
 static void wrenches_take(const struct sampler *p, const struct model *m, const struct state *s, enum load load)
 {
     struct arena_mark mark = arena_mark(p->a);
-    double *w = TAKE(p->a, 6 * (size_t)m->nbody, double);
+    double *w = TAKE(p->a, size_product(6, m->nbody), double);
     wrenches_of(p, m, s, load, w);
     for (int i = 0; i < 6 * m->nbody; i++) {
         double *scale = &p->scale[load][i / 3], *exact = &p->wrench[load][i];
@@ -292,8 +292,8 @@ static struct sampler sampler_make(struct verify_answers *x, const struct vector
     struct sampler p = {.x = x, .c = c, .a = a, .qdd = TAKE(a, c->nv + 1, double)};
     if (x->forward) memcpy(p.qdd, x->exact + x->at[VERIFY_QDD_FD], (size_t)c->nv * sizeof *p.qdd);
     for (int load = 0; load < LOADS; load++) {
-        p.wrench[load] = TAKE(a, 6 * (size_t)c->nbody, double);
-        p.scale[load] = TAKE(a, 2 * (size_t)c->nbody, double);
+        p.wrench[load] = TAKE(a, size_product(6, c->nbody), double);
+        p.scale[load] = TAKE(a, size_product(2, c->nbody), double);
         wrenches_of(&p, m, s, (enum load)load, p.wrench[load]);
     }
     return p;
