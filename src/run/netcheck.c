@@ -12,8 +12,9 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
     enum netcheck_form form = NETCHECK_STEP;
     bool referred = false;
     if (!netcheck_form_of(r, c, &form, &referred)) return false;
-    if (r->referred && !referred)
-        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has no answers, though cases before it have");
+    if (r->ncase++ > 0 && r->referred != referred)
+        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has %s answers, though cases before it have %s",
+                          referred ? "reference" : "no", referred ? "none" : "some");
     r->referred = referred;
     switch (form) {
     case NETCHECK_STEP:

@@ -8,7 +8,7 @@
 
 /* NEEDED always; CONDITION and ANSWER where the case has answers; CHECKED is compared where it stands; READ is used
  * where it stands; IGNORED is compared with nothing. */
-enum use { NEEDED, CONDITION, ANSWER, CHECKED, READ, IGNORED };
+enum use { NEEDED, CONDITION, ANSWER, ALIKE, CHECKED, READ, IGNORED };
 
 struct key {
     const char *name;
@@ -16,15 +16,25 @@ struct key {
 };
 
 static const struct key step_keys[] = {
-    {"topology", NEEDED},         {"pattern", NEEDED},
-    {"distance", NEEDED},         {"flits", NEEDED},
-    {"vcs", CONDITION},           {"buf_flits_per_vc", CONDITION},
-    {"tie", CONDITION},           {"makespan", ANSWER},
-    {"completion", ANSWER},       {"nodes", CHECKED},
-    {"log2_distance", CHECKED},   {"zero_load_makespan", CHECKED},
-    {"mean_completion", CHECKED}, {"max_hops", CHECKED},
-    {"mean_hops", CHECKED},       {"max_packet_flits", READ},
-    {"pipeline", READ},           {NULL, IGNORED},
+    {"topology", NEEDED},
+    {"pattern", NEEDED},
+    {"distance", NEEDED},
+    {"flits", NEEDED},
+    {"vcs", CONDITION},
+    {"buf_flits_per_vc", CONDITION},
+    {"tie", CONDITION},
+    {"makespan", ANSWER},
+    {"completion", ANSWER},
+    {"nodes", ALIKE},
+    {"log2_distance", CHECKED},
+    {"zero_load_makespan", ALIKE},
+    {"mean_completion", ALIKE},
+    {"max_hops", ALIKE},
+    {"mean_hops", ALIKE},
+    {"max_packet_flits", READ},
+    {"makespan_by_variant", READ},
+    {"pipeline", READ},
+    {NULL, IGNORED},
 };
 
 static const struct key band_keys[] = {
@@ -37,7 +47,7 @@ static const struct key band_keys[] = {
     {"tie", CONDITION},
     {"max_packet_flits", CONDITION},
     {"makespan_by_variant", ANSWER},
-    {"nodes", CHECKED},
+    {"nodes", ALIKE},
     {"pipeline", READ},
     {NULL, IGNORED},
 };
@@ -52,11 +62,11 @@ static const struct key list_keys[] = {
     {"max_packet_flits", CONDITION},
     {"makespan", ANSWER},
     {"completion", ANSWER},
-    {"nodes", CHECKED},
-    {"messages", CHECKED},
-    {"packets", CHECKED},
-    {"flits", CHECKED},
-    {"flit_hops", CHECKED},
+    {"nodes", ALIKE},
+    {"messages", ALIKE},
+    {"packets", ALIKE},
+    {"flits", ALIKE},
+    {"flit_hops", ALIKE},
     {"S", CHECKED},
     {"smax", CHECKED},
     {"distance", READ},
@@ -96,9 +106,9 @@ static const struct key load_keys[] = {
 };
 
 static const struct key point_keys[] = {
-    {"offered", NEEDED}, {"plat", ANSWER},      {"cycles", ANSWER}, {"unstable", CHECKED},
-    {"nlat", CHECKED},   {"accepted", CHECKED}, {"hops", CHECKED},  {"flat", IGNORED},
-    {"run_s", IGNORED},  {"cpu", IGNORED},      {NULL, IGNORED},
+    {"offered", NEEDED}, {"plat", ANSWER},    {"cycles", ANSWER}, {"unstable", ALIKE},
+    {"nlat", ALIKE},     {"accepted", ALIKE}, {"hops", ALIKE},    {"flat", IGNORED},
+    {"run_s", IGNORED},  {"cpu", IGNORED},    {NULL, IGNORED},
 };
 
 static const struct key saturation_keys[] = {
@@ -109,10 +119,10 @@ static const struct key saturation_keys[] = {
     {"vcs", CONDITION},
     {"buf_flits_per_vc", CONDITION},
     {"saturation_high", ANSWER},
-    {"zero_load_latency", CHECKED},
-    {"max_channel_load_per_unit_injection", CHECKED},
-    {"channel_bound", CHECKED},
-    {"probes", CHECKED},
+    {"zero_load_latency", ALIKE},
+    {"max_channel_load_per_unit_injection", ALIKE},
+    {"channel_bound", ALIKE},
+    {"probes", ALIKE},
     {"pipeline", READ},
     {"tie", READ},
     {"criterion", IGNORED},
@@ -201,6 +211,26 @@ static bool complete(struct netcheck_reader *r, const struct node *map, const st
     return true;
 }
 
+/* A key that other cases of the form have was dropped here, or the other way round. The first case with answers, or the
+ * first point that has values, sets what is to stand. */
+static bool alike(struct netcheck_reader *r, const struct node *map, const struct key *table)
+{
+    struct netcheck_alike *first = r->alike;
+    unsigned has = 0;
+    while (first->table && first->table != table) first++;
+    for (int i = 0; table[i].name; i++)
+        if (table[i].use == ALIKE && document_find(map, table[i].name)) has |= 1u << i;
+    if (!first->table) *first = (struct netcheck_alike){table, has};
+    for (int i = 0; table[i].name; i++) {
+        if (!((has ^ first->has) >> i & 1)) continue;
+        return err_set_at(r->e, ERR_DATA, r->path, map->line,
+                          has >> i & 1 ? "'%s' is here, but is missing in cases before"
+                                       : "'%s' is missing, though cases before have it",
+                          table[i].name);
+    }
+    return true;
+}
+
 /* answers: also the keys of a case with answers are needed; strict: a key that is not in the table is an error */
 static bool look_at(struct netcheck_reader *r, const struct node *map, const struct key *table, bool answers,
                     bool strict)
@@ -266,14 +296,16 @@ bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netc
 
 bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c, enum netcheck_form form, bool referred)
 {
-    return complete(r, c, keys_of(c, form), referred);
+    const struct key *table = keys_of(c, form);
+    return complete(r, c, table, referred) && (!referred || alike(r, c, table));
 }
 
 /* A point at which the reference was not stable has no values. */
 bool netcheck_keys_of_point(struct netcheck_reader *r, const struct node *point)
 {
     bool unstable = false;
-    return netcheck_truth(r, point, "unstable", &unstable) && look_at(r, point, point_keys, !unstable, false);
+    return netcheck_truth(r, point, "unstable", &unstable) && look_at(r, point, point_keys, !unstable, false) &&
+           (unstable || alike(r, point, point_keys));
 }
 
 bool netcheck_keys_of_trace(struct netcheck_reader *r, const struct node *trace, bool referred)

@@ -7,13 +7,20 @@
  *   load         points [{...}]       mean latency under a random load
  *   saturation   saturation_low       the load at which the latency is three times that of the empty network
  *
- * A step, a list and a hand case without any answer are played. Every key is looked at: one that is needed and not
- * there, and one that is almost one that is not there, are errors; one that nothing is compared with is noted. */
+ * A step, a list and a hand case without any answer are played; the cases of a file all have answers or none. Every key
+ * is looked at: one that is needed and not there, and one that is almost one that is not there, are errors; one that
+ * nothing is compared with is noted. */
 #ifndef RUN_NETCHECK_FORM_H
 #define RUN_NETCHECK_FORM_H
 
 #include "io/document.h"
 #include "run/netcheck.h"
+
+/* Which keys the first case of a form has, by their numbers in its table. */
+struct netcheck_alike {
+    const void *table;
+    unsigned has;
+};
 
 /* What is needed to read a file. */
 struct netcheck_reader {
@@ -23,7 +30,9 @@ struct netcheck_reader {
     struct arena *arena; /* scratch, released after each case */
     struct err *e;
     int capacity;
-    bool referred; /* some case of the file has an answer */
+    int ncase;     /* read before */
+    bool referred; /* they have answers */
+    struct netcheck_alike alike[8];
 };
 
 /* netcheck_form_of: the form of case c and whether it has reference answers; its keys looked at. Returns false with

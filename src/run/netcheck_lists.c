@@ -71,6 +71,28 @@ static bool arrivals_read(struct netcheck_reader *r, const struct node *c, struc
     return true;
 }
 
+static int by_number(const void *a, const void *b)
+{
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* Variants of a router were measured between 0.45 and 1.35 of their median, and those that wait for the credits of
+ * whole packets up to 3.0: one that is further off is no variant. */
+static void check_variants(struct netcheck_row *row, const struct node *band, const double *x, int n, struct arena *a)
+{
+    double *sorted = TAKE(a, n, double);
+    memcpy(sorted, x, (size_t)n * sizeof *sorted);
+    qsort(sorted, (size_t)n, sizeof *sorted, by_number);
+    double median = sorted[n / 2];
+    int i = 0;
+    for (const struct node *v = band->child; v; v = v->next, i++) {
+        double most = (strcmp(v->key, "tailcredit") == 0 ? 3.6 : 1.6) * median;
+        if (x[i] > most) netcheck_flaw(row, v->key, x[i], most);
+        if (x[i] < 0.4 * median) netcheck_flaw(row, v->key, x[i], 0.4 * median);
+    }
+}
+
 static bool band_read(struct netcheck_reader *r, const struct node *band, struct netcheck_question *k)
 {
     double *x = TAKE(r->arena, band->count + 1, double);
@@ -84,6 +106,7 @@ static bool band_read(struct netcheck_reader *r, const struct node *band, struct
         k->row->low = fmin(k->row->low, 0.85 * x[i]);
         k->row->high = fmax(k->row->high, 1.15 * x[i]);
     }
+    check_variants(k->row, band, x, n, r->arena);
     double empty = 0;
     for (int m = 0; m < k->q.nmessage; m++) empty = fmax(empty, netcheck_empty(k, m));
     if (k->row->low < 0.85 * empty - 1e-3) netcheck_flaw(k->row, "the shortest makespan", k->row->low / 0.85, empty);
@@ -332,12 +355,6 @@ static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buff
     return (end != x->key && !*end && b >= 1 && b <= 1 << 20) ||
            err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is no size of a buffer; expected flits, 1 to %d",
                       x->key, 1 << 20);
-}
-
-static int by_number(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
 }
 
 /* `agree` says for which buffers the times by hand are the reference's. */

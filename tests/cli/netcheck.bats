@@ -74,7 +74,13 @@ END
     stderr_says "x.json:1: 'booksim' is missing"
     echo "[{$hand, \"expected_vct\": [31], \"order_free\": false, \"booksim\": {\"16\": [31]}}, {$hand}]" >x.json
     fails_with 65 mimdsim netcheck x.json --quiet
-    stderr_says "the case has no answers, though cases before it have"
+    stderr_says "the case has no answers, though cases before it have some"
+    echo "[{$hand}, {$hand, \"expected_vct\": [31], \"booksim\": {\"16\": [31]}}]" >x.json
+    fails_with 65 mimdsim netcheck x.json --quiet
+    stderr_says "the case has reference answers, though cases before it have none"
+    sed '0,/"nlat"/s/"nlat": [0-9.]*,//' "$NET/latency_load.json" >x.json
+    fails_with 65 mimdsim netcheck x.json --quiet
+    stderr_says "'nlat' is here, but is missing in cases before"
 }
 
 @test "an answer that is not the stated one is a failure with its case, in text and in JSON" {
