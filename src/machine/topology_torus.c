@@ -17,15 +17,17 @@ struct torus {
     int count[MACHINE_MAX_DIMS];         /* links of a dimension in one direction */
 };
 
-/* hops from coordinate x to y in dimension d: positive upwards, negative downwards */
-static int torus_offset(const struct torus *g, int d, int x, int y)
+/* hops from coordinate x to y in dimension d: positive upwards, negative downwards; of a tie, bit d of `choice` decides
+ * where chance does */
+static int torus_offset(const struct torus *g, int d, int x, int y, int choice)
 {
     int diff = y - x;
     if (!g->wraps || diff == 0) return diff;
     int k = (int)g->radix[d];
     int up = diff < 0 ? diff + k : diff;
     if (2 * up != k) return 2 * up < k ? up : up - k;
-    return g->tie == TIE_POSITIVE || x % 2 == 0 ? up : -up;
+    bool down = g->tie == TIE_RANDOM ? choice >> d & 1 : g->tie == TIE_PARITY && x % 2 != 0;
+    return down ? -up : up;
 }
 
 static bool torus_shape(struct torus *g, struct topology *t, struct err *e)
@@ -68,6 +70,7 @@ static bool torus_make(struct topology *t, struct arena *a, bool wraps, struct e
     if (!torus_shape(g, t, e)) return false;
     t->nport = 2 * g->ndim;
     t->nclass = wraps ? 2 : 1;
+    t->fixed_routes = !wraps || g->tie != TIE_RANDOM;
     return true;
 }
 
@@ -80,7 +83,7 @@ static void torus_turn(const struct torus *g, struct route_cursor *c)
     for (int d = c->stage; d < g->ndim; d++) {
         unsigned k = g->radix[d], s = g->stride[d];
         int x = (int)((unsigned)c->router / s % k), y = (int)((unsigned)c->target / s % k);
-        int offset = torus_offset(g, d, x, y);
+        int offset = torus_offset(g, d, x, y, c->via);
         if (offset == 0) continue;
         c->stage = d;
         c->at = x;
@@ -93,7 +96,7 @@ static void torus_turn(const struct torus *g, struct route_cursor *c)
 
 static void torus_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
 {
-    (void)choice;
+    c->via = (int)(choice & INT32_MAX);
     if (c->router != c->target) torus_turn(t->state, c);
 }
 
@@ -130,7 +133,7 @@ static int torus_distance(const struct topology *t, int from, int to)
     unsigned p = (unsigned)from, q = (unsigned)to;
     int hops = 0;
     for (int d = 0; d < g->ndim; d++) {
-        int offset = torus_offset(g, d, (int)(p % g->radix[d]), (int)(q % g->radix[d]));
+        int offset = torus_offset(g, d, (int)(p % g->radix[d]), (int)(q % g->radix[d]), 0);
         hops += offset < 0 ? -offset : offset;
         p /= g->radix[d];
         q /= g->radix[d];

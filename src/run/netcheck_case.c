@@ -131,7 +131,8 @@ static const char *adaptive_word(const char *name)
 bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struct err *e)
 {
     *s = (struct topology_spec){.nodes_per_router = 1, .processors_per_node = 1};
-    s->tie = tie == 0 ? TIE_POSITIVE : TIE_PARITY;
+    bool random = tie == 1 || (tie < 0 && strstr(name, "native"));
+    s->tie = random ? TIE_RANDOM : tie == 2 ? TIE_PARITY : TIE_POSITIVE;
     const char *found = NULL;
     for (size_t i = 0; !found && i < sizeof families / sizeof *families; i++) {
         found = strstr(name, families[i].word);

@@ -23,8 +23,9 @@ enum {
 
 /* netcheck_topology: the topology called "mesh8x8", "torus4x4x8", "ring4", "hcube7", "fattree_k4_n3",
  * "dragonfly_p2a4h2_72", "crossbar16", "fullmesh8" or "bus8": a family's name with its numbers behind it (also
- * "torus_k8n2": n times k), other words around it ignored but for "valiant". tie: 0 positive, 2 by parity.
- * Returns false with ERR_DATA, and with ERR_UNAVAILABLE where the name is of another family or routing than ours. */
+ * "torus_k8n2": n times k), other words around it ignored but for "valiant". tie: 0 positive, 1 random, 2 by parity;
+ * -1: positive, and random on a "native" torus. Returns false with ERR_DATA, and with ERR_UNAVAILABLE where the name is
+ * of another family or routing than ours. */
 bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struct err *e);
 
 /* netcheck_machine: the reference's router on topology `s`: `vcs` virtual channels of `buffer` flits, packets of at

@@ -97,12 +97,19 @@ static const struct key hand_keys[] = {
 };
 
 static const struct key load_keys[] = {
-    {"topology", NEEDED},       {"pattern", NEEDED},
-    {"packet_flits", NEEDED},   {"points", NEEDED},
-    {"vcs", CONDITION},         {"buf_flits_per_vc", CONDITION},
-    {"pipeline", READ},         {"tie", READ},
-    {"routing_function", READ}, {"overdriven_accepted", IGNORED},
-    {"saturation", IGNORED},    {NULL, IGNORED},
+    {"topology", NEEDED},
+    {"pattern", NEEDED},
+    {"packet_flits", NEEDED},
+    {"points", NEEDED},
+    {"vcs", CONDITION},
+    {"buf_flits_per_vc", CONDITION},
+    {"pipeline", READ},
+    {"tie", READ},
+    {"routing_function", READ},
+    {"routing", READ},
+    {"overdriven_accepted", IGNORED},
+    {"saturation", IGNORED},
+    {NULL, IGNORED},
 };
 
 static const struct key point_keys[] = {

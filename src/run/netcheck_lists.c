@@ -126,7 +126,7 @@ bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool re
         !document_integer(c, "flits", r->path, 1, NETCHECK_MOST_FLITS, &flits, r->e))
         return false;
     snprintf(k.row->name, sizeof k.row->name, "%.24s %.16s(%d) S=%d vc=%d B=%d tie=%d", s.topology, pattern, distance,
-             flits, s.channels, s.buffer, s.tie);
+             flits, s.channels, s.buffer, s.tie < 0 ? 0 : s.tie);
     k.row->played = !referred;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);

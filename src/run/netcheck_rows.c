@@ -59,7 +59,7 @@ bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c, stru
     return netcheck_word(r, c, "topology", &s->topology) &&
            netcheck_integer(r, c, "vcs", 1, MOST_CHANNELS, 0, &s->channels) &&
            netcheck_integer(r, c, "buf_flits_per_vc", 1, MOST_BUFFER, 16, &s->buffer) &&
-           netcheck_integer(r, c, "tie", 0, 2, 0, &s->tie) &&
+           netcheck_integer(r, c, "tie", 0, 2, -1, &s->tie) &&
            netcheck_integer(r, c, "max_packet_flits", 1, NETCHECK_MOST_FLITS, 0, &s->packet_flits);
 }
 
@@ -75,16 +75,21 @@ static int head_cycles(struct netcheck_reader *r, const struct node *c)
     return 0;
 }
 
-/* Routes that depend on the load, or on chance in another way than ours, are told from the routing's name. */
-static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, const struct netcheck_setting *s,
+/* Routes that depend on the load, or on chance in another way than ours, are told from the routing's name. The
+ * reference's own dimension order on a torus breaks ties by chance. */
+static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, const char *topology, int *tie,
                             struct err *why)
 {
-    const char *routing;
-    if (!netcheck_word(r, c, "routing_function", &routing)) return false;
-    bool grid = strncmp(s->topology, "mesh", 4) == 0 || strncmp(s->topology, "hcube", 5) == 0;
-    if (!*routing || strcmp(routing, "min") == 0 || strcmp(routing, "nca") == 0) return true;
-    if (strcmp(routing, "dim_order") == 0 && grid) return true;
-    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not among ours", routing, s->topology);
+    static const char *const ours[] = {"", "min", "nca", "dim_order"};
+    const char *routing, *other;
+    if (!netcheck_word(r, c, "routing_function", &routing) || !netcheck_word(r, c, "routing", &other)) return false;
+    if (!*routing) routing = other;
+    for (size_t i = 0; i < sizeof ours / sizeof *ours; i++) {
+        if (strcmp(routing, ours[i]) != 0) continue;
+        if (*tie < 0 && strcmp(routing, "dim_order") == 0) *tie = 1;
+        return true;
+    }
+    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not among ours", routing, topology);
 }
 
 bool netcheck_network(struct netcheck_reader *r, const struct node *c, const struct netcheck_setting *s,
@@ -93,7 +98,7 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c, const str
     struct err why;
     struct topology_spec *t = TAKE(r->arena, 1, struct topology_spec);
     struct netcheck_row *row = k->row;
-    int head = head_cycles(r, c), nodes, channels = s->channels;
+    int head = head_cycles(r, c), nodes, channels = s->channels, tie = s->tie;
     err_clear(&why);
     if (head == 0) return false;
     snprintf(row->group, sizeof row->group, "%.*s vc=%d B=%d%s", (int)strcspn(s->topology, "0123456789_"), s->topology,
@@ -102,7 +107,7 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c, const str
              : head == 4 ? " P4"
                          : " P5");
     row->five_stages = head == 5;
-    if (routing_is_ours(r, c, s, &why) && netcheck_topology(s->topology, s->tie, t, &why))
+    if (routing_is_ours(r, c, s->topology, &tie, &why) && netcheck_topology(s->topology, tie, t, &why))
         k->topology = topology_create(t, r->arena, &why);
     if (why.kind == ERR_UNAVAILABLE) netcheck_unanswered(row, why.text);
     else if (why.kind != ERR_NONE) err_set_at(r->e, ERR_DATA, r->path, c->line, "%s", why.text);

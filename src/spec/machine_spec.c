@@ -12,7 +12,7 @@
 
 static const char *const families[] = {"crossbar",  "torus",    "mesh",      "hypercube", "bus",
                                        "full-mesh", "fat-tree", "dragonfly", "graph",     NULL};
-static const char *const ties[] = {"positive", "parity", NULL};
+static const char *const ties[] = {"positive", "parity", "random", NULL};
 static const char *const routings[] = {"minimal", "valiant", NULL};
 static const char *const levels[] = {"loggp", "link", "packet", "flit", "auto", "auto-tolerance", NULL};
 static const char *const arbitrations[] = {"round-robin", "first-come", NULL};

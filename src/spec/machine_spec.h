@@ -26,7 +26,8 @@ enum topology_family {
 
 enum tie_rule {
     TIE_POSITIVE, /* half-way round a ring: always + */
-    TIE_PARITY    /* + from an even coordinate, - from an odd one */
+    TIE_PARITY,   /* + from an even coordinate, - from an odd one */
+    TIE_RANDOM    /* either, by chance for each message and dimension */
 };
 
 enum dragonfly_routing { ROUTE_MINIMAL, ROUTE_VALIANT }; /* fat tree: d-mod-k, up ports at random */

@@ -144,6 +144,17 @@ END
     stderr_says "none of its 1 cases can be answered; mesh8x8 uniform S=4 vc=1 B=16 load 0.1000: routing 'romm' on 'mesh8x8' is not among ours"
 }
 
+@test "ties that the reference breaks by chance are broken by chance; its random routes are not ours" {
+    works mimdsim netcheck "$NET/torus_ties.json" --quiet --json
+    json_is '$.totals[3].level' flit
+    json_is '$.totals[3].cases' 5
+    json_is '$.cases[6].counted' 1
+    json_is '$.cases[6].levels.flit.ran' 0
+    json_is '$.cases[6].levels.flit.why' "routing 'valiant' on 'torus4x4x4' is not among ours"
+    sed 's/dim_order"/min"/; s/"pipeline"/"tie": 0, "pipeline"/' "$NET/torus_ties.json" >x.json # always up
+    fails_with 1 mimdsim netcheck x.json --quiet --level flit
+}
+
 @test "the table of docs/network.md is the stated accuracy" {
     works mimdsim netcheck --stated
     printf '%s\n' "$output" >found

@@ -238,6 +238,31 @@ static void ties_go_up_or_by_parity(void **state)
     arena_destroy(a);
 }
 
+static void ties_may_be_broken_by_chance(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct topology_spec s = {.family = TOPOLOGY_TORUS,
+                              .ndim = 2,
+                              .dims = {8, 4},
+                              .nodes_per_router = 1,
+                              .processors_per_node = 1,
+                              .tie = TIE_RANDOM};
+    struct topology *t = make(&s, a);
+    assert_false(t->fixed_routes);
+    for (int choice = 0; choice < 4; choice++) { /* bit d decides in dimension d */
+        struct hop route[6];
+        int from, to, port;
+        assert_int_equal(topology_route(t, 0, 4 + 8 * 2, (uint64_t)choice, route), 6);
+        topology_link_ends(t, route[0].link, &from, &to, &port);
+        assert_int_equal(to, choice & 1 ? 7 : 1);
+        topology_link_ends(t, route[4].link, &from, &to, &port);
+        assert_int_equal(to, 4 + 8 * (choice & 2 ? 3 : 1));
+        assert_int_equal(topology_route(t, 0, 1, (uint64_t)choice, route), 1);
+    }
+    arena_destroy(a);
+}
+
 static void a_million_nodes_route_by_arithmetic(void **state)
 {
     (void)state;
@@ -425,6 +450,7 @@ int main(void)
         cmocka_unit_test(classes_free_every_family_of_deadlock),
         cmocka_unit_test(a_ring_without_classes_could_deadlock),
         cmocka_unit_test(ties_go_up_or_by_parity),
+        cmocka_unit_test(ties_may_be_broken_by_chance),
         cmocka_unit_test(a_million_nodes_route_by_arithmetic),
         cmocka_unit_test(the_mean_route_of_a_dragonfly_is_the_reference_s),
         cmocka_unit_test(shifts_on_a_fat_tree_share_no_link),
