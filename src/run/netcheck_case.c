@@ -367,7 +367,7 @@ double netcheck_channel_load(const char *pattern, const struct topology *t, stru
 {
     struct pattern p;
     if (!pattern_read(pattern, t, &p, e)) return -1;
-    if (t->nnode > MOST_ROUTED_NODES || p.rule == BAD_DRAGONFLY) return 0;
+    if (t->nnode > MOST_ROUTED_NODES || !t->fixed_routes || p.rule == BAD_DRAGONFLY) return 0;
     struct arena_mark mark = arena_mark(a);
     double *load = TAKE(a, t->nlink + 1, double), most = 0;
     struct hop *route = TAKE(a, t->max_hops + 2, struct hop);

@@ -36,19 +36,18 @@ static bool point_read(struct netcheck_reader *r, const struct node *point, stru
  */
 static void check_point(struct netcheck_question *k, const struct node *point, const struct point *p, double empty)
 {
-    const struct node *nlat = document_find(point, "nlat"), *hops = document_find(point, "hops");
-    const struct node *accepted = document_find(point, "accepted");
+    const struct node *nlat = netcheck_given(k->row, point, "nlat"), *hops = netcheck_given(k->row, point, "hops");
+    const struct node *accepted = netcheck_given(k->row, point, "accepted");
     double routers = 0, scatter = 6 / sqrt(fmax(k->q.nmessage, 1));
     for (int m = 0; m < k->q.nmessage; m++)
         routers += (topology_distance(k->topology, k->q.src[m], k->q.dst[m]) + 1.0) / k->q.nmessage;
     if (p->latency < empty * (0.98 - scatter)) netcheck_flaw(k->row, "plat", p->latency, empty);
-    if (nlat && nlat->kind == NODE_NUMBER) {
+    if (nlat) {
         if (nlat->number > p->latency + 1e-3) netcheck_flaw(k->row, "nlat", nlat->number, p->latency);
         if (nlat->number < empty * (0.98 - scatter)) netcheck_flaw(k->row, "nlat", nlat->number, empty);
     }
-    if (hops && hops->kind == NODE_NUMBER && fabs(hops->number / routers - 1) > 0.02 + scatter)
-        netcheck_flaw(k->row, "hops", hops->number, routers);
-    double rate = accepted && accepted->kind == NODE_NUMBER ? accepted->number / p->offered : 1;
+    if (hops && fabs(hops->number / routers - 1) > 0.02 + scatter) netcheck_flaw(k->row, "hops", hops->number, routers);
+    double rate = accepted ? accepted->number / p->offered : 1;
     if (rate > 1.1 + scatter || rate < 0.5 - scatter) netcheck_flaw(k->row, "accepted", accepted->number, p->offered);
     else k->row->counted = rate > 0.93 - scatter;
 }
@@ -140,15 +139,15 @@ static bool check_bounds(struct netcheck_reader *r, const struct node *c, struct
                          const char *pattern, int flits)
 {
     const struct point low = {.offered = 0.02, .cycles = 20000};
-    const struct node *zero = document_find(c, "zero_load_latency"), *bound = document_find(c, "channel_bound");
+    const struct node *zero = netcheck_given(k->row, c, "zero_load_latency");
+    const struct node *bound = netcheck_given(k->row, c, "channel_bound");
     struct err why;
     err_clear(&why);
     if (!messages_make(r, c, pattern, flits, &low, k)) return false;
     double most = netcheck_channel_load(pattern, k->topology, r->arena, &why), empty = netcheck_empty_latency(k);
-    if (zero && zero->kind == NODE_NUMBER && fabs(zero->number / empty - 1) > 0.05)
-        netcheck_flaw(k->row, "zero_load_latency", zero->number, empty);
+    if (zero && fabs(zero->number / empty - 1) > 0.05) netcheck_flaw(k->row, "zero_load_latency", zero->number, empty);
     if (most > 0) netcheck_flaw_of_key(k->row, c, "max_channel_load_per_unit_injection", most);
-    if (most > 0 && bound && bound->kind == NODE_NUMBER && fabs(bound->number * most - 1) > 1e-3)
+    if (most > 0 && bound && fabs(bound->number * most - 1) > 1e-3)
         netcheck_flaw(k->row, "channel_bound", bound->number, 1 / most);
     return true;
 }

@@ -46,10 +46,18 @@ void netcheck_flaw(struct netcheck_row *row, const char *what, double found, dou
     snprintf(row->flaw, sizeof row->flaw, "%s is %.10g; the case makes it %.10g", what, found, expected);
 }
 
-void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key, double expected)
+const struct node *netcheck_given(struct netcheck_row *row, const struct node *c, const char *key)
 {
     const struct node *x = document_find(c, key);
-    if (x && x->kind == NODE_NUMBER) netcheck_flaw(row, key, x->number, expected);
+    if (!x || x->kind == NODE_NUMBER || x->kind == NODE_NULL) return x && x->kind == NODE_NUMBER ? x : NULL;
+    if (!row->flaw[0]) snprintf(row->flaw, sizeof row->flaw, "%s is no number", key);
+    return NULL;
+}
+
+void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key, double expected)
+{
+    const struct node *x = netcheck_given(row, c, key);
+    if (x) netcheck_flaw(row, key, x->number, expected);
 }
 
 /* ---- the network ---- */

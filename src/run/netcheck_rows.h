@@ -31,6 +31,9 @@ bool netcheck_told(const struct netcheck_reader *r);
 void netcheck_flaw(struct netcheck_row *row, const char *what, double found, double expected);
 void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key, double expected);
 
+/* netcheck_given: the number `key` of c; NULL when it is missing or null, and with a flaw when it is none. */
+const struct node *netcheck_given(struct netcheck_row *row, const struct node *c, const char *key);
+
 /* netcheck_check_arrivals: k's reference arrivals against its makespan and against an empty network, in which no
  * message is slower. */
 void netcheck_check_arrivals(struct netcheck_question *k, double makespan);
