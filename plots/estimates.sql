@@ -19,7 +19,8 @@ SELECT 'contention on the torus costs about 4 % at P = 128 and cannot make the d
                         FROM run a JOIN run b ON b.machine = a.machine AND b.n = a.n AND b.P = a.P AND b.kernel = a.kernel
                              AND b.operators = a.operators AND b.solver = a.solver AND b.formulation = a.formulation
                              AND b.scenario = a.scenario AND b.level = 'loggp' AND a.level = 'link'
-                        WHERE a.machine = 't3e-300' AND a.n = a.P AND a.P = 128))
+                        WHERE a.machine = 't3e-300' AND a.n = a.P AND a.P = 128 AND a.id IN (SELECT run_id FROM v_shown)
+                              AND b.id IN (SELECT run_id FROM v_shown)))
             WHEN 1 THEN 'refuted' ELSE 'not judged' END,
        ifnull((SELECT group_concat(variant || ': ' || note, '; ') FROM claim WHERE id = 'C3'
                AND variant LIKE 'parallel code on one processor, %'), 'not judged')
