@@ -92,8 +92,8 @@ static bool claims(struct chapter *c)
         c,
         "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
-        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, samples,"
-        " iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, statement, test"
+        " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share,"
+        " iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, test"
         " FROM claim WHERE variant = ''" IN_ORDER,
         "No claim has been judged.");
 }
