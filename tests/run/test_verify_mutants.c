@@ -195,6 +195,39 @@ static void no_row_accepts_changed_poses(void **state)
     free(text);
 }
 
+/* A motion: every kind of number of its last state but one, and the same state in 45 digits. */
+static void no_changed_motion_passes(void **state)
+{
+    (void)state;
+    static const struct { const char *key, *quantity; } part[] = {
+        {"kinetic", "energy.kinetic"}, {"potential", "energy.potential"}, {"total", "energy.total"},
+        {"linear", "momentum.linear"}, {"angular_about_world_origin", "momentum.angular"}, {"q", "states"},
+        {"qd", "states"}};
+    char *text = text_of(DATA("trajectories/traj_double_pendulum_point.json"));
+    const char *states = vector_text_key(text, "states"), *middle = states + (strlen(states) / 4);
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++)
+        for (int change = 0; change < 2; change++) {
+            const char *number[8];
+            struct arena *a = arena_create();
+            struct verify_report r;
+            struct err e;
+            char with[32];
+            int n = vector_text_numbers(text, part[k].key, middle, number, 8), i = n - 1;
+            while (i > 0 && strtod(number[i], NULL) == 0) i--; /* a planar motion has zeros */
+            text_real(with, strtod(number[i], NULL) * (change == DOUBLED ? 2 : -1));
+            char *changed = vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with);
+            assert_true(verify_text(changed, false, a, &r, &e));
+            bool found = false;
+            for (int row = 0; row < r.nrow; row++)
+                found = found || (strcmp(r.row[row].quantity, part[k].quantity) == 0 &&
+                                  r.row[row].verdict == VERIFY_FAIL);
+            if (r.passed || !found) fail_msg("%s %s is not found", part[k].key, change_name[change]);
+            free(changed);
+            arena_destroy(a);
+        }
+    free(text);
+}
+
 /* --- one small change at a time ---------------------------------------------------------------------------------- */
 
 enum mutation { DIGIT, SIGN, EXCHANGE, DROPPED, MISSPELT, MUTATIONS };
@@ -365,6 +398,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_row_accepts_changed_answers),
         cmocka_unit_test(no_row_accepts_changed_poses),
+        cmocka_unit_test(no_changed_motion_passes),
         cmocka_unit_test(mutants_are_killed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
