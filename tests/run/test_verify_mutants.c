@@ -195,6 +195,30 @@ static void no_row_accepts_changed_poses(void **state)
     free(text);
 }
 
+/* Forces of 1e-8 N at the base, torques of 1e-18 N m in the joints: each joint's torque alone, off by a millionth. */
+static void small_torques_are_checked_beside_large_forces(void **state)
+{
+    (void)state;
+    char *text = text_of(DATA("x_molecular_float_n0032.json"));
+    const char *number[64];
+    int n = vector_text_numbers(text, "tau_id", NULL, number, 64), checked = 0;
+    for (int i = 6; i < n; i += 5) {
+        struct arena *a = arena_create();
+        struct verify_report r;
+        struct err e;
+        char with[32];
+        text_real(with, strtod(number[i], NULL) * 1.000001);
+        char *changed = vector_text_put(text, number[i], (size_t)(vector_text_end(number[i]) - number[i]), with);
+        assert_true(verify_text(changed, false, a, &r, &e));
+        assert_int_equal(accepted(&r, VERIFY_TAU_ID, "off by a millionth"), 0);
+        checked++;
+        free(changed);
+        arena_destroy(a);
+    }
+    assert_true(checked > 5);
+    free(text);
+}
+
 /* A motion: every kind of number of its last state but one, and the same state in 45 digits. */
 static void no_changed_motion_passes(void **state)
 {
@@ -398,6 +422,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_row_accepts_changed_answers),
         cmocka_unit_test(no_row_accepts_changed_poses),
+        cmocka_unit_test(small_torques_are_checked_beside_large_forces),
         cmocka_unit_test(no_changed_motion_passes),
         cmocka_unit_test(mutants_are_killed),
     };
