@@ -43,7 +43,8 @@ static void tell_steps_down(const char *file)
     const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e) ? software_segments(&m.software, list) : 0;
     for (int i = 1; i < n; i++) {
         double below, at, size = (double)list[i].from;
-        if (!probe_measure(&m, PROBE_ONE_WAY, size - 1, &below, &e) || !probe_measure(&m, PROBE_ONE_WAY, size, &at, &e))
+        if (!probe_measure(&m, PROBE_ONE_WAY, size - 1, 0, &below, &e) ||
+            !probe_measure(&m, PROBE_ONE_WAY, size, 0, &at, &e))
             break;
         if (at < below)
             fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B %.4g us: is the step meant?\n", file,

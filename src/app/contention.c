@@ -11,7 +11,7 @@ static bool measure(const struct machine_spec *m, struct contention *row)
         struct err why;
         err_clear(&why);
         at.network.level = (enum network_level)i;
-        if (!probe_measure(&at, row->quantity, row->ranks, &row->level[i], &why)) row->level[i] = NAN;
+        if (!probe_measure(&at, row->quantity, row->ranks, 0, &row->level[i], &why)) row->level[i] = NAN;
         any = any || isfinite(row->level[i]);
     }
     return any;

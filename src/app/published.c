@@ -1,6 +1,7 @@
 /* published.c - machines/published.csv into records (published.h). */
 #include "app/published.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,6 +93,19 @@ static bool check_cause(const struct published *p, struct err *e)
            err_set(e, ERR_DATA, "%s: calibrated is 'other', and no cause is given", p->id);
 }
 
+/* "1024@16": 1024 bytes on 16 ranks. */
+static bool take_ranks(struct published *p, struct err *e)
+{
+    const char *ranks = strchr(p->at_text, '@');
+    char *end;
+    if (!ranks) return true;
+    long n = strtol(ranks + 1, &end, 10);
+    if (end == ranks + 1 || *end || n < 1 || n > 1 << 24)
+        return err_set(e, ERR_DATA, "%s: '%s'; expected bytes@ranks such as 1024@16", p->id, p->at_text);
+    p->ranks = (int)n;
+    return true;
+}
+
 static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, struct err *e)
 {
     *p = (struct published){.id = cell[0],
@@ -107,7 +121,10 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
         if (strcmp(cell[7], units[i].name) == 0) p->scale = units[i].scale;
     if (p->scale == 0) return err_set(e, ERR_DATA, "unknown unit '%s'", cell[7]);
     if (!read_use(p, cell[9], e)) return false;
-    if (!*cell[4] || !number(cell[3], 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
+    if (!take_ranks(p, e)) return false;
+    char at[32];
+    snprintf(at, sizeof at, "%.*s", (int)strcspn(p->at_text, "@"), p->at_text);
+    if (!*cell[4] || !number(at, 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
         !number(cell[5], p->scale, p->value, &p->low) || !number(cell[6], p->scale, p->value, &p->high) ||
         !number(cell[10], p->scale, 0, &p->add))
         return err_set(e, ERR_DATA, "%s: not a number", cell[0]);

@@ -22,6 +22,7 @@ struct published {
     enum probe_quantity quantity;
     const char *at_text; /* as written, "" where the quantity has no place */
     double at;
+    int ranks;               /* "at" is 1024@16: of so many ranks; 0: not said */
     double value, low, high; /* SI; low = high = value without a published range */
     const char *unit;        /* as written: us, MB/s, B, ... */
     double scale;            /* SI per unit */

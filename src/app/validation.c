@@ -55,7 +55,7 @@ static void measure_levels(const struct published *p, const struct machine_spec 
         struct err why;
         err_clear(&why);
         at.network.level = (enum network_level)i;
-        if (probe_measure(&at, p->quantity, p->at, &o->level[i], &why)) o->level[i] += p->add;
+        if (probe_measure(&at, p->quantity, p->at, p->ranks, &o->level[i], &why)) o->level[i] += p->add;
         else o->level[i] = NAN;
     }
 }
@@ -69,11 +69,11 @@ bool validation_measure(const struct published *p, struct outcome *o, struct are
     if (!plan_machine(&m, p->machine, &options, a, NULL, NULL, e)) return false;
     struct err why;
     err_clear(&why);
-    o->measured = probe_measure(&m, p->quantity, p->at, &o->value, &why);
+    o->measured = probe_measure(&m, p->quantity, p->at, p->ranks, &o->value, &why);
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
     judge(p, o);
-    if (o->measured && probe_contends(p->quantity, p->at)) measure_levels(p, &m, o);
+    if (o->measured && probe_contends(p->quantity, p->at, p->ranks)) measure_levels(p, &m, o);
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "machine/topology.h"
 #include "run/rates.h"
+#include "run/probe_collective.h"
 #include "run/run.h"
 
 enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000,
@@ -17,6 +18,8 @@ static const char *const names[PROBE_QUANTITIES] = {
     "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
     "exchange", "halves",
     "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
+    "broadcast", "reduce", "allreduce", "gather", "scatter", "allgather", "alltoall", "ring", "random-ring", "b-eff",
+    "put", "get",
 };
 
 const char *probe_name(enum probe_quantity q) { return names[q]; }
@@ -34,8 +37,14 @@ struct measured {
     double last_send;        /* of the last rank per message [s] */
 };
 
-bool probe_contends(enum probe_quantity q, double at)
+/* More ranks than these are asked at the machine's own level alone. */
+enum { FEW_RANKS = 64 };
+
+static bool is_collective(enum probe_quantity q) { return q >= PROBE_BROADCAST && q < PROBE_B_EFF; }
+
+bool probe_contends(enum probe_quantity q, double at, int ranks)
 {
+    if (is_collective(q)) return ranks > 2 && ranks <= FEW_RANKS;
     return (q == PROBE_BARRIER || q == PROBE_EXCHANGE || q == PROBE_HALVES) && at > 2;
 }
 
@@ -156,6 +165,23 @@ static bool wire(const struct machine_spec *m, int links, double *t, struct err 
     return one_way(&bare, 0, t, e);
 }
 
+/* Nobody's processor but the caller's takes part; interface and wire are those of messages. */
+static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, double *t, struct err *e)
+{
+    const struct software_spec *s = &m->software;
+    const double overhead = q == PROBE_GET ? s->get_overhead : s->put_overhead;
+    struct machine_spec bare = *m;
+    double request = 0;
+    if (!(overhead > 0))
+        return err_set(e, ERR_CONFIG, "%s: software.%s.overhead is 0: no one-sided %s", m->name, probe_name(q),
+                       probe_name(q));
+    bare.software = (struct software_spec){.eager_bytes = -1, .gap_per_byte = s->gap_per_byte};
+    if (q == PROBE_GET && !one_way(&bare, 0, &request, e)) return false;
+    if (!one_way(&bare, bytes, t, e)) return false;
+    *t += overhead + request;
+    return true;
+}
+
 /* A read waits for two messages; what the memories and hubs take is the caller's to add. No network interface and no
  * message software is in its way: the end's latency does not count. */
 static bool remote_read(const struct machine_spec *m, int routers, double *t, struct err *e)
@@ -261,7 +287,8 @@ static bool computing(const struct machine_spec *m, enum probe_quantity q, doubl
     return true;
 }
 
-bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e)
+bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, int ranks, double *value,
+                   struct err *e)
 {
     switch (q) {
     case PROBE_ONE_WAY:
@@ -305,8 +332,12 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
     case PROBE_INNER_PRODUCT:
     case PROBE_MEMORY_COPY:
         return computing(m, q, at, value, e);
-    case PROBE_QUANTITIES:
+    case PROBE_PUT:
+    case PROBE_GET:
+        return one_sided(m, q, (int64_t)at, value, e);
+    default:
         break;
     }
+    if (q >= PROBE_BROADCAST && q <= PROBE_B_EFF) return probe_collective(m, q, (int64_t)at, ranks, value, e);
     return err_set(e, ERR_CONFIG, "%s: no such quantity", m->name);
 }

@@ -35,6 +35,18 @@ enum probe_quantity {
     PROBE_STREAM_TRIAD,
     PROBE_INNER_PRODUCT, /* of vectors of at elements [flop/s] */
     PROBE_MEMORY_COPY,   /* bytes copied from memory to memory [B/s] */
+    PROBE_BROADCAST,     /* collectives by the machine's algorithms, the slowest rank [s]; at: bytes, and ranks */
+    PROBE_REDUCE,
+    PROBE_ALLREDUCE,
+    PROBE_GATHER,
+    PROBE_SCATTER,
+    PROBE_ALLGATHER,
+    PROBE_ALLTOALL,
+    PROBE_RING,          /* what all ranks together send to both neighbours in a ring [B/s]; at: bytes, and ranks */
+    PROBE_RANDOM_RING,   /* the same in random order */
+    PROBE_B_EFF,         /* effective bandwidth of all ranks together [B/s]; at: largest message [B], and ranks */
+    PROBE_PUT,           /* one-sided, between neighbours: until the data are there [s]; at: bytes */
+    PROBE_GET,           /* until they are here: request and answer [s]; at: bytes */
     PROBE_QUANTITIES
 };
 
@@ -44,14 +56,15 @@ enum probe_quantity probe_find(const char *name);
 
 /* probe_contends: whether messages of several ranks meet on the wires, so that the level of the network matters. Where
  * two ranks talk all levels agree. */
-bool probe_contends(enum probe_quantity q, double at);
+bool probe_contends(enum probe_quantity q, double at, int ranks);
 
-/* probe_measure: quantity `q` of machine `m` at `at` into *value (SI).
+/* probe_measure: quantity `q` of machine `m` at `at` (and of `ranks` ranks where it says so) into *value (SI).
  *
  *   Between two ranks at level link, among more at the machine's own level.
  *
  *   Returns false with ERR_CONFIG when the machine has no such quantity (no route of so many links, no groups), or as
  *   run_one. */
-bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e);
+bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, int ranks, double *value,
+                   struct err *e);
 
 #endif

@@ -175,6 +175,12 @@ static const char *idle_unless_background(const struct run_spec *r)
     return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
 }
 
+static const char *idle_in_programs(const struct run_spec *r)
+{
+    (void)r;
+    return "no program puts or gets; `mimdsim validate` does";
+}
+
 static const char *idle_without_collectives(const struct run_spec *r)
 {
     return kernel_spec_is_collective(&r->kernel) ? NULL : "this kernel calls no collective that it chooses";
@@ -313,6 +319,12 @@ static const struct field fields[] = {
      .fallback = "software", .doc = "barrier built from messages or by the machine"},
     {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,
      .max = 10, .fallback = "0 s", .idle = idle_unless_hardware_barrier, .doc = "last arrival to release"},
+    {.key = "software.put.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.put_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = idle_in_programs,
+     .doc = "one-sided: a put beside the wire, 0: the machine has none"},
+    {.key = "software.get.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.get_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = idle_in_programs,
+     .doc = "one-sided: a get beside request and answer on the wire, 0: the machine has none"},
     {.key = "software.shared.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.shared_latency), .min = 0,
      .max = 10, .fallback = "0 s", .idle = idle_unless_shared_node, .doc = "channel within a node: latency"},
     {.key = "software.shared.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(software.shared_bandwidth),

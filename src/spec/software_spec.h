@@ -56,6 +56,8 @@ struct software_spec {
     char collectives[512];     /* rules of comm/collective_rules.h */
     enum barrier_kind barrier;
     double barrier_time;       /* hardware barrier, last arrival to release [s] */
+    double put_overhead;       /* one-sided: what a put costs beside the wire [s]; 0: the machine has none */
+    double get_overhead;       /* and a get, beside request and answer [s]; 0: none */
     double shared_latency;     /* channel within a node: latency [s] */
     double shared_bandwidth;   /* and rate [B/s]; 0: messages within a node use the network's software path */
 };

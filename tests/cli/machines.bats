@@ -118,6 +118,10 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
     stderr_says "published.csv:2: no quantity is called 'one-wya'"
     { head -1 "$MIMDSIM_DATA/machines/published.csv"
+      echo 'X1,t3e-300,allreduce,8@many,12,,,us,P,yes,,,"x"'; } >data/machines/published.csv
+    MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
+    stderr_says "published.csv:2: X1: '8@many'; expected bytes@ranks such as 1024@16"
+    { head -1 "$MIMDSIM_DATA/machines/published.csv"
       echo 'X1,t3e-300,one-way,0,12'; } >data/machines/published.csv
     MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
     stderr_says "expected 14 cells, or one less"
