@@ -2,6 +2,7 @@
 #include "run/run.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,6 +102,15 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     if (r->type->baselines) r->type->baselines(r, &price, scratch, out);
 }
 
+/* For the last words of a CHECK that fails in this run. */
+static void describe(void *context, char *buffer, int size)
+{
+    const struct run_spec *s = context;
+    snprintf(buffer, (size_t)size,
+             "in a run of scenario '%s': kernel %s, n = %d, %d ranks on %s, seed %llu, repetition %d", s->scenario,
+             s->kernel.name, s->model.nbody, s->nrank, s->machine.name, (unsigned long long)s->seed, s->rep);
+}
+
 bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct run_result *out,
                  struct err *e)
 {
@@ -110,7 +120,8 @@ bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct ar
         return err_set(e, ERR_CONFIG,
                        "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
     struct arena *own = arena_create(), *scratch = arena_create();
-    struct program_run r;
+    struct program_run r = {.spec = *spec};
+    check_note_set(describe, &r.spec);
     const bool ok = run_open(spec, cache, own, &r, e) && attempts(&r, scratch, a, out, e);
     if (ok) {
         out->nomission = omission_listing(&r, out->omission);
@@ -118,6 +129,7 @@ bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct ar
         out->nu = r.nu;
         verify(&r, scratch, out);
     }
+    check_note_set(NULL, NULL);
     arena_destroy(scratch);
     arena_destroy(own);
     out->host_total_s = host_seconds() - begin;

@@ -6,13 +6,17 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
+#include "base/check.h"
 #include "dynamics/dynamics_table.h"
 #include "dynamics/system.h"
 #include "kernel/dynamics_program.h"
 #include "kernel/kernel.h"
+#include "measure/run_pulse.h"
 #include "model/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
@@ -361,6 +365,51 @@ static void what_cannot_run_is_refused(void **unused)
     plan_free(&p);
 }
 
+/* Called from within a run, as progress is. */
+static void fail_a_check(void *context)
+{
+    CHECK(context == NULL && "planted");
+}
+
+/* What the process writes to stderr before a CHECK ends it, in a child. */
+static void last_words(const struct run_spec *spec, char *text, int size)
+{
+    int end[2];
+    assert_int_equal(pipe(end), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(end[1], STDERR_FILENO);
+        struct arena *a = arena_create();
+        struct run_result r;
+        struct err e = {0};
+        run_one(spec, a, &r, &e);
+        _exit(0);
+    }
+    close(end[1]);
+    int n = 0;
+    for (ssize_t k; n < size - 1 && (k = read(end[0], text + n, (size_t)(size - 1 - n))) > 0;) n += (int)k;
+    text[n] = '\0';
+    close(end[0]);
+    int status;
+    waitpid(child, &status, 0);
+    assert_true(WIFSIGNALED(status));
+}
+
+static void a_failed_check_says_in_which_run(void **unused)
+{
+    (void)unused;
+    struct plan p;
+    struct run_spec spec = SPEC(&p, "level=link", "n=128", "seed=7");
+    struct run_pulse pulse = {.beat = fail_a_check, .context = &pulse};
+    char text[2048];
+    spec.pulse = &pulse;
+    last_words(&spec, text, (int)sizeof text);
+    assert_non_null(strstr(text, "planted"));
+    assert_non_null(strstr(text, "kernel dynamics, n = 128, 128 ranks"));
+    assert_non_null(strstr(text, "seed 7"));
+    plan_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +424,7 @@ int main(void)
         cmocka_unit_test(baselines_are_all_the_work_and_the_fastest_of_the_serial_codes),
         cmocka_unit_test(estimates_are_within_a_fifth_of_what_is_counted),
         cmocka_unit_test(what_cannot_run_is_refused),
+        cmocka_unit_test(a_failed_check_says_in_which_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
