@@ -214,7 +214,9 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
 static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
 {
     for (int i = 0; i < p->nrun; i++)
-        if (!run_explain(&p->run[i], &r[i], e)) return false;
+        if (!p->run[i].refused && !run_explain(&p->run[i], &r[i], e)) return false;
+    if (p->nrefused > 0)
+        fprintf(stderr, "mimdsim: %d of %d points cannot run; the first: %s\n", p->nrefused, p->nrun, p->refusal.text);
     return true;
 }
 

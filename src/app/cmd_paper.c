@@ -35,6 +35,7 @@ struct paper {
     struct err *e;
     struct claim_rules rules;
     bool paper_only; /* without the scenes */
+    int failed;      /* runs that could not be made, or did not end */
     int nplan;
     struct plan plan[MOST_PLANS];
 };
@@ -65,6 +66,7 @@ static bool add_plans(struct paper *p)
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct paper *p = context;
+    p->failed += r->status == RUN_FAILED;
     if (r->status != RUN_OK)
         fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name, spec->model.nbody,
                 spec->nrank, r->text);
@@ -194,5 +196,9 @@ int cmd_paper(int argc, char **argv)
     if (ok && !c.quiet)
         fprintf(stderr, "mimdsim: %s, %s/%s in %.1f s\n", p.database, c.directory,
                 c.narg ? "" : ", paper.md, paper.html", host_seconds() - began);
-    return ok ? 0 : common_fail(&c, &e);
+    if (ok && p.failed > 0)
+        fprintf(stderr, "mimdsim: %d runs failed; each is stored with its reason, and tried again next time\n",
+                p.failed);
+    if (ok) return p.failed > 0 ? err_exit_status(ERR_CHECK) : 0;
+    return common_fail(&c, &e);
 }

@@ -15,7 +15,9 @@ static const char doc[] =
     "Run every point of SCENARIO, store each in the database, and print the table.\n\n"
     "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
     "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
-    "the exit status is then 1; a deadlock ends with 70.\n\n"
+    "the exit status is then 1; a deadlock ends with 70. A point that cannot run, whose worker process dies, or that "
+    "outlasts simulated time (13.3 days) is stored as failed with the reason; the others run, and the exit status is "
+    "1. A plan of no other points is refused. What failed is tried again next time.\n\n"
     "--keep-all: compute too what the scene does not need (mimdsim explain lists it, and how exact leaving it out is); "
     "the predicted time includes what is kept.";
 
@@ -23,13 +25,18 @@ struct keep {
     struct store *store;
     struct err *error;
     int invalid, deadlock, redundant, refined;
+    int done, failed;      /* runs, failed ones among them */
+    int refusals, refusal; /* those that could not be made, err_kind of the first */
     bool quiet;
 };
 
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct keep *k = context;
+    k->done++;
     k->invalid += r->status == RUN_INVALID || r->status == RUN_FAILED;
+    k->failed += r->status == RUN_FAILED;
+    if (r->refusal && k->refusals++ == 0) k->refusal = r->refusal;
     k->deadlock += r->status == RUN_DEADLOCK;
     if (r->status != RUN_OK)
         fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
@@ -57,6 +64,12 @@ static bool *stored_already(struct store *s, const struct plan *p, bool force)
 static void say_unused(const struct plan *p)
 {
     for (int i = 0; i < p->nunused; i++) fprintf(stderr, "mimdsim: unused: %s\n", p->unused[i]);
+}
+
+static void say_failed(const struct keep *k)
+{
+    fprintf(stderr, "mimdsim: %d of %d runs failed; each is stored with its reason, and tried again next time\n",
+            k->failed, k->done);
 }
 
 static bool answer(const struct common *c, const struct plan *p, struct keep *k, struct err *e)
@@ -88,8 +101,11 @@ int cmd_run(int argc, char **argv)
     c.force = c.force || keep_all; /* the same results, but not the same row */
     ok = ok && answer(&c, &p, &k, &e);
     store_close(k.store);
+    bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);
     if (!ok) return common_fail(&c, &e);
     if (k.deadlock) return err_exit_status(ERR_DEADLOCK);
+    if (k.failed > 0) say_failed(&k);
+    if (k.refusals > 0 && none) return err_exit_status((enum err_kind)k.refusal);
     return k.invalid ? err_exit_status(ERR_CHECK) : 0;
 }

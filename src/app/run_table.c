@@ -21,7 +21,7 @@ static const char first_sql[] =
     " r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P";
 
 static const char last_sql[] =
-    ", r.makespan_ps / 1e6 AS makespan_us,"
+    ", iif(r.status IN ('ok', 'invalid'), r.makespan_ps / 1e6, NULL) AS makespan_us,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
     "   AS speedup_vs_fastest_serial,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'parallel code on one processor')"

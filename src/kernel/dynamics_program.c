@@ -81,7 +81,7 @@ static bool again(struct program_run *r, struct run_result *out)
     struct dynamics_run *d = dynamics_run_of(r);
     struct kernel_spec *now = &r->spec.kernel;
     if (d->attempts++ == 0) d->residual_before = out->residual;
-    const bool solves = d->kernel->does_forward && out->status != RUN_DEADLOCK;
+    const bool solves = d->kernel->does_forward && (out->status == RUN_OK || out->status == RUN_INVALID);
     if (solves && !d->reverted && trust_refine(&r->spec, d->job.model, out)) return true;
     const bool added = now->inner_refinements > d->given.inner_refinements ||
                        now->outer_refinements > d->given.outer_refinements;

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "base/picoseconds.h"
 #include "base/work.h"
 #include "spec/machine_spec.h"
 
@@ -15,13 +16,14 @@ struct node_cost {
 /* node_cost_make: the costs of `s`. */
 struct node_cost node_cost_make(const struct node_spec *s);
 
-/* node_cost_ps: time of `w`, rounded to the nearest picosecond once per call; the same on every host. */
+/* node_cost_ps: time of `w`, rounded to the nearest picosecond once per call; the same on every host. PS_TOO_LONG where
+ * it is longer than simulated time is. */
 static inline int64_t node_cost_ps(const struct node_cost *c, const struct work *w)
 {
     double ps = (double)w->flop * c->flop + (double)w->div * c->div;
     ps += (double)w->sqrt * c->sqrt + (double)w->trig * c->trig;
     ps += (double)w->bytes * c->byte + (double)w->call * c->call;
-    return (int64_t)(ps + 0.5);
+    return ps_rounded(ps);
 }
 
 #endif

@@ -69,6 +69,7 @@ struct omission {
 struct run_result {
     enum run_status status;
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
+    int refusal;            /* err_kind of a run that could not be made, which is RUN_FAILED; 0 (ERR_NONE): it was */
 
     int nbody, nu;             /* bodies and degrees of freedom of the model that was built; 0: no model */
     int64_t makespan_ps;

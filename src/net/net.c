@@ -23,7 +23,7 @@ static struct net_rate rate_make(const struct network_spec *w, double bandwidth,
     if (s_per_byte < least_s_per_byte) s_per_byte = least_s_per_byte;
     struct net_rate r = {0, s_per_byte * SIM_PS_PER_S};
     if (w->flit_bytes > 0) {
-        r.flit = (sim_ps)((double)w->flit_bytes * r.byte + 0.5);
+        r.flit = ps_rounded((double)w->flit_bytes * r.byte);
         if (r.flit == 0 && r.byte > 0) r.flit = 1;
         r.byte = (double)r.flit / (double)w->flit_bytes;
     }
@@ -101,6 +101,11 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->nresource = 2 * t->nnode + t->nlink;
     n->tau = sim_from_seconds(w->hop_latency);
     n->credit = sim_from_seconds(w->credit_latency);
+    if (ps_times(t->max_hops + 2, n->tau) > PS_LAST) {
+        err_set(e, ERR_CONFIG, "network.hop_latency: a way of %d routers takes longer than simulated time is, %.3g s",
+                t->max_hops + 1, PS_LAST / SIM_PS_PER_S);
+        return NULL;
+    }
     n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
     n->link = rate_make(w, w->link_bandwidth, 0);
     ports_make(n, m);

@@ -378,7 +378,7 @@ static void train_occupied(void *subject, uint64_t argument, sim_ps now)
         packet_occupied(&g->fabric, argument, now);
         return;
     }
-    l->debt += g->fabric.debt[argument];
+    l->debt = ps_later(l->debt, g->fabric.debt[argument]);
     g->fabric.debt[argument] = 0;
 }
 

@@ -9,6 +9,7 @@
 #define NET_NET_INTERNAL_H
 
 #include "base/check.h"
+#include "base/picoseconds.h"
 #include "machine/topology.h"
 #include "net/net.h"
 
@@ -21,7 +22,7 @@ struct net_rate {
 /* net_rate_time: time that `flits` flits take at rate r. */
 static inline sim_ps net_rate_time(struct net_rate r, int64_t flits)
 {
-    return r.flit ? flits * r.flit : (sim_ps)((double)flits * r.byte + 0.5);
+    return r.flit ? ps_times(flits, r.flit) : ps_rounded((double)flits * r.byte);
 }
 
 /* net_rate_slower: the slower of two rates. */
@@ -61,11 +62,7 @@ struct net {
 extern const struct net_type net_loggp, net_link, net_packet, net_flit, net_auto;
 
 /* Resources are numbered: injection ports of nodes, then links, then ejection ports. */
-static inline int net_injection(const struct net *n, int node)
-{
-    (void)n;
-    return node;
-}
+static inline int net_injection(const struct net *n, int node) { return (void)n, node; }
 static inline int net_resource(const struct net *n, int link) { return n->nnode + link; }
 static inline int net_ejection(const struct net *n, int node) { return n->nnode + n->nlink + node; }
 static inline bool net_is_injection(const struct net *n, int resource) { return resource < n->nnode; }

@@ -64,7 +64,7 @@ static sim_ps resource_take(struct net *n, int resource, const struct net_messag
 {
     struct link_level *g = n->state;
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
-    g->free[resource] = at + busy;
+    g->free[resource] = ps_later(at, busy);
     net_account(n, resource, 1, m->bytes, busy, at - now);
     return at;
 }
@@ -115,7 +115,7 @@ static void link_inject(struct net *n, struct net_message *m)
     if (g->nprocessor > 1) {
         sim_ps *port = &g->own_port[m->src * g->nprocessor + m->processor];
         own = m->ready > *port ? m->ready : *port;
-        *port = own + busy;
+        *port = ps_later(own, busy);
     }
     m->injected = resource_take(n, net_injection(n, m->src), m, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
@@ -139,7 +139,7 @@ static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
 {
     struct link_level *g = n->state;
     sim_ps *free = &g->free[net_resource(n, link)];
-    *free = (now > *free ? now : *free) + busy;
+    *free = ps_later(now > *free ? now : *free, busy);
 }
 
 const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, link_occupy, NULL};

@@ -27,7 +27,7 @@ static bool loggp_create(struct net *n, struct err *e)
 static sim_ps port_take(sim_ps *port, sim_ps ready, sim_ps busy)
 {
     sim_ps at = ready > *port ? ready : *port;
-    *port = at + busy;
+    *port = ps_later(at, busy);
     return at;
 }
 

@@ -387,7 +387,7 @@ void packet_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
     int r = net_resource(n, link);
     if (!f->debt) f->debt = TAKE(n->arena, n->nresource, sim_ps);
     if (f->debt[r] == 0) sim_at(n->sim, now, LANE_OCCUPY, (uint64_t)r, f->occupied, f, (uint64_t)r);
-    f->debt[r] += busy;
+    f->debt[r] = ps_later(f->debt[r], busy);
 }
 
 static void packet_start(void *subject, uint64_t argument, sim_ps now)

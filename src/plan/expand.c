@@ -220,6 +220,27 @@ static bool identify(struct expansion *x, struct run_spec *run)
     return fine;
 }
 
+/* A point that cannot run keeps its place in the plan, with the reason: the others are not its business. */
+static void note_refusal(struct expansion *x, struct run_spec *run)
+{
+    struct err why, *others = x->err;
+    err_clear(&why);
+    x->err = &why;
+    bool fits = check_fits(x, run);
+    x->err = others;
+    if (fits) return;
+    struct plan *p = x->plan;
+    if (p->nrefused++ == 0) p->refusal = why;
+    char place[sizeof why.file + 24] = "";
+    if (why.line > 0) snprintf(place, sizeof place, "%s:%d: ", why.file, why.line);
+    else if (why.file[0]) snprintf(place, sizeof place, "%s: ", why.file);
+    struct text t = {0};
+    text_add(&t, "%s%s", place, why.text);
+    run->refused = arena_text(p->arena, t.s);
+    run->refused_kind = why.kind;
+    text_free(&t);
+}
+
 /* One point: 1 run made, 0 left out, -1 failed. */
 static int make_point(struct expansion *x, struct run_spec *run)
 {
@@ -235,7 +256,9 @@ static int make_point(struct expansion *x, struct run_spec *run)
     if (!resolve_sizes(x, run)) return -1;
     if (!wanted(s, run)) return 0;
     machine_changes_note(&x->changes, run);
-    return check_fits(x, run) && identify(x, run) ? 1 : -1;
+    if (!identify(x, run)) return -1;
+    note_refusal(x, run);
+    return 1;
 }
 
 /* The next point; false behind the last. */
@@ -256,13 +279,18 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         int made = make_point(x, &p->run[p->nrun]);
         if (made < 0) return false;
         if (made == 0) continue;
-        const int repetitions = run_spec_is_random(&p->run[p->nrun]) ? x->scenario->repetitions : 1;
+        const bool repeats = run_spec_is_random(&p->run[p->nrun]) && !p->run[p->nrun].refused;
+        const int repetitions = repeats ? x->scenario->repetitions : 1;
         for (int rep = 1; rep < repetitions; rep++) {
             p->run[p->nrun + rep] = p->run[p->nrun];
             p->run[p->nrun + rep].rep = rep;
         }
         p->nrun += repetitions;
     } while (advance(x));
+    if (p->nrun > 0 && p->nrefused == p->nrun) {
+        *x->err = p->refusal;
+        return false;
+    }
     if (p->nrun > 0) return true;
     return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "no run is left by 'only'");
 }

@@ -106,6 +106,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
         text_free(&as_path);
     } else if (fine) {
         fine = scenario_file_tree(&s, root, path, NULL, p.arena, e) && fill(&p, &s, o, e);
+        if (fine && p.nrefused > 0) *e = p.refusal, fine = false;
     }
     plan_free(&p);
     return fine;

@@ -23,6 +23,8 @@ struct plan {
     const char *question; /* the file's question, one line */
     int nrun;
     struct run_spec *run; /* (nrun) in plan order */
+    int nrefused;         /* points that cannot run, such as more ranks than processors (run_spec.refused); never all */
+    struct err refusal;   /* of the first of them */
     int nswept;
     struct plan_swept {
         const char *key; /* in full: machine.network.link.bandwidth */

@@ -1,7 +1,9 @@
-/* campaign.c - many runs on worker processes, results handed over in plan order by the one parent.
+/* campaign.c - many runs on worker processes, results handed over in plan order by the one parent. A run that is
+ * refused, or whose worker dies, is a result, too: failed, with the reason; the others go on.
  *
  * Each worker reads run numbers from its pipe and answers with the result's bytes; the parent alone sees the store. */
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -156,7 +158,8 @@ static _Noreturn void worker_main(const struct run_spec *spec, struct run_pulse 
     _exit(0);
 }
 
-static bool start_worker(struct campaign *c, struct err *e)
+/* Start the worker of place `at`, which is free: the next one, or that of a worker that died. */
+static bool start_worker(struct campaign *c, int at, struct err *e)
 {
     int orders[2], answers[2];
     if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
@@ -166,34 +169,48 @@ static bool start_worker(struct campaign *c, struct err *e)
         close(orders[1]);
         close(answers[0]);
         for (int i = 0; i < c->nworker; i++) {
+            if (i == at) continue;
             close(c->worker[i].orders);
             close(c->worker[i].answers);
         }
-        worker_main(c->spec, c->pulse ? &c->pulse[c->nworker] : NULL, orders[0], answers[1]);
+        worker_main(c->spec, c->pulse ? &c->pulse[at] : NULL, orders[0], answers[1]);
     }
     close(orders[0]);
     close(answers[1]);
-    c->worker[c->nworker++] = (struct worker){pid, orders[1], answers[0], -1};
+    c->worker[at] = (struct worker){pid, orders[1], answers[0], -1};
+    if (at == c->nworker) c->nworker++;
     return true;
 }
 
-static bool died(const struct campaign *c, int index, struct err *e)
-{
-    return err_set(e, ERR_INTERNAL, "the worker process of run %d of %d (%s, n = %d, P = %d) died", index + 1, c->nspec,
-                   c->spec[index].kernel.name, c->spec[index].model.nbody, c->spec[index].nrank);
-}
-
-static bool give_order(struct campaign *c, struct worker *w, struct err *e)
+/* Hand the next run to a worker. When it is dead by now, that shows when its answer is read. */
+static void give_order(struct campaign *c, struct worker *w)
 {
     while (c->next < c->nspec && c->skip && c->skip[c->next]) c->next++;
     w->busy = c->next < c->nspec ? c->next : -1;
-    if (w->busy < 0) return true;
+    if (w->busy < 0) return;
     c->next++;
-    return write_all(w->orders, &w->busy, sizeof w->busy) || died(c, w->busy, e);
+    (void)write_all(w->orders, &w->busy, sizeof w->busy);
+}
+
+/* What a run that could not be made leaves: its status, and why. */
+static struct run_result refused_result(const struct err *why)
+{
+    struct run_result r = {.status = RUN_FAILED, .residual = NAN, .measured_s = NAN, .residual_before = NAN,
+                           .loop_rank = -1, .refusal = why->kind};
+    if (why->line > 0) snprintf(r.text, sizeof r.text, "%s:%d: %s", why->file, why->line, why->text);
+    else snprintf(r.text, sizeof r.text, "%s%s%s", why->file, why->file[0] ? ": " : "", why->text);
+    return r;
+}
+
+static bool hand_refused(struct campaign *c, int index, const struct err *why)
+{
+    struct run_result r = refused_result(why);
+    r.nrank = c->spec[index].nrank;
+    return c->done(c->context, &c->spec[index], &r);
 }
 
 /* Hand over what is next in plan order, as far as it is there. */
-static bool hand_over(struct campaign *c, struct err *e)
+static bool hand_over(struct campaign *c)
 {
     while (c->handed < c->nspec) {
         int i = c->handed;
@@ -203,9 +220,7 @@ static bool hand_over(struct campaign *c, struct err *e)
         }
         struct answer *a = c->slot[i];
         if (!a) return true;
-        bool ok = a->ok;
-        if (!ok) *e = a->error;
-        else ok = c->done(c->context, &c->spec[i], &a->result);
+        bool ok = a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
         arena_destroy(c->arena[i]);
         c->arena[i] = NULL;
         c->slot[i] = NULL;
@@ -217,20 +232,43 @@ static bool hand_over(struct campaign *c, struct err *e)
     return true;
 }
 
+/* The run of a worker that died has failed; another worker takes its place for those that are left. */
+static bool replace_worker(struct campaign *c, struct worker *w, struct err *why, struct err *e)
+{
+    int status = 0;
+    close(w->orders);
+    close(w->answers);
+    kill(w->pid, SIGKILL); /* it may only have answered wrongly */
+    while (waitpid(w->pid, &status, 0) < 0 && errno == EINTR) {}
+    w->pid = 0;
+    if (WIFSIGNALED(status))
+        err_set(why, ERR_INTERNAL, "its worker process was ended by signal %d (%s)", WTERMSIG(status),
+                strsignal(WTERMSIG(status)));
+    else
+        err_set(why, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
+                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused it memory" : "");
+    return start_worker(c, (int)(w - c->worker), e);
+}
+
 static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
 {
     int index = w->busy;
     c->arena[index] = arena_create();
     c->slot[index] = TAKE(c->arena[index], 1, struct answer);
-    if (!receive_answer(w->answers, c->slot[index], c->arena[index])) return died(c, index, e);
+    if (!receive_answer(w->answers, c->slot[index], c->arena[index])) {
+        struct err why;
+        err_clear(&why);
+        if (!replace_worker(c, w, &why, e)) return false;
+        *c->slot[index] = (struct answer){.index = index, .error = why};
+    }
     CHECK(c->slot[index]->index == index);
-    return give_order(c, w, e) && hand_over(c, e);
+    give_order(c, w);
+    return hand_over(c);
 }
 
 static bool serve(struct campaign *c, struct err *e)
 {
-    for (int i = 0; i < c->nworker; i++)
-        if (!give_order(c, &c->worker[i], e)) return false;
+    for (int i = 0; i < c->nworker; i++) give_order(c, &c->worker[i]);
     while (c->handed < c->nspec) {
         struct pollfd p[MOST_WORKERS];
         for (int i = 0; i < c->nworker; i++)
@@ -249,14 +287,16 @@ static bool serve(struct campaign *c, struct err *e)
 static void stop_workers(struct campaign *c, bool at_once)
 {
     for (int i = 0; i < c->nworker; i++) {
+        if (c->worker[i].pid <= 0) continue;
         close(c->worker[i].orders);
         close(c->worker[i].answers);
         if (at_once) kill(c->worker[i].pid, SIGKILL);
     }
-    for (int i = 0; i < c->nworker; i++) waitpid(c->worker[i].pid, NULL, 0);
+    for (int i = 0; i < c->nworker; i++)
+        if (c->worker[i].pid > 0) waitpid(c->worker[i].pid, NULL, 0);
 }
 
-static bool run_here(struct campaign *c, struct err *e)
+static bool run_here(struct campaign *c)
 {
     struct run_cache *cache = run_cache_create();
     bool ok = true;
@@ -265,7 +305,10 @@ static bool run_here(struct campaign *c, struct err *e)
         struct arena *arena = arena_create();
         struct run_result result;
         struct run_spec own = with_pulse(&c->spec[i], c->pulse);
-        ok = run_sharing(&own, cache, arena, &result, e) && c->done(c->context, &c->spec[i], &result);
+        struct err why;
+        err_clear(&why);
+        if (run_sharing(&own, cache, arena, &result, &why)) ok = c->done(c->context, &c->spec[i], &result);
+        else ok = hand_refused(c, i, &why);
         arena_destroy(arena);
         c->ndone++;
         show_progress(c);
@@ -281,8 +324,8 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
     CHECK(c->slot && c->arena);
     signal(SIGPIPE, SIG_IGN);
     bool ok = true;
-    while (ok && c->nworker < workers) ok = start_worker(c, e);
-    ok = ok && hand_over(c, e) && serve(c, e);
+    while (ok && c->nworker < workers) ok = start_worker(c, c->nworker, e);
+    ok = ok && hand_over(c) && serve(c, e);
     stop_workers(c, !ok);
     for (int i = 0; i < c->nspec; i++) arena_destroy(c->arena[i]);
     free(c->arena);
@@ -310,7 +353,7 @@ bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int 
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
     if (!quiet) c.pulse = pulses_make();
     if (c.pulse && workers <= 1) c.pulse->beat = show_progress, c.pulse->context = &c;
-    bool ok = workers <= 1 ? run_here(&c, e) : run_workers(&c, workers, e);
+    bool ok = workers <= 1 ? run_here(&c) : run_workers(&c, workers, e);
     progress_end(&c.progress);
     if (c.pulse) munmap(c.pulse, MOST_WORKERS * sizeof *c.pulse);
     return ok;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/picoseconds.h"
 #include "base/progress.h"
 #include "kernel/programs.h"
 #include "machine/node_cost.h"
@@ -68,8 +69,7 @@ static bool attempt(struct program_run *r, struct arena *scratch, struct arena *
     memset(out, 0, sizeof *out);
     out->residual = out->measured_s = NAN;
     if (!r->type->prepare(r, scratch, e)) return false;
-    if (!launch_run(r, &machine, &record, r->spec.seed + (uint64_t)r->spec.rep, omission_largest_message(r), scratch,
-                    a, out, e))
+    if (!launch_run(r, &machine, &record, run_spec_seed(&r->spec), omission_largest_message(r), scratch, a, out, e))
         return false;
     out->residual = out->measured_s = NAN;
     if (out->status == RUN_OK && r->type->judge) r->type->judge(r, out);
@@ -92,6 +92,25 @@ static bool attempts(struct program_run *r, struct arena *scratch, struct arena 
 
 static int64_t price_ps(const void *context, const struct work *w) { return node_cost_ps(context, w); }
 
+/* A serial code that takes longer than simulated time is: there is no speedup to tell, so the run has failed. */
+static void refuse_long_baselines(struct run_result *out)
+{
+    const struct baseline *b = NULL;
+    for (int i = 0; i < out->nbaseline && !b; i++)
+        if (out->baseline[i].time_ps > PS_LAST) b = &out->baseline[i];
+    if (!b) return;
+    snprintf(out->text, sizeof out->text,
+             "simulated time ends at %.3g s: the parallel run took %.6g s, and '%s' on one processor takes longer",
+             PS_LAST * 1e-12, (double)out->makespan_ps * 1e-12, b->name);
+    out->status = RUN_FAILED;
+    out->makespan_ps = 0;
+    out->nbaseline = out->nstage = 0;
+    out->stage = NULL;
+    out->finish_ps = NULL;
+    out->nspan = 0;
+    out->measured_s = NAN;
+}
+
 /* What the answer is worth: only programs that ran to their end have one. */
 static void verify(struct program_run *r, struct arena *scratch, struct run_result *out)
 {
@@ -100,6 +119,7 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     const struct work_price price = {price_ps, &cost};
     if (r->type->check) r->type->check(r, scratch, out);
     if (r->type->baselines) r->type->baselines(r, &price, scratch, out);
+    refuse_long_baselines(out);
 }
 
 /* For the last words of a CHECK that fails in this run. */
@@ -116,6 +136,7 @@ bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct ar
 {
     memset(out, 0, sizeof *out);
     const double begin = host_seconds();
+    if (spec->refused) return err_set(e, (enum err_kind)spec->refused_kind, "%s", spec->refused);
     if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
         return err_set(e, ERR_CONFIG,
                        "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");

@@ -52,7 +52,9 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
 /* run_done_fn: called in plan order with each result; return false to stop the campaign. */
 typedef bool run_done_fn(void *context, const struct run_spec *spec, const struct run_result *result);
 
-/* run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
+/* A run that is refused, or whose worker process dies, is handed over as a result, too: RUN_FAILED with its reason.
+ *
+ * run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
  * 1: in this process). Results are handed over in plan order, so the outcome does not depend on `workers`. */
 bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
                   void *context, struct err *e);

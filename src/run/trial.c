@@ -77,8 +77,8 @@ struct trial trial_run(const struct run_spec *spec, const struct model *m, const
     struct err e;
     err_clear(&e);
     const bool good = trial_open(r, spec, m, s, a, &e) && r->type->prepare(r, a, &e) &&
-                      launch_run(r, &spec->machine, &spec->record, spec->seed, launch_largest_message(r), a, a, result,
-                                 &e);
+                      launch_run(r, &spec->machine, &spec->record, run_spec_seed(spec),
+                      launch_largest_message(r), a, a, result, &e);
     if (good) answer(&t, r, result);
     else text_copy(t.text, sizeof t.text, e.text);
     return t;

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/picoseconds.h"
 #include "sim/event_queue.h"
 
 enum { KEY_BITS = 48 };
@@ -16,6 +17,7 @@ struct sim {
     uint64_t last_order; /* of the event dispatched last */
     uint64_t digest;
     int64_t events, ties;
+    bool beyond; /* the next event is later than time goes */
 };
 
 struct sim *sim_create(void)
@@ -47,6 +49,10 @@ bool sim_step(struct sim *s)
 {
     struct event e;
     if (!event_queue_pop(&s->queue, &e)) return false;
+    if (__builtin_expect(e.time > PS_LAST, 0)) {
+        s->beyond = true;
+        return false;
+    }
     s->ties += s->events > 0 && e.time == s->now && (e.order ^ s->last_order) >> KEY_BITS == 0;
     s->events++;
     s->now = e.time;
@@ -58,6 +64,7 @@ bool sim_step(struct sim *s)
 
 sim_ps sim_next_time(const struct sim *s) { return event_queue_next_time(&s->queue); }
 int64_t sim_pending(const struct sim *s) { return (int64_t)s->queue.count; }
+bool sim_beyond(const struct sim *s) { return s->beyond; }
 sim_ps sim_now(const struct sim *s) { return s->now; }
 int64_t sim_events(const struct sim *s) { return s->events; }
 int64_t sim_ties(const struct sim *s) { return s->ties; }
@@ -65,7 +72,6 @@ uint64_t sim_digest(const struct sim *s) { return s->digest; }
 
 sim_ps sim_from_seconds(double seconds)
 {
-    double ps = seconds * SIM_PS_PER_S;
-    CHECK(ps >= 0 && ps < 0x1p62);
-    return (sim_ps)(ps + 0.5);
+    CHECK(seconds >= 0);
+    return ps_rounded(seconds * SIM_PS_PER_S);
 }

@@ -28,7 +28,7 @@ void sim_destroy(struct sim *s);
 void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action, void *subject,
             uint64_t argument);
 
-/* sim_step: dispatch the earliest event; false when there is none. */
+/* sim_step: dispatch the earliest event; false when there is none, or none that is due by PS_LAST (picoseconds.h). */
 bool sim_step(struct sim *s);
 
 /* sim_next_time: time of the earliest event, SIM_NEVER when there is none. */
@@ -36,6 +36,9 @@ sim_ps sim_next_time(const struct sim *s);
 
 /* sim_pending: events posted and not yet dispatched. */
 int64_t sim_pending(const struct sim *s);
+
+/* sim_beyond: whether sim_step met an event that is due later than PS_LAST. */
+bool sim_beyond(const struct sim *s);
 
 /* sim_now: time of the event being, or last, dispatched [ps]. */
 sim_ps sim_now(const struct sim *s);
@@ -46,7 +49,7 @@ int64_t sim_events(const struct sim *s);
 int64_t sim_ties(const struct sim *s);
 uint64_t sim_digest(const struct sim *s);
 
-/* sim_from_seconds: nearest picosecond of a duration in seconds, >= 0 (CHECK: below 2^62 ps). */
+/* sim_from_seconds: nearest picosecond of a duration in seconds, >= 0; PS_TOO_LONG when it is longer than PS_LAST. */
 sim_ps sim_from_seconds(double seconds);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/digest.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct run_spec, member)
@@ -14,6 +15,11 @@ bool run_spec_is_random(const struct run_spec *r)
     bool valiant = chooses && m->topology.routing == ROUTE_VALIANT;
     bool order = strcmp(r->kernel.name, "random-ring") == 0;
     return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || order;
+}
+
+uint64_t run_spec_seed(const struct run_spec *r)
+{
+    return digest_mix(digest_mix(DIGEST_START, r->seed), (uint64_t)r->rep);
 }
 
 static const char *idle_unless_random(const struct run_spec *r)

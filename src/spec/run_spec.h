@@ -50,11 +50,17 @@ struct run_spec {
     const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */
     struct level_choice level_choice;
     struct run_pulse *pulse; /* where the run tells how far it is, NULL: nowhere; no setting either, and borrowed */
+    const char *refused;     /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
+    int refused_kind;        /* err_kind of that */
     unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */
 };
 
 /* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes. Where not, all
  * repetitions are alike. */
 bool run_spec_is_random(const struct run_spec *r);
+
+/* run_spec_seed: the seed of a run's random streams: a hash of its seed and its repetition, so that no repetition of
+ * one seed is a run of another. */
+uint64_t run_spec_seed(const struct run_spec *r);
 
 #endif

@@ -2,6 +2,7 @@
  * so often that they take the given fraction of its time. Links are independent; ports of nodes are one's own. */
 #include <math.h>
 
+#include "base/picoseconds.h"
 #include "vp/vp.h"
 
 struct background {
@@ -14,7 +15,7 @@ struct background {
 
 static sim_ps gap(struct background *b)
 {
-    return (sim_ps)(-b->mean_gap * log1p(-random_uniform(&b->random, 0, 1))) + 1;
+    return ps_rounded(floor(-b->mean_gap * log1p(-random_uniform(&b->random, 0, 1)))) + 1;
 }
 
 static void pass(void *subject, uint64_t argument, sim_ps now)
@@ -42,7 +43,7 @@ void background_start(struct world *w, uint64_t seed)
         b[i] = (struct background){.world = w,
                                    .random = random_make(seed, UINT64_MAX, (uint64_t)i),
                                    .mean_gap = busy / s->background_load,
-                                   .busy = (sim_ps)(busy + 0.5),
+                                   .busy = ps_rounded(busy),
                                    .link = i};
         sim_at(w->sim, gap(&b[i]), LANE_BACKGROUND, (uint64_t)i, pass, &b[i], 0);
     }

@@ -1,7 +1,8 @@
-/* stuck.c - nothing can happen any more: who waits for whom. */
+/* stuck.c - nothing can happen any more: who waits for whom, or how far a rank had come when simulated time ended. */
 #include <stdio.h>
 #include <string.h>
 
+#include "base/picoseconds.h"
 #include "vp/vp.h"
 
 static const char *base_name(const char *path)
@@ -76,4 +77,19 @@ void stuck_explain(struct world *w)
         used += snprintf(text + used, size - used, "; ");
     }
     if (used < size) snprintf(text + used, size - used, "and so on");
+}
+
+void late_explain(struct world *w)
+{
+    struct run_result *r = w->result;
+    const struct vp *v = w->late;
+    for (int i = 0; i < w->nrank && !w->late; i++)
+        if (!v || w->vp[i].clock > v->clock) v = &w->vp[i];
+    snprintf(r->text, sizeof r->text, "simulated time ends at %.3g s: rank %d had reached %.6g s in %s, and what %s "
+             "next comes later", PS_LAST / SIM_PS_PER_S, v->comm.rank, (double)v->clock / SIM_PS_PER_S,
+             r->stage_name[v->stage], w->late ? "it does" : "happens");
+    /* What the ranks have so far is no result. */
+    r->stage = NULL;
+    r->finish_ps = NULL;
+    r->nspan = 0;
 }

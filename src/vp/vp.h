@@ -76,6 +76,7 @@ struct world {
     int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;
 
+    const struct vp *late; /* the rank whose clock would pass the end of time, NULL: none */
     int64_t background_events; /* of other jobs' traffic, pending */
     sim_ps server_free; /* kernel server */
     int64_t span_capacity;
@@ -87,6 +88,9 @@ struct world {
 
 /* world_wake: put a rank that waits at the end of the ready ring. */
 void world_wake(struct world *w, struct vp *v);
+
+/* world_time_out: what `v` does next ends after PS_LAST: the run has failed, and this never returns to the rank. */
+_Noreturn void world_time_out(struct vp *v);
 
 /* world_span: record [begin, end) of `v` when spans are recorded; neighbours of one kind are joined. */
 void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message);
@@ -123,6 +127,9 @@ sim_ps server_pass(struct vp *v, int64_t bytes);
 void background_start(struct world *w, uint64_t seed);
 
 /* --- stuck.c --- */
+
+/* late_explain: who had come how far when simulated time ended, into the result's text. */
+void late_explain(struct world *w);
 
 /* stuck_explain: the wait-for cycle, and the network's if it is the network, into the result's text. */
 void stuck_explain(struct world *w);

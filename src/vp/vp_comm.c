@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/picoseconds.h"
 #include "comm/collectives.h"
 #include "vp/vp.h"
 
@@ -15,7 +16,7 @@ static inline struct stage_time *stage_of(struct vp *v) { return &v->stages[v->s
 
 static inline sim_ps byte_cost(sim_ps fixed, double per_byte, int64_t bytes)
 {
-    return fixed + (sim_ps)(per_byte * (double)bytes + 0.5);
+    return fixed + ps_rounded(per_byte * (double)bytes);
 }
 
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
@@ -27,13 +28,20 @@ void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
     v->waiting = NULL;
 }
 
+/* A clock that passes the end of time stops there: its rank goes no further, and the run has failed. */
+static inline void advance(struct vp *v, sim_ps time)
+{
+    if (__builtin_expect(time > PS_LAST, 0)) world_time_out(v);
+    v->clock = time;
+}
+
 void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
 {
     if (time <= v->clock) return;
     sim_ps free_of_others = uncontended < v->clock ? v->clock : uncontended > time ? time : uncontended;
     stage_of(v)->wait_ps += free_of_others - v->clock;
     stage_of(v)->contention_ps += time - free_of_others;
-    v->clock = time;
+    advance(v, time);
 }
 
 static void charge_send(struct vp *v, const struct message *m)
@@ -45,7 +53,7 @@ static void charge_send(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
-    v->clock += cost;
+    advance(v, v->clock + cost);
     stage_of(v)->send_ps += cost;
     if (w->record->spans) world_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
 }
@@ -59,7 +67,7 @@ static void charge_receive(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
-    v->clock += cost;
+    advance(v, v->clock + cost);
     stage_of(v)->recv_ps += cost;
     if (w->record->spans) world_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
 }
@@ -136,7 +144,7 @@ static void finish_synchronous(struct vp *v, struct comm_request *r)
     const sim_ps time = (sim_ps)(intptr_t)r->detail, held = time > v->clock ? time - v->clock : 0;
     if (held && v->world->record->spans) world_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
     stage_of(v)->send_ps += held;
-    v->clock += held;
+    advance(v, v->clock + held);
     r->active = REQUEST_DONE;
     r->detail = NULL;
 }
@@ -200,9 +208,9 @@ static void vp_work(struct comm *c, const struct work *work)
     sim_ps begin = v->clock, cost = node_cost_ps(&w->node_cost, work);
     if (w->noisy) {
         double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->noise);
-        cost = factor > 0 ? (sim_ps)((double)cost * factor + 0.5) : 0;
+        cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
-    v->clock += cost;
+    advance(v, v->clock + cost);
     stage_of(v)->compute_ps += cost;
     work_add(&stage_of(v)->work, work);
     if (w->record->spans) world_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);

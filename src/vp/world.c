@@ -20,6 +20,12 @@ void world_wake(struct world *w, struct vp *v)
     w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
 }
 
+void world_time_out(struct vp *v)
+{
+    if (!v->world->late) v->world->late = v;
+    for (;;) vp_block(v, WAITING_NOTHING, NULL);
+}
+
 void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message)
 {
     struct world *w = v->world;
@@ -141,7 +147,7 @@ static void loop(struct world *w)
 {
     unsigned quiet_events = PULSE_EVENTS;
     do {
-        while (w->ready_count) {
+        while (w->ready_count && !w->late) {
             warm_up(w);
             struct vp *v = &w->vp[w->ready[w->ready_head]];
             if (++w->ready_head == w->nrank) w->ready_head = 0;
@@ -152,7 +158,7 @@ static void loop(struct world *w)
             tell_pulse(w);
             quiet_events = PULSE_EVENTS;
         }
-    } while (sim_step(w->sim));
+    } while (!w->late && sim_step(w->sim));
 }
 
 static void begin_pulse(const struct world *w, double now)
@@ -235,8 +241,9 @@ static void run(struct world *w, uint64_t seed)
         copy_links(w);
         return;
     }
-    r->status = RUN_DEADLOCK;
-    stuck_explain(w);
+    if (w->late || sim_beyond(w->sim)) late_explain(w);
+    else stuck_explain(w);
+    r->status = w->late || sim_beyond(w->sim) ? RUN_FAILED : RUN_DEADLOCK;
 }
 
 static bool all_eager(const struct software_spec *s, int64_t largest)

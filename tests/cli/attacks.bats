@@ -50,6 +50,28 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
     stderr_says 'gives more than 16777216 processors'
 }
 
+@test "a run that outlasts simulated time fails, with the rank and the time it had reached" {
+    slow() { mimdsim run speedup-t3e --set machine.node.flop_rate='1 flop/s' --set kernel.steps=300 -o slow.db --quiet "$@"; }
+    fails_with 1 slow --set n=64
+    stderr_says 'simulated time ends at 1.15e+06 s: rank '
+    stderr_says ' had reached 1.15'
+    # the parallel run ends in time, the serial codes do not: there is no speedup to tell
+    fails_with 1 slow --set n=4
+    stderr_says "the parallel run took 855830 s, and 'parallel code on one processor' on one processor takes longer"
+    for level in loggp link packet flit auto; do
+        fails_with 1 mimdsim run speedup-t3e -o slow.db --quiet --set n=8 --set level=$level --set machine.network.link.bandwidth='1e-6 B/s'
+        stderr_says 'simulated time ends at 1.15e+06 s'
+    done
+    sql_is slow.db "SELECT group_concat(DISTINCT status), max(makespan_ps) FROM run" 'failed|0'
+    sql_is slow.db "SELECT count(*) FROM v_speedup" 0
+    sql_is slow.db "SELECT (SELECT count(*) FROM baseline) + (SELECT count(*) FROM stage)" 0
+    # as long as it fits, time is exact: a flop takes a million times as long
+    works mimdsim run speedup-t3e --set n=1 --set ranks=1 --set level=loggp --set machine.node.flop_rate='1 flop/s' -o one.db --quiet
+    sql_is one.db "SELECT status, makespan_ps > 1000000000000 FROM run" 'ok|1'
+    fails_with 78 mimdsim run speedup-t3e --set machine.network.hop_latency='1 s' --set machine.topology.dims='[16777216]' -o slow.db
+    stderr_says 'network.hop_latency: a way of 8388609 routers takes longer than simulated time is'
+}
+
 # --- texts of a database and gnuplot ----------------------------------------------------------------------------------
 
 figures() { (cd "$MIMDSIM_DATA/plots" && for f in *.gp; do [ "$f" = style.gp ] || echo "${f%.gp}"; done); }

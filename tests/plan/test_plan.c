@@ -262,7 +262,7 @@ static const struct bad_file {
     {"schema_version: 1\nmachine: nowhere\nranks: 2\n", 2, ERR_NO_INPUT, "no machine 'nowhere'"},
     {"schema_version: 1\nmachine: ./nowhere.yaml\nranks: 2\n", 2, ERR_NO_INPUT, "no file './nowhere.yaml'"},
     {"schema_version: 1\nmachine: t3e-300\nranks: 129\n", 3, ERR_CONFIG, "raise machine.topology.dims"},
-    {"schema_version: 1\nmachine: t3e-300\nranks: n\nsweep:\n  n: [4, 200]\n", 5, ERR_CONFIG, "200 ranks"},
+    {"schema_version: 1\nmachine: t3e-300\nranks: n\nsweep:\n  n: [300, 200]\n", 5, ERR_CONFIG, "300 ranks"},
     {HEAD "only: n >= ranks\nn: 2\n", 0, ERR_CONFIG, "no run is left by 'only'"},
     {HEAD "model: {generator: urdf}\n", 0, ERR_DATA, "model.path is missing"},
     {HEAD "model: {generator: urdf, path: nowhere.urdf}\n", 0, ERR_NO_INPUT, "cannot open"},
