@@ -6,13 +6,14 @@
 --   too; level link. "About 45" is taken as 33 to 64, a factor of 1.4 either way; not reaching 0.97 at all is a failure.
 -- points: t3e-300, dynamics, n = P = 16, 32, 48, 64, 128 at level link
 -- needs: mimdsim paper fig6
+-- explore: sample-t3e n=2,4,8,16,32,48,64,128 level=link
 WITH point AS (
     SELECT v.*, v.baseline || ', ' || v.operators AS variant
     FROM v_speedup v JOIN run r ON r.id = v.run_id JOIN v_machine_state m ON m.run_id = r.id
-    WHERE (m.state = 'as shipped' OR ?1 = 'what-if') AND v.machine = 't3e-300' AND v.kernel = 'dynamics'
+    WHERE (m.state = 'as shipped' OR ?1 IN ('what-if', 'explored')) AND v.machine = 't3e-300' AND v.kernel = 'dynamics'
           AND v.formulation = 'paper' AND v.base = 'fixed' AND r.model = 'serial-chain' AND r.joint = 'revolute'
           AND v.solver IN ('pcr-symmetric', 'pcr') AND v.n = v.P AND v.precision = 'double' AND r.placement = 'linear'
-          AND r.scenario <> 'paper-scaling' AND ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0),
+          AND r.scenario <> 'paper-scaling' AND (?1 = 'explored' OR ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0)),
 wanted(P) AS (VALUES (16), (32), (48), (64), (128)),
 gap AS (
     SELECT s.variant, 'n = P = ' || group_concat(w.P, ', ') || ' at level link' AS missing
@@ -21,7 +22,9 @@ gap AS (
     GROUP BY s.variant),
 crossing AS (
     SELECT variant, min(CASE WHEN parallel_fraction >= 0.97 THEN P END) AS first, max(P) AS last,
-           max(CASE P WHEN 48 THEN parallel_fraction END) AS f48, max(CASE P WHEN 128 THEN parallel_fraction END) AS f128
+           max(CASE P WHEN 48 THEN parallel_fraction END) AS f48, max(CASE P WHEN 128 THEN parallel_fraction END) AS f128,
+           min(CASE WHEN P <= 32 THEN max(1 - parallel_fraction, 1e-9) END) AS serial_below,
+           min(CASE WHEN P BETWEEN 33 AND 64 THEN max(1 - parallel_fraction, 1e-9) END) AS serial_within
     FROM point WHERE level = 'link' GROUP BY variant)
 SELECT variant, first AS value, 45.0 AS threshold, ifnull(first BETWEEN 33 AND 64, 0) AS holds, missing,
        format('f = %.3f at 48, %.3f at 128', f48, f128) ||
@@ -29,5 +32,6 @@ SELECT variant, first AS value, 45.0 AS threshold, ifnull(first BETWEEN 33 AND 6
        iif(variant <> 'fastest serial, structured', '',
            format('; nearest to the claim: %s with f = %.3f at 48, 0.97 from P = %s',
                   (SELECT variant FROM crossing ORDER BY f48 DESC LIMIT 1), (SELECT max(f48) FROM crossing),
-                  (SELECT ifnull(first, 'more than ' || last) FROM crossing ORDER BY f48 DESC LIMIT 1))) AS note
+                  (SELECT ifnull(first, 'more than ' || last) FROM crossing ORDER BY f48 DESC LIMIT 1))) AS note,
+       min(ln(0.03 / serial_within), 0) + min(ifnull(ln(serial_below / 0.03), 0), 0) AS margin
 FROM crossing LEFT JOIN gap USING (variant) ORDER BY variant;

@@ -6,14 +6,14 @@
 --   the matrices for the dear velocity stage; level link. 16 and 128 are the sizes of the paper's figure 5.
 -- points: t3e-300, dynamics, n = P = 16 and 128 at level link
 -- needs: mimdsim paper fig5
+-- explore: sample-t3e n=16,128 level=link
 -- Stages are compared by mean time over the ranks, by computing alone, and by the slowest rank.
 WITH latest AS (
     SELECT max(r.id) AS id FROM run r JOIN v_machine_state m ON m.run_id = r.id
-    WHERE (m.state = 'as shipped' OR ?1 = 'what-if') AND r.status = 'ok' AND r.machine = 't3e-300' AND r.kernel = 'dynamics'
+    WHERE (m.state = 'as shipped' OR ?1 IN ('what-if', 'explored')) AND r.status = 'ok' AND r.machine = 't3e-300' AND r.kernel = 'dynamics'
           AND r.formulation = 'paper' AND r.level = 'link' AND r.solver IN ('pcr-symmetric', 'pcr') AND r.n = r.P
           AND r.P IN (16, 128) AND r.base = 'fixed' AND r.model = 'serial-chain' AND r.joint = 'revolute'
-          AND r.precision = 'double' AND r.placement = 'linear' AND ifnull(r.compute_noise_cv, 0) = 0
-          AND ifnull(r.background_load, 0) = 0
+          AND r.precision = 'double' AND r.placement = 'linear' AND (?1 = 'explored' OR ifnull(r.compute_noise_cv, 0) = 0 AND ifnull(r.background_load, 0) = 0)
     GROUP BY r.operators, r.P),
 chosen AS (SELECT * FROM v_stage WHERE run_id IN (SELECT id FROM latest) AND name <> 'end'),
 gap AS (
@@ -29,8 +29,13 @@ wide AS (
     SELECT variant, operators, max(CASE WHEN P = 16 AND place = 1 THEN name END) AS few,
            max(CASE WHEN P = 128 AND place = 1 THEN name END) AS many,
            max(CASE WHEN P = 16 AND name = 'NE[1]' THEN t END) / max(CASE WHEN P = 16 AND name = 'CFA[2]' THEN t END) AS r16,
-           max(CASE WHEN P = 128 AND name = 'NE[1]' THEN t END) / max(CASE WHEN P = 128 AND name = 'CFA[2]' THEN t END) AS r128
+           max(CASE WHEN P = 128 AND name = 'NE[1]' THEN t END) / max(CASE WHEN P = 128 AND name = 'CFA[2]' THEN t END) AS r128,
+           max(CASE WHEN P = 16 AND name = 'NE[1]' THEN t END)
+               / max(CASE WHEN P = 16 AND name <> 'NE[1]' THEN t END) - 1 AS lead16,
+           max(CASE WHEN P = 128 AND name = 'CFA[2]' THEN t END)
+               / max(CASE WHEN P = 128 AND name <> 'CFA[2]' THEN t END) - 1 AS lead128
     FROM ranked GROUP BY variant)
 SELECT variant, r128 / r16 AS value, 1.0 AS threshold, few = 'NE[1]' AND many = 'CFA[2]' AS holds, missing,
-       format('%s takes longest at 16, %s at 128; NE[1] / CFA[2] = %.2f, then %.2f', few, many, r16, r128) AS note
+       format('%s takes longest at 16, %s at 128; NE[1] / CFA[2] = %.2f, then %.2f', few, many, r16, r128) AS note,
+       iif(min(lead16, lead128) >= 0, min(lead16, lead128), min(lead16, 0) + min(lead128, 0)) AS margin
 FROM wide LEFT JOIN gap USING (operators) ORDER BY variant;

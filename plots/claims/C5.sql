@@ -6,13 +6,14 @@
 --   too; level link. The claim says "can be": one size below 16 is enough.
 -- points: t3e-300, dynamics, n = P = 2, 4, 8 at level link
 -- needs: mimdsim paper fig6
+-- explore: sample-t3e n=2,4,8 level=link
 WITH point AS (
     SELECT v.*, v.baseline || ', ' || v.operators AS variant
     FROM v_speedup v JOIN run r ON r.id = v.run_id JOIN v_machine_state m ON m.run_id = r.id
-    WHERE (m.state = 'as shipped' OR ?1 = 'what-if') AND v.machine = 't3e-300' AND v.kernel = 'dynamics'
+    WHERE (m.state = 'as shipped' OR ?1 IN ('what-if', 'explored')) AND v.machine = 't3e-300' AND v.kernel = 'dynamics'
           AND v.formulation = 'paper' AND v.base = 'fixed' AND r.model = 'serial-chain' AND r.joint = 'revolute'
           AND v.solver IN ('pcr-symmetric', 'pcr') AND v.n = v.P AND v.precision = 'double' AND r.placement = 'linear'
-          AND r.scenario <> 'paper-scaling' AND ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0),
+          AND r.scenario <> 'paper-scaling' AND (?1 = 'explored' OR ifnull(v.compute_noise_cv, 0) = 0 AND ifnull(v.background_load, 0) = 0)),
 wanted(P) AS (VALUES (2), (4), (8)),
 gap AS (
     SELECT s.variant, 'n = P = ' || group_concat(w.P, ', ') || ' at level link' AS missing
@@ -22,5 +23,6 @@ gap AS (
 SELECT variant, min(speedup) AS value, 1.0 AS threshold, min(speedup) < 1 AS holds, max(missing) AS missing,
        'S exceeds 1 from P = ' || ifnull((SELECT min(P) FROM point q WHERE q.variant = point.variant AND q.level = 'link'
                                           AND q.speedup > 1),
-              'more than ' || (SELECT max(P) FROM point q WHERE q.variant = point.variant)) AS note
+              'more than ' || (SELECT max(P) FROM point q WHERE q.variant = point.variant)) AS note,
+       1 - min(speedup) AS margin
 FROM point LEFT JOIN gap USING (variant) WHERE level = 'link' AND P < 16 GROUP BY variant ORDER BY variant;

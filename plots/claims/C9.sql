@@ -7,10 +7,11 @@
 --   taken as within 5 % of the mean step.
 -- points: t3e-300 with topology.dims [16, 8, 8], dynamics, n = P = 8, 16, 32, 64, 128 at level loggp
 -- needs: mimdsim paper paper-scaling
+-- explore: sample-t3e n=8,16,32,64,128 level=loggp
 -- R doubling rounds of P processors are R P - (2^R - 1) pairs.
 WITH fit AS (
     SELECT r.* FROM run r JOIN v_machine_state m ON m.run_id = r.id
-    WHERE (m.state = 'changed' AND m.machine_changes = '{"topology.dims": "[16, 8, 8]"}' OR ?1 = 'what-if')
+    WHERE (m.state = 'changed' AND m.machine_changes = '{"topology.dims": "[16, 8, 8]"}' OR ?1 IN ('what-if', 'explored'))
           AND r.status = 'ok' AND r.machine = 't3e-300' AND r.level = 'loggp' AND r.kernel = 'dynamics' AND r.n = r.P
           AND r.formulation = 'paper' AND r.base = 'fixed' AND r.model = 'serial-chain' AND r.joint = 'revolute'
           AND r.solver IN ('pcr-symmetric', 'pcr') AND r.P >= 8),
@@ -30,5 +31,6 @@ rounds AS (SELECT variant, max(messages / pairs) = min(messages / pairs) AND min
 SELECT variant, 1.0 * (max(step) - min(step)) / avg(step) AS value, 0.05 AS threshold,
        (max(step) - min(step)) / avg(step) <= 0.05 AND visible AS holds, max(missing) AS missing,
        format('each doubling of n = P adds %.1f to %.1f us up to P = %d; the rounds are %s', min(step) / 1e6, max(step) / 1e6, max(P),
-              iif(visible, 'visible', 'not visible')) AS note
+              iif(visible, 'visible', 'not visible')) AS note,
+       iif(visible, 1 - (max(step) - min(step)) / avg(step) / 0.05, -1) AS margin
 FROM rounds LEFT JOIN growth USING (variant) LEFT JOIN gap USING (variant) GROUP BY variant ORDER BY variant;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/levels.h"
+#include "app/explain_claims.h"
 #include "app/flag.h"
 #include "app/parameters.h"
 #include "app/sampling.h"
@@ -95,7 +96,8 @@ static bool run_plans(struct paper *p)
 
 static bool has_section(const char *figure)
 {
-    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0;
+    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0 ||
+           strcmp(figure, "explain") == 0;
 }
 
 /* A figure that cannot be drawn for want of gnuplot has its CSV; the others go on. */
@@ -122,7 +124,8 @@ static bool draw_all(struct paper *p, struct progress *progress)
             progress_show(progress, ++done);
         }
     return p->common->narg ||
-           (draw(p, "claims") && draw(p, "accuracy") && draw(p, "stability") && draw(p, "omissions"));
+           (draw(p, "claims") && draw(p, "accuracy") && draw(p, "stability") && draw(p, "omissions") &&
+            draw(p, "explain"));
 }
 
 static bool draw_figures(struct paper *p)
@@ -139,7 +142,8 @@ static bool judge(struct paper *p)
 {
     return claims_read(&p->rules, plan_data_dir(), p->e) &&
            sampling_run(p->common, &p->rules, SAMPLING_SAMPLES, p->store, p->e) &&
-           claims_decide(&p->rules, p->store, p->e);
+           claims_decide(&p->rules, p->store, p->e) &&
+           explain_claims(p->common, &p->rules, EXPLAIN_SEED, p->store, p->e);
 }
 
 /* All figures that the plans ask for, in order, and the claims. */

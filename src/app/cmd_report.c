@@ -34,7 +34,8 @@ struct report {
 
 static bool has_section(const char *figure)
 {
-    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0;
+    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0 ||
+           strcmp(figure, "explain") == 0;
 }
 
 /* Draw `name`, taken over, if there are rows for it. */

@@ -64,6 +64,18 @@ static bool read_headers(struct claim_rule *r, struct arena *a)
     return true;
 }
 
+/* Every "-- explore:" line. */
+static bool explore_lines(struct claim_rule *r, struct arena *a, const char *path, struct err *e)
+{
+    for (const char *at = r->sql, *line; (line = header_line(a, at, "explore")) != NULL;) {
+        if (r->nexplore == CLAIM_MOST_EXPLORED)
+            return err_set_at(e, ERR_DATA, path, 1, "more than %d lines -- explore:", CLAIM_MOST_EXPLORED);
+        r->explore[r->nexplore++] = line;
+        at = strstr(at, "-- explore: ") + 1;
+    }
+    return true;
+}
+
 static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder, const char *file, struct err *e)
 {
     struct text path = {0}, sql = {0};
@@ -76,6 +88,8 @@ static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder,
         if (!read_headers(r, a))
             ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, unit:, designated:, "
                                                     "judged:, points: and needs: lines");
+        r->never = header_line(a, r->sql, "never");
+        ok = ok && explore_lines(r, a, path.s, e);
     }
     text_free(&path);
     text_free(&sql);
@@ -113,16 +127,6 @@ void claims_free(struct claim_rules *c)
 /* --- judging --------------------------------------------------------------------------------------------------------
  */
 
-/* One row of a claim's query. */
-struct judgement {
-    const char *variant, *note;
-    const char *missing; /* runs that the variant lacks, NULL: none */
-    struct store_value value, threshold;
-    struct store_value holds; /* 0, 1 or NULL */
-};
-
-typedef bool judgement_fn(void *context, const struct claim_rule *rule, const struct judgement *j);
-
 struct judging {
     const struct claim_rule *rule;
     judgement_fn *tell;
@@ -139,27 +143,28 @@ static bool judge_row(void *context, int ncolumn, const char *const *name, const
 {
     struct judging *g = context;
     (void)name;
-    if (ncolumn != 6 || value[0].kind != STORE_TEXT)
-        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, missing, note)",
+    if (ncolumn < 6 || ncolumn > 7 || value[0].kind != STORE_TEXT)
+        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, missing, note, margin)",
                        g->rule->id);
     bool whole = value[4].kind != STORE_TEXT;
+    struct store_value margin = whole && ncolumn == 7 ? as_real(value[6]) : store_null();
     struct judgement j = {.variant = value[0].text,
                           .value = whole ? as_real(value[1]) : store_null(),
                           .threshold = as_real(value[2]),
                           .missing = whole ? NULL : value[4].text,
                           .holds = store_null(),
-                          .note = value[5].kind == STORE_TEXT ? value[5].text : ""};
+                          .note = value[5].kind == STORE_TEXT ? value[5].text : "",
+                          .margin = margin.kind == STORE_REAL ? margin.real : NAN};
     if (whole && value[3].kind == STORE_INT) j.holds = store_int(value[3].integer != 0);
     return g->tell(g->context, g->rule, &j);
 }
 
-static bool judge(const struct claim_rule *rule, struct store *s, bool what_if, judgement_fn *tell, void *context,
-                  struct err *e)
+bool claims_judge(const struct claim_rule *rule, struct store *s, const char *admitted, judgement_fn *tell,
+                  void *context, struct err *e)
 {
     struct judging g = {rule, tell, context, e};
-    const char *const param[] = {what_if ? "what-if" : "as shipped"};
     bool asks = strstr(rule->sql, "?1") != NULL;
-    if (!store_query(s, rule->sql, asks ? 1 : 0, param, NULL, judge_row, &g, e)) return err_in(e, rule->id);
+    if (!store_query(s, rule->sql, asks ? 1 : 0, &admitted, NULL, judge_row, &g, e)) return err_in(e, rule->id);
     return e->kind == ERR_NONE;
 }
 
@@ -186,7 +191,7 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
     struct sampling p = {into, sample, e};
     if (!store_begin(into, e)) return false;
     for (int i = 0; i < c->n; i++)
-        if (!judge(&c->rule[i], from, true, keep_sample, &p, e)) {
+        if (!claims_judge(&c->rule[i], from, "what-if", keep_sample, &p, e)) {
             store_rollback(into);
             return false;
         }
@@ -311,7 +316,7 @@ static bool decide(const struct claim_rule *rule, struct store *s, bool what_if,
     struct deciding d = {
         .s = s, .e = e, .what_if = what_if, .changed = changed,
         .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
-    bool ok = judge(rule, s, what_if, decide_row, &d, e);
+    bool ok = claims_judge(rule, s, what_if ? "what-if" : "as shipped", decide_row, &d, e);
     struct text note = {0};
     if (!d.found) add_missing(&d, rule, rule->points, &d.own_note);
     add_elsewhere(&d, rule, &note);

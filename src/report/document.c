@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "report/explanations.h"
 #include "report/findings.h"
 #include "report/opening.h"
 #include "report/page.h"
@@ -293,7 +294,8 @@ static bool chapters(struct chapter *c)
     run = run || d->whole;
     if (claimed && !opening_abstract(c->page, d->store, d->data_dir, c->e)) return false;
     page_contents(c->page);
-    return (!claimed || (contradictions(c) && estimates(c) && claims(c))) && figures(c) &&
+    return (!claimed || (contradictions(c) && explanations_section(c->page, d->store, c->e) && estimates(c) &&
+                         claims(c))) && figures(c) &&
            findings_accuracy(c->page, d->store, c->e) && findings_stability(c->page, d->store, c->e) &&
            (!claimed || variants(c)) && machines(c) && (!run || numerics(c)) && omissions(c) &&
            (!run || (effort(c) && provenance(c))) &&

@@ -115,7 +115,10 @@ static void refuse_long_baselines(struct run_result *out)
 static void verify(struct program_run *r, struct arena *scratch, struct run_result *out)
 {
     if (out->status != RUN_OK && out->status != RUN_INVALID) return;
-    const struct node_cost cost = node_cost_make(&r->spec.machine.node);
+    /* Serial codes may have a rate of their own. */
+    struct node_spec node = r->spec.machine.node;
+    if (node.serial_rate > 0) node.flop_rate = node.serial_rate;
+    const struct node_cost cost = node_cost_make(&node);
     const struct work_price price = {price_ps, &cost};
     if (r->type->check) r->type->check(r, scratch, out);
     if (r->type->baselines) r->type->baselines(r, &price, scratch, out);

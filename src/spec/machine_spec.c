@@ -225,6 +225,9 @@ static const struct field fields[] = {
 
     {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate), .min = 1, .max = 1e18,
      .doc = "additions and multiplications of small dense double-precision code"},
+    {.key = "node.serial_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.serial_rate), .min = 0,
+     .max = 1e18, .fallback = "0 flop/s",
+     .doc = "the same of the serial codes that a speedup is measured against; 0: node.flop_rate"},
     {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1, .max = 1e13,
      .doc = "processor clock, for the cycle counts below"},
     {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0, .max = 1e6,

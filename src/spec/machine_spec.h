@@ -53,6 +53,7 @@ struct topology_spec {
 /* What computing costs on one processor. A rate holds for small dense double-precision code. */
 struct node_spec {
     double flop_rate;      /* additions and multiplications [flop/s] */
+    double serial_rate;    /* the same of the serial codes that speedups are held against [flop/s], 0: flop_rate */
     double clock;          /* [Hz], for the cycle counts below */
     double div_cycles;     /* one division [cycles] */
     double sqrt_cycles;    /* one square root [cycles] */

@@ -461,3 +461,63 @@ CREATE VIEW v_provenance AS
 SELECT r.id AS run_id, r.scenario, r.config_hash, r.seed, r.rep, r.digest, r.status, r.created_utc, b.version, b.git,
        b.compiler, b.flags, r.host_s, r.host_total_s, r.host_peak_bytes, r.left_out
 FROM run r JOIN build b ON b.id = r.build_id;
+
+-- What would make claims hold (claims --explain). Tables from here on may be missing in databases of this version that
+-- were made by earlier programs; whoever opens one for writing adds them.
+-- One row a point of the space of unstated parameters.
+CREATE TABLE IF NOT EXISTS explain_point (
+    id        INTEGER PRIMARY KEY,
+    subject   TEXT NOT NULL,           -- claim, or 'together'
+    key       TEXT NOT NULL,           -- fingerprint of operators and settings
+    operators TEXT NOT NULL,
+    settings  TEXT NOT NULL,           -- what differs from the machine's file, as for --set; '' is the file itself
+    distance  REAL NOT NULL,           -- sum of |ln(value / nominal)|
+    published INTEGER NOT NULL,        -- 1: every change is within a published range
+    runs      TEXT NOT NULL,           -- first 12 digits of the config_hash of each run
+    UNIQUE (subject, key)
+) STRICT;
+-- Every variant of the claim at that point, by the claim's own query.
+CREATE TABLE IF NOT EXISTS explain_judged (
+    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,
+    claim    TEXT NOT NULL,
+    variant  TEXT NOT NULL,
+    value    REAL,
+    margin   REAL,                     -- from holding (< 0) or from failing (> 0)
+    holds    INTEGER CHECK (holds IN (0, 1)),
+    PRIMARY KEY (point_id, claim, variant)
+) STRICT, WITHOUT ROWID;
+-- The plane of the two parameters that matter most to a claim, the others as in its answer.
+CREATE TABLE IF NOT EXISTS explain_map (
+    subject  TEXT NOT NULL,
+    i        INTEGER NOT NULL,
+    j        INTEGER NOT NULL,
+    x_key    TEXT NOT NULL,
+    y_key    TEXT NOT NULL,
+    x_label  TEXT NOT NULL,
+    y_label  TEXT NOT NULL,
+    x        REAL NOT NULL,            -- value over nominal; of shares the share; so are all that follow
+    y        REAL NOT NULL,
+    x_low    REAL, x_high REAL,        -- published range, NULL: none
+    y_low    REAL, y_high REAL,
+    x_nominal REAL NOT NULL, y_nominal REAL NOT NULL,
+    x_answer REAL NOT NULL, y_answer REAL NOT NULL,
+    variant  TEXT NOT NULL,
+    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,
+    PRIMARY KEY (subject, i, j)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS explain_answer (
+    subject   TEXT NOT NULL,
+    goal      TEXT NOT NULL,           -- 'own': the claim's own variant; 'any': any operators and serial baseline
+    verdict   TEXT NOT NULL CHECK (verdict IN ('holds', 'not found', 'never')),
+    variant   TEXT NOT NULL,
+    operators TEXT NOT NULL,
+    settings  TEXT NOT NULL,           -- of the smallest change that was found, or of the point nearest to holding
+    distance  REAL,                    -- each other choice counted as a factor of 2
+    value     REAL,
+    margin    REAL,
+    points    INTEGER NOT NULL,        -- that were tried for the subject
+    confirmed INTEGER,                 -- 1: the study's own runs at that point say so, too; NULL: nothing to confirm
+    study     INTEGER,                 -- how many they are
+    sentence  TEXT NOT NULL,
+    PRIMARY KEY (subject, goal)
+) STRICT, WITHOUT ROWID;

@@ -142,6 +142,8 @@ static bool prepare_writer(struct store *s, struct err *e)
     if (!check_owner(s, &empty, e)) return false;
     if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
+    /* Tables that came after the first databases of this version. */
+    if (!store_exec(s, strstr(store_schema(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
 }

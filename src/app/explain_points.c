@@ -1,0 +1,430 @@
+/* explain_points.c - subjects, their runs, and the points that were made; see explain_points.h. */
+#include "app/explain_points.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/digest.h"
+#include "base/text.h"
+#include "run/run.h"
+
+/* --- the cache ------------------------------------------------------------------------------------------------------
+ */
+
+static uint64_t key_of(const struct explain_subject *s, enum operators operators, const double *u)
+{
+    uint64_t h = digest_mix(DIGEST_START, (uint64_t)operators);
+    for (int i = 0; i < s->space.n; i++) h = digest_mix(h, (uint64_t)llround(1e6 * u[i]));
+    return h;
+}
+
+static struct explain_point **slot_of(const struct explain_subject *s, uint64_t key)
+{
+    size_t mask = (size_t)s->capacity - 1, at = (size_t)key & mask;
+    while (s->slot[at] && s->slot[at]->key != key) at = (at + 1) & mask;
+    return &s->slot[at];
+}
+
+static void grow(struct explain_subject *s, struct arena *a)
+{
+    int old = s->capacity;
+    struct explain_point **was = s->slot;
+    s->capacity = old ? 4 * old : 1024;
+    s->slot = TAKE(a, s->capacity, struct explain_point *);
+    for (int i = 0; i < old; i++)
+        if (was[i]) *slot_of(s, was[i]->key) = was[i];
+}
+
+static void remember(struct explain_subject *s, struct explain_point *p, struct arena *a)
+{
+    if (2 * (s->npoint + 1) > s->capacity) grow(s, a);
+    *slot_of(s, p->key) = p;
+    s->npoint++;
+}
+
+const struct explain_point *explain_known(const struct explain_subject *s, enum operators operators, const double *u)
+{
+    return s->capacity ? *slot_of(s, key_of(s, operators, u)) : NULL;
+}
+
+/* --- subjects -------------------------------------------------------------------------------------------------------
+ */
+
+/* The runs of "SCENARIO KEY=VALUE ...", appended to *spec; their texts live in the arena. */
+static bool read_runs(struct explain_bench *b, const char *line, struct run_spec **spec, int *n)
+{
+    enum { MOST_WORDS = 16 };
+    const char *word[MOST_WORDS];
+    int nword = 0;
+    char *rest = arena_text(b->arena, line), *save = NULL;
+    for (char *w = strtok_r(rest, " ", &save); w && nword < MOST_WORDS; w = strtok_r(NULL, " ", &save))
+        word[nword++] = w;
+    if (nword == 0) return err_set(b->e, ERR_DATA, "a line -- explore: or -- study: of a claim names no scenario");
+    struct plan plan = {0};
+    struct plan_options o = {.nset = nword - 1, .set = word + 1};
+    if (!plan_read(&plan, word[0], &o, b->e)) return false;
+    struct run_spec *all = TAKE(b->arena, *n + plan.nrun, struct run_spec);
+    if (*n) memcpy(all, *spec, (size_t)*n * sizeof *all);
+    for (int i = 0; i < plan.nrun; i++) {
+        all[*n + i] = plan.run[i];
+        all[*n + i].config_text = arena_text(b->arena, plan.run[i].config_text);
+        all[*n + i].machine_changes = all[*n + i].machine_hash = NULL; /* the plan's */
+    }
+    *spec = all;
+    *n += plan.nrun;
+    plan_free(&plan);
+    return true;
+}
+
+/* Runs that several lines name are made once. */
+static void drop_doubles(struct run_spec *spec, int *n)
+{
+    int kept = 0;
+    for (int i = 0; i < *n; i++) {
+        bool seen = false;
+        for (int k = 0; k < kept; k++) seen = seen || strcmp(spec[k].config_hash, spec[i].config_hash) == 0;
+        if (!seen) spec[kept++] = spec[i];
+    }
+    *n = kept;
+}
+
+static bool one_machine(const struct explain_subject *s, struct err *e)
+{
+    for (int i = 1; i < s->nspec; i++)
+        if (strcmp(s->spec[i].machine.name, s->spec[0].machine.name) != 0)
+            return err_set(e, ERR_DATA, "claim %s explores two machines, %s and %s", s->name, s->spec[0].machine.name,
+                           s->spec[i].machine.name);
+    return true;
+}
+
+bool explain_machine(struct explain_bench *b, const struct claim_rule *rule, char machine[64])
+{
+    struct run_spec *spec = NULL;
+    int n = 0;
+    CHECK(rule->nexplore > 0);
+    if (!read_runs(b, rule->explore[0], &spec, &n)) return false;
+    text_copy(machine, 64, spec[0].machine.name);
+    return true;
+}
+
+static bool read_subject(struct explain_subject *s, struct explain_bench *b)
+{
+    for (int i = 0; i < s->nrule; i++) {
+        if (s->rule[i]->nexplore == 0)
+            return err_set(b->e, ERR_DATA, "claim %s has no line -- explore: and cannot be explained", s->rule[i]->id);
+        for (int k = 0; k < s->rule[i]->nexplore; k++)
+            if (!read_runs(b, s->rule[i]->explore[k], &s->spec, &s->nspec)) return false;
+    }
+    drop_doubles(s->spec, &s->nspec);
+    for (int i = 0; i < s->nspec; i++) s->has[s->spec[i].kernel.operators == OPERATORS_DENSE] = true;
+    return one_machine(s, b->e);
+}
+
+static void identify(struct explain_subject *s)
+{
+    struct text all = {0};
+    for (int i = 0; i < s->nspec; i++) text_add(&all, "%s\n", s->spec[i].config_hash);
+    for (int i = 0; i < s->nrule; i++) text_add(&all, "%s\n%s\n", s->rule[i]->id, s->rule[i]->sql);
+    digest_sha256_hex(all.s, all.length, s->identity);
+    text_free(&all);
+}
+
+/* --- stored points --------------------------------------------------------------------------------------------------
+ */
+
+static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    (void)ncolumn;
+    (void)name;
+    text_copy(context, 65, value[0] ? value[0] : "");
+    return false;
+}
+
+struct loading {
+    struct explain_subject *subject;
+    struct explain_bench *bench;
+    struct explain_point *point; /* whose verdicts are being read */
+};
+
+static int rule_of(const struct explain_subject *s, const char *id)
+{
+    for (int i = 0; i < s->nrule; i++)
+        if (strcmp(s->rule[i]->id, id) == 0) return i;
+    return -1;
+}
+
+enum { MOST_VERDICTS = 512 };
+
+static void add_verdict(struct explain_point *p, const struct explain_verdict *v, struct arena *a)
+{
+    /* Verdicts of a point come one after the other: the array grows in steps. */
+    if (p->nverdict % 16 == 0) {
+        struct explain_verdict *more = TAKE(a, p->nverdict + 16, struct explain_verdict);
+        if (p->nverdict) memcpy(more, p->verdict, (size_t)p->nverdict * sizeof *more);
+        p->verdict = more;
+    }
+    CHECK(p->nverdict < MOST_VERDICTS);
+    p->verdict[p->nverdict++] = *v;
+}
+
+/* (point id, key, claim, variant, value, margin, holds), ordered by point. */
+static bool load_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    struct loading *l = context;
+    struct arena *a = l->bench->arena;
+    (void)ncolumn;
+    (void)name;
+    if (!l->point || l->point->id != value[0].integer) {
+        l->point = TAKE(a, 1, struct explain_point);
+        l->point->id = value[0].integer;
+        l->point->key = strtoull(value[1].text, NULL, 16);
+        remember(l->subject, l->point, a);
+    }
+    struct explain_verdict v = {.rule = value[2].kind == STORE_TEXT ? rule_of(l->subject, value[2].text) : -1};
+    if (v.rule < 0) return true;
+    v.variant = arena_text(a, value[3].text);
+    v.value = value[4].kind == STORE_REAL ? value[4].real : NAN;
+    v.margin = value[5].kind == STORE_REAL ? value[5].real : NAN;
+    v.told = value[6].kind == STORE_INT;
+    v.holds = v.told && value[6].integer;
+    add_verdict(l->point, &v, a);
+    return true;
+}
+
+static bool take_id(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+{
+    (void)ncolumn;
+    (void)name;
+    *(int64_t *)context = value[0].kind == STORE_INT ? value[0].integer : 0;
+    return false;
+}
+
+static bool forget(struct explain_subject *s, struct explain_bench *b, const char *meta)
+{
+    static const char *const name[] = {"key", "value"};
+    const struct store_value value[] = {store_text(meta), store_text(s->identity)};
+    struct store_value subject = store_text(s->name);
+    if (!store_begin(b->store, b->e)) return false;
+    bool ok = store_delete(b->store, "explain_answer", "subject", subject, b->e) &&
+              store_delete(b->store, "explain_map", "subject", subject, b->e) &&
+              store_delete(b->store, "explain_point", "subject", subject, b->e) &&
+              store_insert(b->store, "meta", 2, name, value, b->e);
+    if (ok) return store_commit(b->store, b->e);
+    store_rollback(b->store);
+    return false;
+}
+
+static bool load(struct explain_subject *s, struct explain_bench *b)
+{
+    struct text meta = {0};
+    char stored[65] = "";
+    text_add(&meta, "explain.%s", s->name);
+    const char *const key[] = {meta.s}, *const subject[] = {s->name};
+    bool ok = store_select(b->store, "SELECT value FROM meta WHERE key = ?1", 1, key, take_text, stored, b->e);
+    if (ok && (b->common->force || strcmp(stored, s->identity) != 0)) ok = forget(s, b, meta.s);
+    text_free(&meta);
+    struct loading l = {s, b, NULL};
+    return ok &&
+           store_query(b->store,
+                       "SELECT p.id, p.key, j.claim, j.variant, j.value, j.margin, j.holds FROM explain_point p"
+                       " LEFT JOIN explain_judged j ON j.point_id = p.id WHERE p.subject = ?1 ORDER BY p.id",
+                       1, subject, NULL, load_row, &l, b->e) &&
+           store_query(b->store, "SELECT max(id) FROM explain_point", 0, NULL, NULL, take_id, &b->last_id, b->e);
+}
+
+bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, const char *name,
+                          const struct claim_rule *const *rule, int nrule)
+{
+    CHECK(nrule <= EXPLAIN_MOST_RULES);
+    *s = (struct explain_subject){.name = arena_text(b->arena, name), .nrule = nrule};
+    memcpy(s->rule, rule, (size_t)nrule * sizeof *rule);
+    grow(s, b->arena);
+    if (!read_subject(s, b) || !explain_space_make(&s->space, s->spec[0].machine.name, b->arena, b->e)) return false;
+    identify(s);
+    return load(s, b);
+}
+
+/* --- making points --------------------------------------------------------------------------------------------------
+ */
+
+/* One batch: the runs of all its points, point by point. */
+struct batch {
+    struct explain_bench *bench;
+    const struct explain_request *request;
+    struct run_spec *spec;
+    int *of, nspec, kept; /* of: (nspec + 1) whose runs they are */
+    struct store *passing;
+    struct explain_point *point; /* in the making */
+    struct text runs;
+    bool keep; /* false: for a look, nothing is stored */
+};
+
+static bool judge_variant(void *context, const struct claim_rule *rule, const struct judgement *j)
+{
+    struct batch *t = context;
+    struct explain_subject *s = t->request[t->of[t->kept - 1]].subject;
+    struct explain_verdict v = {.rule = rule_of(s, rule->id), .told = j->holds.kind == STORE_INT};
+    v.variant = arena_text(t->bench->arena, j->variant);
+    v.value = j->value.kind == STORE_REAL ? j->value.real : NAN;
+    v.margin = j->margin;
+    v.holds = v.told && j->holds.integer;
+    add_verdict(t->point, &v, t->bench->arena);
+    return true;
+}
+
+static bool keep_verdicts(struct batch *t)
+{
+    static const char *const name[] = {"point_id", "claim", "variant", "value", "margin", "holds"};
+    struct explain_subject *s = t->request[t->of[t->kept - 1]].subject;
+    for (int i = 0; i < t->point->nverdict; i++) {
+        const struct explain_verdict *v = &t->point->verdict[i];
+        const struct store_value value[] = {store_int(t->point->id), store_text(s->rule[v->rule]->id),
+                                            store_text(v->variant),  store_real(v->value),
+                                            store_real(v->margin),   v->told ? store_int(v->holds) : store_null()};
+        if (!store_insert(t->bench->store, "explain_judged", 6, name, value, t->bench->e)) return false;
+    }
+    return true;
+}
+
+static bool keep_point(struct batch *t)
+{
+    static const char *const name[] = {"id",       "subject",  "key",       "operators",
+                                       "settings", "distance", "published", "runs"};
+    const struct explain_request *q = &t->request[t->of[t->kept - 1]];
+    char key[20];
+    struct text settings = {0};
+    snprintf(key, sizeof key, "%016" PRIx64, t->point->key);
+    explain_space_settings(&q->subject->space, q->u, &settings);
+    const struct store_value value[] = {store_int(t->point->id),
+                                        store_text(q->subject->name),
+                                        store_text(key),
+                                        store_text(q->operators == OPERATORS_DENSE ? "dense" : "structured"),
+                                        store_text(settings.s ? settings.s : ""),
+                                        store_real(explain_space_distance(&q->subject->space, q->u)),
+                                        store_int(explain_space_published(&q->subject->space, q->u)),
+                                        store_text(t->runs.s)};
+    struct err *e = t->bench->e;
+    bool ok = store_begin(t->bench->store, e);
+    if (ok) {
+        ok = store_insert(t->bench->store, "explain_point", 8, name, value, e) && keep_verdicts(t);
+        if (ok) ok = store_commit(t->bench->store, e);
+        else store_rollback(t->bench->store);
+    }
+    text_free(&settings);
+    return ok;
+}
+
+/* The next point begins without runs; making a database anew takes longer. */
+static bool empty(struct store *s, struct err *e)
+{
+    static const char *const status[] = {"ok", "invalid", "deadlock", "failed"};
+    for (int i = 0; i < 4; i++)
+        if (!store_delete(s, "run", "status", store_text(status[i]), e)) return false;
+    return true;
+}
+
+/* All runs of a point are there: judge and keep it. */
+static bool finish_point(struct batch *t)
+{
+    const struct explain_request *q = &t->request[t->of[t->kept - 1]];
+    struct explain_bench *b = t->bench;
+    struct explain_point *p = t->point = TAKE(b->arena, 1, struct explain_point);
+    p->key = key_of(q->subject, q->operators, q->u);
+    p->operators = q->operators;
+    memcpy(p->u, q->u, sizeof p->u);
+    for (int i = 0; i < q->subject->nrule; i++)
+        if (!claims_judge(q->subject->rule[i], t->passing, "explored", judge_variant, t, b->e)) return false;
+    if (!empty(t->passing, b->e)) return false;
+    if (t->keep) {
+        p->id = ++b->last_id;
+        if (!keep_point(t)) return false;
+        remember(q->subject, p, b->arena);
+        b->made++;
+    }
+    text_free(&t->runs);
+    return true;
+}
+
+static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
+{
+    struct batch *t = context;
+    int mine = t->of[t->kept];
+    if (!t->passing) {
+        t->passing = store_open("points", STORE_MEMORY, t->bench->e);
+        if (!t->passing) return false;
+    }
+    if (!store_put(t->passing, spec, r, t->bench->e)) return false;
+    text_add(&t->runs, "%s%.12s", t->runs.length ? " " : "", spec->config_hash);
+    t->kept++;
+    return t->of[t->kept] == mine || finish_point(t);
+}
+
+/* The runs of `from` with these operators, at a point. */
+static void add_runs(struct batch *t, int request, const struct run_spec *from, int n, struct arena *a)
+{
+    const struct explain_request *q = &t->request[request];
+    for (int i = 0; i < n; i++) {
+        if (from[i].kernel.operators != q->operators) continue;
+        t->spec[t->nspec] = from[i];
+        explain_space_apply(&q->subject->space, q->u, &t->spec[t->nspec], a);
+        t->of[t->nspec++] = request;
+    }
+}
+
+static bool run_batch(struct batch *t)
+{
+    t->of[t->nspec] = -1;
+    bool ok = run_campaign(t->spec, t->nspec, NULL, t->bench->common->jobs, true, keep_result, t, t->bench->e);
+    store_close(t->passing);
+    text_free(&t->runs);
+    return ok;
+}
+
+bool explain_make(struct explain_bench *b, const struct explain_request *request, int n)
+{
+    struct batch t = {.bench = b, .request = request, .keep = true};
+    struct arena *a = arena_create();
+    int most = 1;
+    for (int i = 0; i < n; i++) most += request[i].subject->nspec;
+    t.spec = TAKE(a, most, struct run_spec);
+    t.of = TAKE(a, most, int);
+    for (int i = 0; i < n; i++) add_runs(&t, i, request[i].subject->spec, request[i].subject->nspec, a);
+    bool ok = run_batch(&t);
+    arena_destroy(a);
+    return ok;
+}
+
+/* The runs of the command that the rule needs: "mimdsim paper fig6". */
+static bool read_study(struct explain_bench *b, const struct claim_rule *rule, struct run_spec **spec, int *n)
+{
+    static const char *const verb[] = {"mimdsim paper ", "mimdsim run "};
+    for (int i = 0; i < 2; i++)
+        if (strncmp(rule->needs, verb[i], strlen(verb[i])) == 0)
+            return read_runs(b, rule->needs + strlen(verb[i]), spec, n);
+    return true;
+}
+
+bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators, const double *u,
+                     struct explain_point *out, int *nrun)
+{
+    struct explain_request q = {.subject = s, .operators = operators};
+    struct batch t = {.bench = b, .request = &q};
+    struct run_spec *study = NULL;
+    int n = 0;
+    memcpy(q.u, u, sizeof q.u);
+    for (int i = 0; i < s->nrule; i++)
+        if (!read_study(b, s->rule[i], &study, &n)) return false;
+    drop_doubles(study, &n);
+    t.spec = TAKE(b->arena, n + 1, struct run_spec);
+    t.of = TAKE(b->arena, n + 1, int);
+    *out = (struct explain_point){0};
+    add_runs(&t, 0, study, n, b->arena);
+    *nrun = t.nspec;
+    if (t.nspec == 0) return true;
+    bool ok = run_batch(&t);
+    if (ok) *out = *t.point;
+    return ok;
+}
