@@ -12,8 +12,8 @@
 #include "base/arena.h"
 #include "base/check.h"
 #include "net/traffic.h"
-#include "run/netcheck.h"
-#include "run/netcheck_case.h"
+#include "study/netcheck.h"
+#include "study/netcheck_case.h"
 
 enum { FLITS = 20, BUFFER = 22, DELAY_PS = 20000, LOAD_CYCLES = 40000, BIG = 4096, REPEATS = 3 };
 

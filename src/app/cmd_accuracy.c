@@ -7,8 +7,8 @@
 #include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "run/accuracy.h"
 #include "store/store.h"
+#include "study/accuracy.h"
 
 static const char doc[] =
     "Measure how wrong each cheaper way is, at the largest points of SCENARIO that\n"

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "base/json.h"
-#include "run/model_file.h"
-#include "run/probe.h"
+#include "study/model_file.h"
+#include "study/probe.h"
 
 static const char doc[] =
     "Validate scenario, machine, robot (.urdf) and reference vector (.json) files, running nothing.\n\n"

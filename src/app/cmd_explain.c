@@ -5,7 +5,6 @@
 
 #include "app/flag.h"
 #include "app/keep.h"
-#include "app/savings.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
@@ -14,6 +13,7 @@
 #include "run/run.h"
 #include "spec/field.h"
 #include "store/store.h"
+#include "study/savings.h"
 
 static const char doc[] =
     "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"

@@ -5,7 +5,7 @@
 #include "app/parameters.h"
 #include "app/verb.h"
 #include "base/json.h"
-#include "run/rates.h"
+#include "study/rates.h"
 
 static const char doc[] = "List the machines; with NAME, show one with the origin of every value.\n\n"
                           "Example: mimdsim machines t3e-300\n"

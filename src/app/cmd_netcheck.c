@@ -5,7 +5,7 @@
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "run/netcheck_verdict.h"
+#include "study/netcheck_verdict.h"
 
 static const char doc[] =
     "Run the cases of each FILE through the network levels, print the error of each case and statistics, and hold them "

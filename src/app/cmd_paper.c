@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/levels.h"
 #include "app/explain_claims.h"
 #include "app/flag.h"
+#include "app/levels.h"
 #include "app/parameters.h"
 #include "app/sampling.h"
 #include "app/scenes.h"

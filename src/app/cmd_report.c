@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/parameters.h"
 #include "app/arguments.h"
+#include "app/parameters.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"

@@ -7,9 +7,9 @@
 #include "app/run_table.h"
 #include "app/verb.h"
 #include "base/check.h"
-#include "run/model_file.h"
 #include "run/run.h"
 #include "store/store.h"
+#include "study/model_file.h"
 
 static const char doc[] =
     "Run every point of SCENARIO, store each in the database, and print the table.\n\n"

@@ -5,8 +5,8 @@
 #include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
-#include "run/stability.h"
 #include "store/store.h"
+#include "study/stability.h"
 
 static const char doc[] =
     "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, by every\n"

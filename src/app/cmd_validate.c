@@ -8,8 +8,8 @@
 #include "app/verb.h"
 #include "base/json.h"
 #include "base/text.h"
-#include "run/netcheck.h"
 #include "store/store.h"
+#include "study/netcheck.h"
 
 static const char doc[] =
     "Run the micro-benchmarks of MACHINE (or of all machines) through the simulator and print them beside the "

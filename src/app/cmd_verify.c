@@ -6,7 +6,7 @@
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/progress.h"
-#include "run/verify.h"
+#include "study/verify.h"
 
 static const char doc[] =
     "Run every applicable serial and parallel algorithm, with every solver and several numbers of ranks, on reference\n"

@@ -4,9 +4,9 @@
 #define APP_KEEP_H
 
 #include "app/verb.h"
-#include "run/accuracy.h"
-#include "run/stability.h"
 #include "store/store.h"
+#include "study/accuracy.h"
+#include "study/stability.h"
 
 /* keep_accuracy: tables ladder and ladder_choice. keep_stability: table stability. One transaction each; they return
  * false as store_insert does, with nothing changed. */

@@ -7,7 +7,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
-#include "run/level_choice.h"
+#include "study/level_choice.h"
 
 enum { MOST_LEVELS = 8, HEX = 65 };
 

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 
 #include "base/err.h"
-#include "run/accuracy.h"
 #include "store/store.h"
+#include "study/accuracy.h"
 
 /* ladder_store: the rungs of a report into table ladder, inside the caller's transaction. */
 bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *e);

@@ -6,7 +6,7 @@
 
 #include "base/arena.h"
 #include "base/err.h"
-#include "run/probe.h"
+#include "study/probe.h"
 
 /* What a figure is to the machine file. */
 enum published_use {

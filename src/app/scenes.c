@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "app/keep.h"
-#include "app/savings.h"
 #include "base/check.h"
 #include "base/progress.h"
+#include "study/savings.h"
 
 static const char *const scene[] = {"speedup-t3e", "free-floating", "tree-humanoid", "four-bar", "stiff-polymer"};
 enum { SCENES = sizeof scene / sizeof *scene };

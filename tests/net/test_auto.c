@@ -11,8 +11,8 @@
 
 #include "base/random.h"
 #include "net/traffic.h"
-#include "run/netcheck.h"
-#include "run/netcheck_case.h"
+#include "study/netcheck.h"
+#include "study/netcheck_case.h"
 
 #define DATA MIMDSIM_SRCDIR "/tests/data/net/"
 

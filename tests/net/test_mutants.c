@@ -19,7 +19,7 @@
 #include "base/arena.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "run/netcheck_verdict.h"
+#include "study/netcheck_verdict.h"
 
 #define DATA MIMDSIM_SRCDIR "/tests/data/net/"
 

@@ -14,8 +14,8 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "io/document.h"
-#include "run/netcheck.h"
-#include "run/netcheck_case.h"
+#include "study/netcheck.h"
+#include "study/netcheck_case.h"
 
 #define DATA MIMDSIM_SRCDIR "/tests/data/net/"
 

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "net/traffic.h"
-#include "run/netcheck.h"
-#include "run/netcheck_case.h"
+#include "study/netcheck.h"
+#include "study/netcheck_case.h"
 
 #define DATA MIMDSIM_SRCDIR "/tests/data/net/"
 

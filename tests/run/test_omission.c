@@ -14,7 +14,7 @@
 #include "run/launch.h"
 #include "run/omission.h"
 #include "run/run.h"
-#include "run/trial.h"
+#include "study/trial.h"
 
 enum { SCENES = 260, MOST_NUMBERS = 400 };
 

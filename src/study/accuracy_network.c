@@ -1,0 +1,110 @@
+/* accuracy_network.c - the network ladder: the same program on every level, times held against the finest. */
+#include <math.h>
+#include <stdio.h>
+
+#include "base/progress.h"
+#include "base/text.h"
+#include "machine/node_cost.h"
+#include "machine/topology.h"
+#include "study/accuracy_ladder.h"
+#include "study/trial.h"
+
+enum { LEVELS = 5, REPEATS = 3 };
+
+static const struct {
+    const char *name;
+    enum network_level level;
+} level_table[LEVELS] = {{"loggp", LEVEL_LOGGP}, {"link", LEVEL_LINK}, {"packet", LEVEL_PACKET}, {"flit", LEVEL_FLIT},
+                         {"auto", LEVEL_AUTO}};
+
+/* From fine to coarse: the first that answers is the reference. auto is packet by another way. */
+static const int fineness[] = {3, 2, 4, 1, 0};
+
+/* The fastest of a few runs: the others were disturbed. */
+static struct trial run_level(struct ladder *l, enum network_level level)
+{
+    struct run_spec spec = l->spec;
+    spec.machine.network.level = level;
+    spec.record = (struct record_spec){0};
+    struct trial t = trial_run(&spec, l->model, l->state, l->arena);
+    for (int i = 1; i < REPEATS && t.answered && t.host_s < 0.5; i++) {
+        struct arena_mark mark = arena_mark(l->arena);
+        t.host_s = fmin(t.host_s, trial_run(&spec, l->model, l->state, l->arena).host_s);
+        arena_release(l->arena, mark);
+    }
+    return t;
+}
+
+static double makespan_error(int64_t ps, const struct trial *finest)
+{
+    double reference = (double)finest->makespan_ps;
+    return reference > 0 ? fabs((double)ps - reference) / reference : NAN;
+}
+
+/* Largest difference of a rank's finishing time over the makespan; `finish` NULL: all end at `end_ps`. */
+static double finish_error(const int64_t *finish, int64_t end_ps, const struct trial *finest, int nrank)
+{
+    double largest = 0;
+    for (int i = 0; i < nrank; i++)
+        largest = fmax(largest, fabs((double)((finish ? finish[i] : end_ps) - finest->finish_ps[i])));
+    return finest->makespan_ps > 0 ? largest / (double)finest->makespan_ps : NAN;
+}
+
+static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, const int64_t *finish, double host_s,
+                     const char *why, const struct trial *finest, const char *finest_name)
+{
+    for (int k = 0; k < 2; k++) {
+        struct accuracy_rung *r = ladder_add(l, name, name, k == 0 ? "makespan" : "finish times", finest_name);
+        text_copy(r->text, sizeof r->text, why);
+        if (makespan_ps < 0) continue;
+        r->host_s = host_s;
+        r->machine_ps = makespan_ps;
+        ladder_grade(r, k == 0 ? makespan_error(makespan_ps, finest)
+                               : finish_error(finish, makespan_ps, finest, l->spec.nrank), 0.5, 10);
+    }
+}
+
+/* Mean work of a rank, and each of its messages paid in full over the mean distance: nothing overlaps, nobody waits. */
+static bool closed_form(struct ladder *l, double *seconds, double *host_s)
+{
+    const struct machine_spec *m = &l->spec.machine;
+    struct program_estimate x = {0};
+    struct err e;
+    err_clear(&e);
+    struct program_run r;
+    double begin = host_seconds();
+    struct topology *t = topology_create(&m->topology, l->arena, &e);
+    if (!t || !trial_open(&r, &l->spec, l->model, l->state, l->arena, &e)) return false;
+    r.type->estimate(&r, &x);
+    int P = l->spec.nrank;
+    double hops = 0, bytes = x.messages > 0 ? x.bytes / x.messages : 0;
+    for (int i = 1; i < P && i < t->nnode; i++) hops += topology_distance(t, 0, i);
+    hops /= P > 1 ? P - 1 : 1;
+    const struct network_spec *n = &m->network;
+    struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    const int nlist = software_segments(&m->software, list);
+    const struct software_segment *s = software_segment_of(list, nlist, (int64_t)bytes);
+    double per_byte = fmax(s->gap_per_byte, n->link_bandwidth > 0 ? 1 / n->link_bandwidth : 0);
+    double message = s->send_overhead + s->recv_overhead + bytes * (s->send_copy + s->recv_copy + per_byte) +
+                     (hops + 1) * n->hop_latency + n->end_latency;
+    struct node_cost cost = node_cost_make(&m->node);
+    *seconds = (x.flops * cost.flop * 1e-12 + x.messages * message) / P;
+    *host_s = host_seconds() - begin;
+    return *seconds > 0;
+}
+
+void ladder_network(struct ladder *l)
+{
+    struct trial t[LEVELS];
+    int finest = -1;
+    for (int i = 0; i < LEVELS; i++) t[i] = run_level(l, level_table[i].level);
+    for (int i = 0; i < LEVELS && finest < 0; i++)
+        if (t[fineness[i]].answered) finest = fineness[i];
+    double seconds, host_s;
+    if (finest >= 0 && closed_form(l, &seconds, &host_s))
+        add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s,
+                 "mean work and messages of a rank, no overlap", &t[finest], level_table[finest].name);
+    for (int i = 0; i < LEVELS; i++)
+        add_rows(l, level_table[i].name, t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps, t[i].host_s, t[i].text,
+                 finest >= 0 ? &t[finest] : NULL, finest >= 0 ? level_table[finest].name : "none");
+}

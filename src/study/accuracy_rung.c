@@ -1,0 +1,37 @@
+/* accuracy_rung.c - one rung of a ladder: how it is added and judged (accuracy_ladder.h). */
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "study/accuracy_ladder.h"
+
+struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung, const char *quantity,
+                                 const char *reference)
+{
+    struct accuracy_report *r = l->report;
+    if (r->nrung == r->room) {
+        int room = r->room > 0 ? 2 * r->room : 64;
+        struct accuracy_rung *larger = TAKE(r->arena, room, struct accuracy_rung);
+        if (r->nrung > 0) memcpy(larger, r->rung, (size_t)r->nrung * sizeof *larger);
+        r->rung = larger;
+        r->room = room;
+    }
+    struct accuracy_rung *x = &r->rung[r->nrung++];
+    text_copy(x->ladder, sizeof x->ladder, l->name);
+    text_copy(x->at, sizeof x->at, l->at);
+    text_copy(x->family, sizeof x->family, l->family);
+    text_copy(x->method, sizeof x->method, method);
+    text_copy(x->rung, sizeof x->rung, rung);
+    text_copy(x->quantity, sizeof x->quantity, quantity);
+    text_copy(x->reference, sizeof x->reference, reference);
+    x->error = x->host_s = NAN;
+    x->machine_ps = -1;
+    x->status = RUNG_FAILED;
+    return x;
+}
+
+void ladder_grade(struct accuracy_rung *r, double error, double fine, double poor)
+{
+    r->error = isfinite(error) ? error : NAN;
+    r->status = error <= fine ? RUNG_OK : error <= poor ? RUNG_DEGRADED : RUNG_FAILED;
+}

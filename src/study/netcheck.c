@@ -1,0 +1,77 @@
+/* netcheck.c - goes through the cases of a reference file, each by the reader of its form. */
+#include "study/netcheck.h"
+
+#include <string.h>
+
+#include "base/progress.h"
+#include "io/document.h"
+#include "study/netcheck_rows.h"
+
+static bool case_rows(struct netcheck_reader *r, const struct node *c)
+{
+    enum netcheck_form form = NETCHECK_STEP;
+    bool referred = false;
+    if (!netcheck_form_of(r, c, &form, &referred)) return false;
+    if (r->ncase++ > 0 && r->referred != referred)
+        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has %s answers, though cases before it have %s",
+                          referred ? "reference" : "no", referred ? "none" : "some");
+    r->referred = referred;
+    switch (form) {
+    case NETCHECK_STEP:
+        return netcheck_step_rows(r, c, referred);
+    case NETCHECK_LIST:
+        return netcheck_list_rows(r, c, referred);
+    case NETCHECK_HAND:
+        return netcheck_hand_rows(r, c, referred);
+    case NETCHECK_LOAD:
+        return netcheck_load_rows(r, c);
+    case NETCHECK_SATURATION:
+    case NETCHECK_FORMS:
+        break;
+    }
+    return netcheck_saturation_rows(r, c);
+}
+
+static bool any_answer(const struct netcheck *n)
+{
+    for (int i = 0; i < n->nrow; i++)
+        for (int l = 0; l < NETCHECK_LEVELS; l++)
+            if (n->row[i].answer[l].ran) return true;
+    return false;
+}
+
+/* Nothing that could be compared is no success: the file is told apart from an empty table by the first reason. */
+static bool nothing_answered(const struct netcheck *n, struct err *e)
+{
+    for (int i = 0; i < n->nrow; i++)
+        for (int l = 0; l < NETCHECK_LEVELS; l++)
+            if (n->level[l] && n->row[i].answer[l].why[0])
+                return err_set_at(e, ERR_DATA, n->path, n->row[i].line, "none of its %d cases can be answered; %s: %s",
+                                  n->nrow, n->row[i].name, n->row[i].answer[l].why);
+    return err_set_at(e, ERR_DATA, n->path, 1, "no case could be answered");
+}
+
+bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const char *filter, bool quiet,
+                  struct arena *a, struct err *e)
+{
+    const struct node *root = document_read(path, a, e);
+    if (!root) return false;
+    bool one = root->kind == NODE_MAP;
+    if (!one && (root->kind != NODE_LIST || root->count == 0))
+        return err_set_at(e, ERR_DATA, path, root->line, "expected a list of reference cases");
+    *n = (struct netcheck){.path = path};
+    for (int l = 0; l < NETCHECK_LEVELS; l++) n->level[l] = !level || level[l];
+    struct netcheck_reader r = {.n = n, .path = path, .filter = filter, .rows = a, .arena = arena_create(), .e = e};
+    struct progress p = progress_make("reference cases", one ? 1 : root->count, quiet);
+    bool ok = true;
+    int done = 0;
+    for (const struct node *c = one ? root : root->child; ok && c; c = one ? NULL : c->next) {
+        struct arena_mark mark = arena_mark(r.arena);
+        ok = case_rows(&r, c);
+        arena_release(r.arena, mark);
+        progress_show(&p, ++done);
+    }
+    progress_end(&p);
+    arena_destroy(r.arena);
+    return ok && (filter || any_answer(n) || nothing_answered(n, e));
+}

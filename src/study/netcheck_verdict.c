@@ -1,0 +1,105 @@
+/* netcheck_verdict.c - answers held against the stated accuracy, case by case and group by group. */
+#include "study/netcheck_verdict.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* a thousandth of a cycle, as a fraction of any answer, is equality */
+static double rounding(const struct netcheck_row *row) { return 1e-3 / fmax(row->high, 1); }
+
+static bool judged(const struct netcheck_row *row, enum network_level level)
+{
+    return row->counted && !row->played && row->answer[level].ran;
+}
+
+static bool say(char why[160], const struct netcheck_row *row, const char *what, double found, double low, double high)
+{
+    if (why)
+        snprintf(why, 160, "%.80s: %s %+.4g %%, stated are %+.4g to %+.4g %%", row->name, what, 100 * found, 100 * low,
+                 100 * high);
+    return true;
+}
+
+static bool breaks_stated(const struct netcheck_row *row, enum network_level level, char why[160])
+{
+    const struct netcheck_answer *x = &row->answer[level];
+    const struct netcheck_accuracy *s = netcheck_accuracy_of(row, level);
+    double slack = rounding(row);
+    if (x->error < s->low - slack || x->error > s->high + slack)
+        return say(why, row, "error", x->error, s->low, s->high);
+    if (!row->compared) return false;
+    if (s->message == 0 && x->differing > 0) return say(why, row, "a message's error", x->message_worst, 0, 0);
+    return x->message_worst > s->message + slack && say(why, row, "a message's error", x->message_worst, 0, s->message);
+}
+
+bool netcheck_row_fails(const struct netcheck_row *row, enum network_level level, double within, char why[160])
+{
+    if (!judged(row, level)) return false;
+    if (row->flaw[0]) {
+        if (why) snprintf(why, 160, "%.60s: %.90s", row->name, row->flaw);
+        return true;
+    }
+    const struct netcheck_answer *x = &row->answer[level];
+    if (x->deadlock != row->expect_deadlock) {
+        if (why) snprintf(why, 160, "%.80s: %s", row->name, x->deadlock ? "a deadlock" : "no deadlock");
+        return true;
+    }
+    if (row->expect_deadlock) return false;
+    if (within < 0) return breaks_stated(row, level, why);
+    return fabs(x->error) > within + rounding(row) && say(why, row, "error", x->error, -within, within);
+}
+
+/* The mean of few cases may be as far off as one case, that of many not. */
+static void judge_mean(struct netcheck_verdict *v, double mean_limit, double worst, double within)
+{
+    if (v->cases == 0) return;
+    v->mean /= v->cases;
+    mean_limit /= v->cases;
+    v->mean_limit = within >= 0 ? within : mean_limit + (worst / v->cases - mean_limit) / sqrt(v->cases);
+    if (v->mean <= v->mean_limit + 1e-9 || !v->pass) return;
+    v->pass = false;
+    snprintf(v->why, sizeof v->why, "mean |error| of %d cases %.4g %%, stated is %.4g %%", v->cases, 100 * v->mean,
+             100 * v->mean_limit);
+}
+
+struct netcheck_verdict netcheck_verdict(const struct netcheck *n, const char *group, enum network_level level,
+                                         double within)
+{
+    struct netcheck_verdict v = {.pass = true};
+    double mean_limit = 0, worst = 0;
+    for (int i = 0; i < n->nrow; i++) {
+        const struct netcheck_row *row = &n->row[i];
+        const struct netcheck_accuracy *s = netcheck_accuracy_of(row, level);
+        if (!netcheck_in_group(row, group) || !judged(row, level)) continue;
+        v.cases++;
+        v.low = fmin(v.low, within >= 0 ? -within : s->low);
+        v.high = fmax(v.high, within >= 0 ? within : s->high);
+        mean_limit += s->mean;
+        worst += fmax(-s->low, s->high);
+        v.mean += row->expect_deadlock ? 0 : fabs(row->answer[level].error);
+        bool fails = netcheck_row_fails(row, level, within, v.failed ? NULL : v.why);
+        v.failed += fails;
+        v.pass = v.pass && !fails;
+    }
+    judge_mean(&v, mean_limit, worst, within);
+    return v;
+}
+
+bool netcheck_opens_group(const struct netcheck *n, int i)
+{
+    if (!netcheck_in_group(&n->row[i], NULL)) return false;
+    for (int j = 0; j < i; j++)
+        if (netcheck_in_group(&n->row[j], n->row[i].group)) return false;
+    return true;
+}
+
+bool netcheck_pass(const struct netcheck *n, double within)
+{
+    for (int i = 0; i < n->nrow; i++) {
+        if (n->row[i].flaw[0]) return false;
+        for (int l = 0; netcheck_opens_group(n, i) && l < NETCHECK_LEVELS; l++)
+            if (!netcheck_verdict(n, n->row[i].group, (enum network_level)l, within).pass) return false;
+    }
+    return true;
+}

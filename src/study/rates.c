@@ -1,0 +1,181 @@
+/* rates.c - small serial benchmark codes executed with every operation counted (rates.h). */
+#include "study/rates.h"
+
+#include <math.h>
+
+#include "base/arena.h"
+#include "base/check.h"
+#include "machine/node_cost.h"
+
+/* ---- LINPACK ---- */
+
+/* y += s x */
+static void daxpy(int n, double s, const double *x, double *y, struct work *w)
+{
+    w->call++;
+    if (n <= 0 || s == 0) return;
+    for (int i = 0; i < n; i++) y[i] += s * x[i];
+    w->flop += 2 * (uint64_t)n;
+}
+
+static void dscal(int n, double s, double *x, struct work *w)
+{
+    w->call++;
+    for (int i = 0; i < n; i++) x[i] *= s;
+    w->flop += (uint64_t)n;
+}
+
+static int idamax(int n, const double *x, struct work *w)
+{
+    int largest = 0;
+    w->call++;
+    for (int i = 1; i < n; i++)
+        if (fabs(x[i]) > fabs(x[largest])) largest = i;
+    return largest;
+}
+
+static void exchange(double *x, int i, int k)
+{
+    double t = x[i];
+    x[i] = x[k];
+    x[k] = t;
+}
+
+/* a (n x n, by columns) becomes its factors. */
+static void dgefa(double *a, int n, int *pivot, struct work *w)
+{
+    for (int k = 0; k < n - 1; k++) {
+        double *column = a + (size_t)k * (size_t)n;
+        int l = pivot[k] = k + idamax(n - k, column + k, w);
+        exchange(column, l, k);
+        w->div++;
+        dscal(n - k - 1, -1 / column[k], column + k + 1, w);
+        for (int j = k + 1; j < n; j++) {
+            double *other = a + (size_t)j * (size_t)n;
+            exchange(other, l, k);
+            daxpy(n - k - 1, other[k], column + k + 1, other + k + 1, w);
+        }
+    }
+    pivot[n - 1] = n - 1;
+}
+
+/* b becomes the solution. */
+static void dgesl(const double *a, int n, const int *pivot, double *b, struct work *w)
+{
+    for (int k = 0; k < n - 1; k++) {
+        exchange(b, pivot[k], k);
+        daxpy(n - k - 1, b[k], a + (size_t)k * (size_t)n + k + 1, b + k + 1, w);
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        const double *column = a + (size_t)k * (size_t)n;
+        b[k] /= column[k];
+        w->div++;
+        daxpy(k, -b[k], column, b, w);
+    }
+}
+
+/* The benchmark's matrix, and the right-hand side whose solution is all ones. */
+static void matgen(double *a, double *b, int n)
+{
+    int seed = 1325;
+    for (int i = 0; i < n; i++) b[i] = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            seed = 3125 * seed % 65536;
+            a[(size_t)j * (size_t)n + (size_t)i] = (seed - 32768.0) / 16384.0;
+            b[i] += a[(size_t)j * (size_t)n + (size_t)i];
+        }
+}
+
+static double nominal_linpack(double n) { return 2 * n * n * n / 3 + 2 * n * n; }
+
+/* Calls: a pivot search, a scaling and an update of each later column a step; an update of b a step and back. */
+struct rate_count rate_linpack_summed(int n)
+{
+    struct rate_count c = {.nominal = nominal_linpack(n)};
+    for (uint64_t m = (uint64_t)n - 1; m > 0; m--) {
+        c.work.div++;
+        c.work.call += 2 + m + 1;
+        c.work.flop += m + 2 * m * m + 2 * m;
+    }
+    for (uint64_t m = 0; m < (uint64_t)n; m++) {
+        c.work.div++;
+        c.work.call++;
+        c.work.flop += 2 * m;
+    }
+    return c;
+}
+
+struct rate_count rate_linpack(int n)
+{
+    if (n > RATE_EXECUTED) return rate_linpack_summed(n);
+    struct rate_count c = {.nominal = nominal_linpack(n)};
+    struct arena *memory = arena_create();
+    double *a = TAKE(memory, size_product(n, n), double), *b = TAKE(memory, n, double);
+    int *pivot = TAKE(memory, n, int);
+    matgen(a, b, n);
+    dgefa(a, n, pivot, &c.work);
+    dgesl(a, n, pivot, b, &c.work);
+    for (int i = 0; i < n; i++) CHECK(fabs(b[i] - 1) < 1e-6);
+    arena_destroy(memory);
+    return c;
+}
+
+/* ---- vectors ---- */
+
+/* a of n elements from b, or from b and s. */
+static void stream_pass(enum rate_stream kind, int n, double *a, const double *b, const double *s)
+{
+    switch (kind) {
+    case RATE_COPY:
+        for (int i = 0; i < n; i++) a[i] = b[i];
+        break;
+    case RATE_SCALE:
+        for (int i = 0; i < n; i++) a[i] = 3 * b[i];
+        break;
+    case RATE_ADD:
+        for (int i = 0; i < n; i++) a[i] = b[i] + s[i];
+        break;
+    case RATE_TRIAD:
+        for (int i = 0; i < n; i++) a[i] = b[i] + 3 * s[i];
+        break;
+    }
+}
+
+struct rate_count rate_stream(enum rate_stream kind, int n)
+{
+    static const int flops[] = {0, 1, 1, 2}, vectors[] = {2, 2, 3, 3}, result[] = {2, 6, 7, 17};
+    struct arena *memory = arena_create();
+    double *a = TAKE(memory, n, double), *b = TAKE(memory, n, double), *s = TAKE(memory, n, double);
+    for (int i = 0; i < n; i++) {
+        b[i] = 2;
+        s[i] = 5;
+    }
+    stream_pass(kind, n, a, b, s);
+    for (int i = 0; i < n; i++) CHECK(a[i] == result[kind]);
+    arena_destroy(memory);
+    uint64_t bytes = (uint64_t)n * (uint64_t)vectors[kind] * sizeof(double);
+    return (struct rate_count){.nominal = (double)bytes,
+                               .work = {.call = 1, .flop = (uint64_t)(n * flops[kind]), .bytes = bytes / 2}};
+}
+
+struct rate_count rate_inner_product(int n)
+{
+    struct arena *memory = arena_create();
+    double *x = TAKE(memory, n, double), *y = TAKE(memory, n, double), sum = 0;
+    for (int i = 0; i < n; i++) {
+        x[i] = i;
+        y[i] = 0.5;
+    }
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    CHECK(sum == 0.25 * n * (n - 1.0));
+    arena_destroy(memory);
+    return (struct rate_count){.nominal = 2.0 * n, .work = {.call = 1, .flop = 2 * (uint64_t)n}};
+}
+
+double rate_of(const struct node_spec *node, const struct rate_count *count)
+{
+    struct node_cost cost = node_cost_make(node);
+    int64_t ps = node_cost_ps(&cost, &count->work);
+    return ps > 0 ? count->nominal / ((double)ps * 1e-12) : INFINITY;
+}

@@ -1,0 +1,269 @@
+/* stability_forward.c - accelerations of one scene by every algorithm, held against quad precision. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "dynamics/dynamics_table.h"
+#include "kernel/trust.h"
+#include "study/stability_scene.h"
+#include "study/trial.h"
+
+enum {
+    MOST_RANKS = 64,
+    MOST_DENSE = 1024,   /* degrees of freedom for the mass matrix */
+    MOST_MEASURED = 8192, /* bodies for the condition, which takes a second reference */
+    MOST_INNER = 20, FEW_INNER = 4, FEW_BODIES = 1000 /* passes of refinement; fewer where many bodies make them long */
+};
+
+struct judge {
+    struct stability_report *report;
+    const char *subject;
+    const struct model *m;
+    const struct state *s;
+    struct arena *a;
+    double *reference;   /* (nu) */
+    double force;        /* largest joint force with the right answer: the residual's scale */
+    double condition;
+};
+
+static bool quad_forward(const struct model *m, const struct state *s, struct arena *a, double *qdd)
+{
+    struct work w = {0};
+    return dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w);
+}
+
+/* How much the answer moves when coordinates, rates and forces move by 1e-10 of themselves. */
+static double condition_of(const struct judge *j)
+{
+    const double change = 1e-10;
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *qdd = TAKE(j->a, m->nu, double);
+    s.q = TAKE(j->a, m->nq, double), s.qd = TAKE(j->a, m->nu, double), s.tau = TAKE(j->a, m->nu, double);
+    for (int i = 0; i < m->nq; i++) s.q[i] = j->s->q[i] * (1 + (i % 3 - 1) * change);
+    for (int i = 0; i < m->nu; i++) s.qd[i] = j->s->qd[i] * (1 + (i % 2 ? change : -change));
+    for (int i = 0; i < m->nu; i++) s.tau[i] = j->s->tau[i] * (1 + (i % 2 ? -change : change));
+    double moved = quad_forward(m, &s, j->a, qdd) ? trial_error(qdd, j->reference, m->nu) / change : NAN;
+    arena_release(j->a, mark);
+    return moved;
+}
+
+/* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force, and their power. The
+ * answer's own rounding is part of it. */
+static double residual_of(const struct judge *j, double *qdd, double *power)
+{
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0, rates = 0;
+    struct work w = {0};
+    s.qdd = qdd;
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
+    s.qdd = j->reference;
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, right, &w);
+    *power = 0;
+    for (int i = 0; i < m->nu; i++) {
+        largest = fmax(largest, fabs(tau[i] - right[i]));
+        *power += s.qd[i] * (tau[i] - right[i]);
+        rates += fabs(s.qd[i]);
+    }
+    *power = rates > 0 && j->force > 0 ? fabs(*power) / (j->force * rates) : NAN;
+    arena_release(j->a, mark);
+    return j->force > 0 ? largest / j->force : largest;
+}
+
+/* The largest of inertial and other forces that meet in a joint, each alone. */
+static double force_of(const struct judge *j)
+{
+    const struct model *m = j->m;
+    struct arena_mark mark = arena_mark(j->a);
+    struct state s = *j->s;
+    double *tau = TAKE(j->a, m->nu, double), largest = 0;
+    struct work w = {0};
+    s.qdd = TAKE(j->a, m->nu, double);
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
+    for (int i = 0; i < m->nu; i++) largest = fmax(largest, fmax(fabs(tau[i]), fabs(s.tau[i])));
+    arena_release(j->a, mark);
+    return largest;
+}
+
+static void finish_row(const struct judge *j, struct stability_row *x, double *qdd, double own_residual, bool single)
+{
+    row_grade(x, trial_error(qdd, j->reference, j->m->nu), single);
+    x->residual = own_residual;
+    if (isfinite(x->error)) {
+        double forces = residual_of(j, qdd, &x->energy_drift);
+        if (j->m->nloop == 0) x->residual = forces;
+    }
+    x->condition = j->condition;
+}
+
+static void serial_row(const struct judge *j, enum forward_method method, enum precision precision)
+{
+    const struct dynamics_type *t = dynamics_type_of(precision);
+    struct stability_row *x = row_add(j->report, j->subject, forward_method_name(method), t->name);
+    double *qdd = TAKE(j->a, j->m->nu + 1, double);
+    struct work w = {0};
+    struct forward_report f = {0};
+    if (!t->forward(j->m, j->s, method, j->a, qdd, NULL, &f, &w)) {
+        text_copy(x->reason, sizeof x->reason, "a pivot was not positive");
+        return;
+    }
+    if (method == FORWARD_CFA_ROBUST) x->refinements = f.refined;
+    if (f.fell_back) text_copy(x->reason, sizeof x->reason, "articulated bodies had to solve it");
+    finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT);
+}
+
+static const struct variant {
+    const char *name;
+    bool contraction; /* for trees and loops; the others for open chains */
+    enum precision precision;
+    enum formulation formulation;
+    enum solver solver;
+    int inner, outer;
+    bool twice; /* forces and residuals in twice the precision, and as many passes as the hardest scene takes */
+    bool as_needed; /* what a run would switch on by itself */
+} variant_table[] = {
+    {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
+    {"paper pcr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
+    {"direct cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
+    {"direct pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, false},
+    {"direct pcr inner", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 0, false, false},
+    {"robust cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
+    {"robust pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
+    {"twice cr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, MOST_INNER, 0, true, false},
+    {"twice pcr", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, MOST_INNER, 0, true, false},
+    {"paper pcr as needed", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
+    {"direct pcr as needed", false, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 0, 0, false, true},
+    {"robust pcr", false, PRECISION_FLOAT, FORMULATION_DIRECT, SOLVER_PCR_SYMMETRIC, 1, 1, false, false},
+    {"paper contraction", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
+    {"direct contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 0, 0, false, false},
+    {"paper contraction as needed", true, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, true},
+    {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
+};
+
+static struct trial variant_trial(const struct judge *j, const struct variant *v, enum precision precision)
+{
+    int P = j->m->nbody < MOST_RANKS ? j->m->nbody : MOST_RANKS;
+    struct run_spec spec = {.machine = trial_machine(P), .nrank = P};
+    bool twice = v->twice && precision != PRECISION_QUAD;
+    spec.kernel = (struct kernel_spec){.name = "forward", .formulation = v->formulation, .solver = v->solver,
+                                       .part_solver = PART_CR, .precision = precision, .composites_incoming = true,
+                                       .residual = twice ? RESIDUAL_TWICE : RESIDUAL_WORKING,
+                                       .inner_refinements = v->inner, .outer_refinements = v->outer,
+                                       .algebra = ALGEBRA_SPATIAL};
+    if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
+    spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
+    struct trial t = trial_run(&spec, j->m, j->s, j->a);
+    while (trust_refine(&spec, j->m, &(struct run_result){.residual = t.residual}))
+        t = trial_run(&spec, j->m, j->s, j->a);
+    return t;
+}
+
+static void parallel_row(const struct judge *j, const struct variant *v)
+{
+    struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
+    struct trial t = variant_trial(j, v, v->precision);
+    if (!t.answered) {
+        text_copy(x->reason, sizeof x->reason, t.text);
+        return;
+    }
+    x->refinements = t.refined;
+    finish_row(j, x, t.qdd, t.residual, v->precision == PRECISION_FLOAT);
+    if (t.condition > 0) x->growth = t.condition;
+}
+
+/* --- why an answer is not good ------------------------------------------------------------------------------------ */
+
+/* The error in quad precision of the algorithm of a row; INFINITY: it breaks down there too. */
+static double quad_error(const struct judge *j, const struct stability_row *x)
+{
+    struct arena_mark mark = arena_mark(j->a);
+    double *qdd = TAKE(j->a, j->m->nu + 1, double), error = INFINITY;
+    struct work w = {0};
+    for (int k = 0; k < FORWARD_METHODS; k++)
+        if (strcmp(x->algorithm, forward_method_name((enum forward_method)k)) == 0 &&
+            dynamics_type_of(PRECISION_QUAD)->forward(j->m, j->s, (enum forward_method)k, j->a, qdd, NULL, NULL, &w))
+            error = trial_error(qdd, j->reference, j->m->nu);
+    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
+        const struct variant *v = &variant_table[k];
+        if (strcmp(x->algorithm, v->name) != 0 || strcmp(x->precision, dynamics_type_of(v->precision)->name) != 0)
+            continue;
+        struct trial t = variant_trial(j, v, PRECISION_QUAD);
+        if (t.answered) error = trial_error(t.qdd, j->reference, j->m->nu);
+    }
+    arena_release(j->a, mark);
+    return error;
+}
+
+static bool is_serial(const struct stability_row *x)
+{
+    for (int k = 0; k < FORWARD_METHODS; k++)
+        if (strcmp(x->algorithm, forward_method_name((enum forward_method)k)) == 0) return true;
+    return false;
+}
+
+/* What answers the scene well in double precision: the last of the same kind, else the last of all; NULL: nothing. */
+static const char *remedy_of(const struct stability_report *r, int first, const struct stability_row *failed)
+{
+    const char *any = NULL, *same = NULL;
+    for (int i = first; i < r->nrow; i++) {
+        const struct stability_row *x = &r->row[i];
+        if (x->status != STABILITY_OK || strcmp(x->precision, "double") != 0) continue;
+        any = x->algorithm;
+        if (is_serial(x) == is_serial(failed)) same = x->algorithm;
+    }
+    return same ? same : any;
+}
+
+/* Rounding, or the algorithm itself? Added to the row's reason. */
+static void cause_tell(const struct judge *j, int first, struct stability_row *x)
+{
+    char before[sizeof x->reason], cause[96];
+    const char *remedy = remedy_of(j->report, first, x);
+    double error = quad_error(j, x);
+    x->cause = error <= 1e-8 ? CAUSE_ROUNDING : CAUSE_ALGORITHM;
+    if (x->cause == CAUSE_ROUNDING) snprintf(cause, sizeof cause, "rounding: %.1e in quad precision", error);
+    else snprintf(cause, sizeof cause, "algorithm-fails: %.1e in quad precision%s%s", error, remedy ? "; use " : "",
+                  remedy ? remedy : "");
+    text_copy(before, sizeof before, x->reason);
+    snprintf(x->reason, sizeof x->reason, "%.60s%s%s", before, before[0] ? "; " : "", cause);
+}
+
+/* Quad precision takes fifty times as long: rows of larger scenes say nothing of their cause. */
+static void causes_tell(const struct judge *j, int first)
+{
+    enum { MOST_CAUSED = 1100 };
+    int end = j->report->nrow;
+    if (j->m->nbody > MOST_CAUSED) return;
+    for (int i = first; i < end; i++)
+        if (j->report->row[i].status != STABILITY_OK) cause_tell(j, first, &j->report->row[i]);
+}
+
+void stability_accelerations(struct stability_report *r, const char *subject, const struct model *m,
+                             const struct state *s, bool causes, struct arena *scratch)
+{
+    const int first = r->nrow;
+    struct judge j = {r, subject, m, s, scratch, TAKE(scratch, m->nu + 1, double), 0, NAN};
+    if (!quad_forward(m, s, scratch, j.reference)) {
+        text_copy(row_add(r, subject, "aba", "quad")->reason, 60, "the reference itself broke down");
+        return;
+    }
+    j.force = force_of(&j);
+    if (m->nbody <= MOST_MEASURED) j.condition = condition_of(&j);
+    for (int k = 0; k < FORWARD_METHODS; k++) {
+        struct arena_mark mark = arena_mark(scratch);
+        if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && m->nu > MOST_DENSE)) continue;
+        serial_row(&j, (enum forward_method)k, PRECISION_DOUBLE);
+        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT) serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
+        arena_release(scratch, mark);
+    }
+    bool branched = !m->is_chain || m->nloop > 0;
+    for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
+        struct arena_mark mark = arena_mark(scratch);
+        if (variant_table[k].contraction == branched) parallel_row(&j, &variant_table[k]);
+        arena_release(scratch, mark);
+    }    if (causes) causes_tell(&j, first);
+}

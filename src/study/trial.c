@@ -1,0 +1,85 @@
+/* trial.c - a kernel, its job and its world, once; see trial.h. */
+#include "study/trial.h"
+
+#include <math.h>
+
+#include "base/text.h"
+#include "kernel/dynamics_program.h"
+#include "kernel/programs.h"
+#include "kernel/trust.h"
+#include "run/launch.h"
+
+double trial_error(const double *x, const double *reference, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fabs(reference[i]));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+double trial_change_error(const double *x, const double *reference, const double *begin, int n)
+{
+    double difference = 0, scale = 0;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i]) || !isfinite(reference[i])) return INFINITY;
+        difference = fmax(difference, fabs(x[i] - reference[i]));
+        scale = fmax(scale, fmax(fabs(reference[i]), fabs(begin[i])));
+    }
+    return scale > 0 ? difference / scale : difference;
+}
+
+struct machine_spec trial_machine(int nrank)
+{
+    return (struct machine_spec){
+        .name = "crossbar",
+        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+                     .processors_per_node = 1},
+        .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
+        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
+                    .virtual_channels = 1},
+        .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
+    };
+}
+
+bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m, const struct state *s,
+                struct arena *a, struct err *e)
+{
+    *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    if (!r->type) return err_set(e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
+    return m ? dynamics_open(r, m, s, e) : r->type->open(r, e);
+}
+
+static void answer(struct trial *t, const struct program_run *r, const struct run_result *result)
+{
+    t->answered = result->status == RUN_OK;
+    text_copy(t->text, sizeof t->text, result->text);
+    t->makespan_ps = result->makespan_ps;
+    t->finish_ps = result->finish_ps;
+    t->host_s = result->host_s;
+    if (!r->type->has_scene) return;
+    t->tau = program_output(r, OUTPUT_TAU);
+    t->qdd = program_output(r, OUTPUT_QDD);
+    t->lambda = program_output(r, OUTPUT_LAMBDA);
+    t->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
+    t->residual = trust_residual(r);
+    t->condition = trust_condition(r);
+    t->refined = (int)*program_output(r, OUTPUT_REFINED);
+}
+
+struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a)
+{
+    struct trial t = {.residual = NAN};
+    struct run_result *result = TAKE(a, 1, struct run_result);
+    struct program_run *r = TAKE(a, 1, struct program_run);
+    struct err e;
+    err_clear(&e);
+    const bool good = trial_open(r, spec, m, s, a, &e) && r->type->prepare(r, a, &e) &&
+                      launch_run(r, &spec->machine, &spec->record, run_spec_seed(spec),
+                      launch_largest_message(r), a, a, result, &e);
+    if (good) answer(&t, r, result);
+    else text_copy(t.text, sizeof t.text, e.text);
+    return t;
+}

@@ -1,0 +1,253 @@
+/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several numbers of ranks. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "dynamics/planar.h"
+#include "kernel/dynamics_program.h"
+#include "run/launch.h"
+#include "study/trial.h"
+#include "study/verify_rows.h"
+
+/* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
+struct variant {
+    const char *name;
+    struct kernel_spec kernel;
+};
+
+static const struct variant variant_table[] = {
+    {"parallel inverse incoming", {.name = "inverse", .composites_incoming = true}},
+    {"parallel inverse outgoing", {.name = "inverse"}},
+    {"parallel inverse dense operators",
+     {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
+    {"parallel inverse balanced", {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
+#define FORWARD(text, ...) {"parallel forward " text, {.name = "forward", .composites_incoming = true, __VA_ARGS__}}
+#define BOTH(text, ...)                                                                                                \
+    FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                                             \
+        FORWARD("direct " text, .formulation = FORMULATION_DIRECT, __VA_ARGS__),                                       \
+        FORWARD("refined " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, __VA_ARGS__),              \
+        FORWARD("robust " text, .formulation = FORMULATION_DIRECT, .inner_refinements = 1, .outer_refinements = 1,     \
+                __VA_ARGS__)
+    BOTH("thomas", .solver = SOLVER_THOMAS),
+    BOTH("cr", .solver = SOLVER_CR),
+    BOTH("pcr", .solver = SOLVER_PCR),
+    BOTH("pcr-symmetric", .solver = SOLVER_PCR_SYMMETRIC),
+    BOTH("cr-pcr", .solver = SOLVER_CR_PCR, .hybrid_levels = 1),
+    BOTH("partition+pcr", .solver = SOLVER_PARTITION, .part_solver = PART_PCR),
+    BOTH("partition+cr", .solver = SOLVER_PARTITION, .part_solver = PART_CR),
+    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR_SYMMETRIC,
+            .operators = OPERATORS_DENSE),
+    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR,
+            .partition = PARTITION_BALANCED),
+    {"parallel inverse planar", {.name = "inverse", .composites_incoming = true, .algebra = ALGEBRA_PLANAR}},
+    FORWARD("paper planar", .formulation = FORMULATION_PAPER, .algebra = ALGEBRA_PLANAR),
+    FORWARD("direct planar", .formulation = FORMULATION_DIRECT, .algebra = ALGEBRA_PLANAR),
+};
+enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
+
+/* P = 1, 2, 3, n/2, n without repetition; of large cases 3 and n. */
+static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANKS])
+{
+    enum { LARGE = 200 };
+    const int all[MAX_RANKS] = {1, 2, 3, n / 2, n}, few[2] = {3, n};
+    bool large = n > LARGE && !o->all_ranks;
+    int count = 0;
+    for (int i = 0; i < (large ? 2 : MAX_RANKS); i++) {
+        int p = large ? few[i] : all[i];
+        if (p >= 1 && p <= n && (count == 0 || p > rank[count - 1])) rank[count++] = p;
+    }
+    return count;
+}
+
+/* What one run gave. */
+struct outcome {
+    enum { ANSWERED, REFUSED, BROKEN } kind;
+    double *x, *lambda;  /* tau or qdd, loop forces */
+    char text[96];       /* refused, broken: why */
+};
+
+/* Answers do not depend on the machine; this one is simple, and as large as it must be. */
+static struct machine_spec machine_make(const struct verify_options *o, int nrank)
+{
+    struct machine_spec crossbar = {
+        .name = "crossbar",
+        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+                     .processors_per_node = 1},
+        .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
+        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
+                    .virtual_channels = 1},
+        .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
+    };
+    return o->machine ? *o->machine : crossbar;
+}
+
+/* Run a kernel on nrank virtual processors; in space unless the plane is asked for. */
+static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank, struct outcome *out,
+                       struct err *e)
+{
+    struct program_run *r = TAKE(v->arena, 1, struct program_run);
+    struct run_result *result = TAKE(v->arena, 1, struct run_result);
+    struct run_spec spec = {.machine = machine_make(v->options, nrank), .kernel = *kernel, .nrank = nrank};
+    const bool lumped = strcmp(kernel->name, "inverse") != 0;
+    struct err refused;
+    err_clear(&refused);
+    if (spec.kernel.algebra == ALGEBRA_AUTO) spec.kernel.algebra = ALGEBRA_SPATIAL;
+    *out = (struct outcome){.kind = REFUSED};
+    if (!trial_open(r, &spec, lumped ? v->lumped : v->model, lumped ? v->lumped_state : v->state, v->arena, &refused) ||
+        !r->type->prepare(r, v->arena, &refused)) {
+        text_copy(out->text, sizeof out->text, refused.text);
+        return true;
+    }
+    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena, v->arena, result, e))
+        return false;
+    *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
+                            .x = program_output(r, lumped ? OUTPUT_QDD : OUTPUT_TAU),
+                            .lambda = program_output(r, OUTPUT_LAMBDA)};
+    text_copy(out->text, sizeof out->text, result->text);
+    return true;
+}
+
+/* The worst answers of a variant over all numbers of ranks. */
+struct spread {
+    struct verify_row answer, lambda; /* judged; worst_rank 0: none */
+    char ranks[32], text[128];        /* numbers of ranks tried; why one was refused or broke down */
+};
+
+static void worst_take(struct verify_row *worst, struct verify_row *row, int nrank)
+{
+    if (worst->worst_rank > 0 && !(row->error > worst->error)) return;
+    row->worst_rank = nrank;
+    *worst = *row;
+}
+
+static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x, int nrank, bool inverse)
+{
+    const struct verify_options *o = v->options;
+    bool good = x->kind == ANSWERED;
+    struct verify_row row = {.worst_rank = 0};
+    size_t used = strlen(s->ranks);
+    snprintf(s->ranks + used, sizeof s->ranks - used, "%s%d", used ? "," : "", nrank);
+    if (!good) text_copy(s->text, sizeof s->text, x->text);
+    verify_row_judge(v, &row, inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD, good ? x->x : NULL,
+                     inverse ? verify_tolerance_inverse(o) : verify_tolerance_forward(o));
+    if (!good) snprintf(row.note, sizeof row.note, "breaks down: %.100s", x->text);
+    worst_take(&s->answer, &row, nrank);
+    if (inverse || !v->vector->lambda) return;
+    struct verify_row lambda = {.worst_rank = 0};
+    verify_row_judge(v, &lambda, VERIFY_LAMBDA, good ? x->lambda : NULL, verify_tolerance_forward(o));
+    worst_take(&s->lambda, &lambda, nrank);
+}
+
+static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s, struct err *e)
+{
+    bool inverse = strcmp(kernel->name, "inverse") == 0;
+    int rank[MAX_RANKS], n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
+    *s = (struct spread){.ranks = ""};
+    for (int i = 0; i < n; i++) {
+        struct outcome x;
+        struct arena_mark mark = arena_mark(v->arena);
+        if (!kernel_run(v, kernel, rank[i], &x, e)) return false;
+        if (x.kind == REFUSED)
+            text_copy(s->text, sizeof s->text, x.text);
+        else
+            spread_add(s, v, &x, rank[i], inverse);
+        arena_release(v->arena, mark);
+    }
+    return true;
+}
+
+/* Is the variant in quad precision, on nrank processors, right about the scene without extremes? */
+static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int nrank, bool *sane, struct err *e)
+{
+    if (!verify_even(v, e)) return false;
+    struct arena_mark mark = arena_mark(v->arena);
+    struct outcome x;
+    if (!kernel_run(v->even, quad, nrank, &x, e)) return false;
+    *sane = x.kind == ANSWERED && verify_even_right(v, x.x);
+    arena_release(v->arena, mark);
+    return true;
+}
+
+/* A row above its tolerance by the same variant in quad precision, on as many ranks as were worst. */
+static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enum verify_quantity k,
+                    struct verify_row *row, struct err *e)
+{
+    struct kernel_spec again = *kernel;
+    struct arena_mark mark = arena_mark(v->arena);
+    struct outcome x;
+    bool sane = true;
+    if (verify_row_refuted(v, row, k)) return true;
+    again.precision = PRECISION_QUAD;
+    if (!kernel_run(v, &again, row->worst_rank, &x, e)) return false;
+    const double *y = k == VERIFY_LAMBDA ? x.lambda : x.x;
+    double error = x.kind == ANSWERED ? verify_answers_error(&v->answers, k, y) : INFINITY;
+    arena_release(v->arena, mark);
+    if (k == VERIFY_TAU_ID)
+        sane = false; /* inverse dynamics has no system to solve that could be singular */
+    else if (error > row->tolerance && !is_sane(v, &again, row->worst_rank, &sane, e)) return false;
+    verify_row_explain(row, error, sane);
+    return true;
+}
+
+/* A row of the report from what a spread found. */
+static bool row_keep(struct verify_case *v, const struct variant *variant, const struct kernel_spec *kernel,
+                     enum verify_quantity k, const struct spread *s, struct err *e)
+{
+    struct verify_row *row = verify_row_add(v, variant->name, verify_quantity_name(k));
+    struct verify_row found = k == VERIFY_LAMBDA ? s->lambda : s->answer;
+    memcpy(found.algorithm, row->algorithm, sizeof found.algorithm);
+    memcpy(found.quantity, row->quantity, sizeof found.quantity);
+    memcpy(found.ranks, s->ranks, sizeof found.ranks);
+    found.parallel = true;
+    *row = found;
+    return row->verdict != VERIFY_FAIL || explain(v, kernel, k, row, e);
+}
+
+static bool variant_row(struct verify_case *v, const struct variant *variant, struct err *e)
+{
+    struct kernel_spec kernel = variant->kernel;
+    bool inverse = strcmp(kernel.name, "inverse") == 0;
+    enum verify_quantity quantity = inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD;
+    struct spread s;
+    kernel.precision = v->options->precision;
+    if (!variant_run(v, &kernel, &s, e)) return false;
+    if (s.answer.worst_rank == 0) {
+        verify_row_skip(v, variant->name, verify_quantity_name(quantity), s.text);
+        v->report->row[v->report->nrow - 1].parallel = true;
+        return true;
+    }
+    if (!row_keep(v, variant, &kernel, quantity, &s, e)) return false;
+    if (s.lambda.worst_rank == 0) return true;
+    if (verify_loops_skip(v, variant->name)) {
+        v->report->row[v->report->nrow - 1].parallel = true;
+        return true;
+    }
+    return row_keep(v, variant, &kernel, VERIFY_LAMBDA, &s, e);
+}
+
+/* Whether three components describe the case, to the rounding of its numbers. */
+static bool in_plane(const struct verify_case *v)
+{
+    struct err why;
+    err_clear(&why);
+    return planar_scene(v->model, v->state, PRECISION_DOUBLE, &why);
+}
+
+bool verify_parallel(struct verify_case *v, struct err *e)
+{
+    const bool planar = in_plane(v);
+    char unfit[96];
+    bool has_unfit = verify_unfit_body(v->lumped, unfit, sizeof unfit);
+    for (int i = 0; i < VARIANTS; i++) {
+        const struct variant *variant = &variant_table[i];
+        bool inverse = strcmp(variant->kernel.name, "inverse") == 0;
+        if (!(inverse ? v->vector->tau_id : v->vector->qdd_fd)) continue;
+        if (variant->kernel.algebra == ALGEBRA_PLANAR && !planar) continue;
+        if (!inverse && has_unfit)
+            verify_row_skip(v, variant->name, "qdd_fd", unfit);
+        else if (!variant_row(v, variant, e))
+            return false;
+    }
+    return true;
+}
