@@ -26,9 +26,15 @@ unset grid
 name(v, share) = share == 1 ? sprintf("%.0f %%%%", 100*v) : sprintf("%.3g", v)
 do for [format in formats] {
     wide = 860.0; high = 640.0
-    eval page(format, wide, high); tiny = small(format)
+    page_wide = int(wide); page_high = int(high)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    set output figure.".".format; unset title; unset xlabel; unset ylabel
+    tiny = small(format)
     set multiplot
-    eval title_at(format, 1.0 - 20.0/high); eval foot(format)
+    set label 97 headline at screen 0.5,1.0 - 20.0/high center noenhanced font large(format)
+    set label 98 subline at screen 0.5,1.0 - 20.0/high - 0.032 center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set label 96 claim at screen 0.5,(1.0 - 64.0/high) center noenhanced font tiny textcolor rgb grey
     set lmargin at screen 0.11; set rmargin at screen 0.82; set tmargin at screen 1.0 - 90.0/high; set bmargin at screen 96.0/high
     set xlabel x_label noenhanced offset 0,0.3; set ylabel y_label noenhanced offset 0.8,0

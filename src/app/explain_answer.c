@@ -300,7 +300,16 @@ static bool keep_cell(struct explain_bench *b, const struct explain_search *s, c
     return store_insert(b->store, "explain_map", 19, name, value, b->e);
 }
 
-enum { MAP = 11 };
+enum { MAP = 11, DEAR_MAP = 6 };
+
+/* Points along each axis of a map: fewer where they take long to simulate. */
+static int map_size(const struct explain_search *s, const int *axis)
+{
+    const struct explain_space *space = &s->goal.subject->space;
+    bool dear = space->axis[axis[0]].dear || space->axis[axis[1]].dear;
+    for (int i = 0; i < space->n; i++) dear = dear || (space->axis[i].dear && s->best.u[i] != 0);
+    return dear ? DEAR_MAP : MAP;
+}
 
 /* The point in row j and column i of the map. */
 static void map_point(const struct explain_search *s, const int *axis, int i, int j, double *u)
@@ -310,7 +319,7 @@ static void map_point(const struct explain_search *s, const int *axis, int i, in
     memcpy(u, s->best.u, EXPLAIN_MOST_AXES * sizeof *u);
     for (int k = 0; k < 2; k++) {
         const struct explain_axis *a = &space->axis[axis[k]];
-        u[axis[k]] = a->least + (a->most - a->least) * at[k] / (MAP - 1);
+        u[axis[k]] = a->least + (a->most - a->least) * at[k] / (map_size(s, axis) - 1);
     }
     explain_space_snap(space, u);
 }
@@ -318,11 +327,11 @@ static void map_point(const struct explain_search *s, const int *axis, int i, in
 /* The points of a map that are not known yet. */
 static int missing_points(const struct explain_search *s, const int *axis, struct explain_request *request)
 {
-    int n = 0;
-    for (int k = 0; k < MAP * MAP; k++) {
+    int n = 0, size = map_size(s, axis);
+    for (int k = 0; k < size * size; k++) {
         struct explain_request *q = &request[n];
         *q = (struct explain_request){.subject = s->goal.subject, .operators = s->goal.operators};
-        map_point(s, axis, k % MAP, k / MAP, q->u);
+        map_point(s, axis, k % size, k / size, q->u);
         bool known = explain_known(s->goal.subject, s->goal.operators, q->u) != NULL;
         for (int i = 0; i < n && !known; i++) known = memcmp(request[i].u, q->u, sizeof q->u) == 0;
         n += !known;
@@ -335,9 +344,10 @@ static bool keep_map(struct explain_bench *b, const struct explain_search *s, co
     double u[EXPLAIN_MOST_AXES];
     bool ok = store_begin(b->store, b->e);
     if (!ok) return false;
-    for (int k = 0; ok && k < MAP * MAP; k++) {
-        map_point(s, f->axis, k % MAP, k / MAP, u);
-        ok = keep_cell(b, s, f, k % MAP, k / MAP, u);
+    int size = map_size(s, f->axis);
+    for (int k = 0; ok && k < size * size; k++) {
+        map_point(s, f->axis, k % size, k / size, u);
+        ok = keep_cell(b, s, f, k % size, k / size, u);
     }
     if (ok) return store_commit(b->store, b->e);
     store_rollback(b->store);
