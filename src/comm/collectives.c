@@ -29,32 +29,12 @@ const struct collective_algorithm *collective_algorithms(enum collective_kind ki
 
 const struct collective_algorithm *collective_algorithm_find(enum collective_kind kind, const char *wanted)
 {
-    for (int i = 0; i < table[kind]->n; i++)
-        if (strcmp(table[kind]->row[i].name, wanted) == 0) return &table[kind]->row[i];
-    return NULL;
+    return collective_in_table(table[kind], wanted);
 }
 
 bool collective_applies(const struct collective_algorithm *a, const struct collective_shape *s)
 {
     return !a->applies || a->applies(s);
-}
-
-struct collective_shape collective_shape(const struct collective_call *k)
-{
-    struct collective_shape s = {
-        .kind = k->kind, .size = comm_size(k->comm), .root = k->root, .count = k->count, .element = k->element};
-    s.total = s.count * s.size;
-    s.exclusive = k->exclusive;
-    s.commutative = !k->op || k->op->commutative;
-    s.idempotent = k->op && k->op->idempotent;
-    s.irregular = k->counts || k->send_counts;
-    if (!s.irregular || (k->kind != COLLECTIVE_ALLGATHER && k->kind != COLLECTIVE_REDUCE_SCATTER)) return s;
-    s.total = s.count = 0;
-    for (int r = 0; r < s.size; r++) {
-        s.total += k->counts[r];
-        if (k->counts[r] > s.count) s.count = k->counts[r];
-    }
-    return s;
 }
 
 /* What ranks do not know of each other's blocks must not decide. */

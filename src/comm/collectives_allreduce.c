@@ -117,9 +117,9 @@ static struct collective_call part(const struct collective_call *k, enum collect
 static void reduce_broadcast(const struct collective_call *k)
 {
     struct collective_call down = part(k, COLLECTIVE_BROADCAST), up = part(k, COLLECTIVE_REDUCE);
-    collective_algorithm_find(COLLECTIVE_REDUCE, "binomial")->run(&up);
+    collective_in_table(&reduce_algorithms, "binomial")->run(&up);
     down.tag += 2;
-    collective_algorithm_find(COLLECTIVE_BROADCAST, "binomial")->run(&down);
+    collective_in_table(&broadcast_algorithms, "binomial")->run(&down);
 }
 
 static void reduce_broadcast_cost(const struct collective_shape *s, struct collective_cost *out)

@@ -108,4 +108,7 @@ bool needs_commutative(const struct collective_shape *s);
 bool needs_regular(const struct collective_shape *s);
 bool needs_regular_power_of_two(const struct collective_shape *s);
 
+/* collective_in_table: the algorithm of that name, NULL when the table has none. */
+const struct collective_algorithm *collective_in_table(const struct collective_table *t, const char *name);
+
 #endif

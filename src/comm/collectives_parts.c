@@ -128,3 +128,28 @@ bool needs_power_of_two(const struct collective_shape *s) { return is_power_of_t
 bool needs_commutative(const struct collective_shape *s) { return s->commutative; }
 bool needs_regular(const struct collective_shape *s) { return !s->irregular; }
 bool needs_regular_power_of_two(const struct collective_shape *s) { return !s->irregular && is_power_of_two(s->size); }
+
+struct collective_shape collective_shape(const struct collective_call *k)
+{
+    struct collective_shape s = {
+        .kind = k->kind, .size = comm_size(k->comm), .root = k->root, .count = k->count, .element = k->element};
+    s.total = s.count * s.size;
+    s.exclusive = k->exclusive;
+    s.commutative = !k->op || k->op->commutative;
+    s.idempotent = k->op && k->op->idempotent;
+    s.irregular = k->counts || k->send_counts;
+    if (!s.irregular || (k->kind != COLLECTIVE_ALLGATHER && k->kind != COLLECTIVE_REDUCE_SCATTER)) return s;
+    s.total = s.count = 0;
+    for (int r = 0; r < s.size; r++) {
+        s.total += k->counts[r];
+        if (k->counts[r] > s.count) s.count = k->counts[r];
+    }
+    return s;
+}
+
+const struct collective_algorithm *collective_in_table(const struct collective_table *t, const char *name)
+{
+    for (int i = 0; i < t->n; i++)
+        if (strcmp(t->row[i].name, name) == 0) return &t->row[i];
+    return NULL;
+}

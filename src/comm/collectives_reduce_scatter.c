@@ -112,12 +112,12 @@ static void reduce_then_scatter(const struct collective_call *k)
     up.send = up.recv = whole;
     up.counts = up.places = NULL;
     up.count = s.total;
-    collective_algorithm_find(COLLECTIVE_REDUCE, "binomial")->run(&up);
+    collective_in_table(&reduce_algorithms, "binomial")->run(&up);
     down.kind = COLLECTIVE_SCATTER, down.root = 0, down.tag += 2;
     down.send = whole;
     down.places = NULL;
     down.count = block_count(k, comm_rank(k->comm));
-    collective_algorithm_find(COLLECTIVE_SCATTER, s.irregular ? "linear" : "binomial")->run(&down);
+    collective_in_table(&scatter_algorithms, s.irregular ? "linear" : "binomial")->run(&down);
 }
 
 static void reduce_then_scatter_cost(const struct collective_shape *s, struct collective_cost *out)

@@ -30,6 +30,9 @@ static inline sim_ps auto_slow(const struct flight *w, int h)
     return slow;
 }
 
+/* pass_claim: s into the claims of its resource, which are in the order of time. */
+void pass_claim(struct fabric *f, struct pass *s);
+
 /* auto_lane: the virtual channel behind pass h that packet `index` takes: packets that overlap there use as many
  * channels as overlap, in turn. */
 int auto_lane(const struct fabric *f, const struct flight *w, int index, int h);

@@ -369,8 +369,10 @@ void packet_look(void *subject, uint64_t argument, sim_ps now)
 
 static bool packet_create(struct net *n, struct err *e)
 {
-    n->state = packet_fabric(n, packet_look, e);
-    return n->state != NULL;
+    struct fabric *f = packet_fabric(n, packet_look, e);
+    if (f) f->occupied = packet_occupied;
+    n->state = f;
+    return f != NULL;
 }
 
 void packet_occupied(void *subject, uint64_t argument, sim_ps now)

@@ -14,7 +14,7 @@
 /* fabric_create: routes, messages and sources for a level with buffers, memory from the arena of n.
  *
  *   size  of the level's state, which begins with the fabric; zeroed
- *   look  what events of resources do; `occupied` may be set afterwards, see packet_occupied
+ *   look  what events of resources do; `occupied` is to be set afterwards, see packet_occupied
  *
  *   Returns NULL with ERR_CONFIG when flits, channels or buffers of the machine make no sense. */
 struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struct err *e);

@@ -67,7 +67,6 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     struct fabric *f = arena_take(n->arena, size);
     f->net = n;
     f->look = look;
-    f->occupied = packet_occupied;
     f->nprocessor = n->topology->spec->processors_per_node;
     f->nchannel = w->virtual_channels;
     f->nclass = f->nchannel < n->topology->nclass ? 1 : n->topology->nclass;

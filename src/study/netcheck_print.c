@@ -10,11 +10,6 @@ static const char *const level_names[] = {"loggp", "link", "packet", "flit", "au
 
 const char *netcheck_level_name(enum network_level level) { return level_names[level]; }
 
-bool netcheck_in_group(const struct netcheck_row *row, const char *group)
-{
-    return row->counted && (!group || strcmp(row->group, group) == 0);
-}
-
 struct netcheck_total netcheck_total(const struct netcheck *n, const char *group, enum network_level level)
 {
     struct netcheck_total t = {0};

@@ -103,3 +103,8 @@ bool netcheck_pass(const struct netcheck *n, double within)
     }
     return true;
 }
+
+bool netcheck_in_group(const struct netcheck_row *row, const char *group)
+{
+    return row->counted && (!group || strcmp(row->group, group) == 0);
+}

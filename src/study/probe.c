@@ -13,24 +13,6 @@
 enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000,
        EXCHANGE_BYTES = 1 << 17, SERVED_BYTES = 1 << 20 };
 
-static const char *const names[PROBE_QUANTITIES] = {
-    "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
-    "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
-    "exchange", "halves",
-    "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
-    "broadcast", "reduce", "allreduce", "gather", "scatter", "allgather", "alltoall", "ring", "random-ring", "b-eff",
-    "put", "get",
-};
-
-const char *probe_name(enum probe_quantity q) { return names[q]; }
-
-enum probe_quantity probe_find(const char *name)
-{
-    int q = 0;
-    while (q < PROBE_QUANTITIES && strcmp(name, names[q]) != 0) q++;
-    return (enum probe_quantity)q;
-}
-
 /* What one micro-benchmark tells. */
 struct measured {
     double time, send, recv; /* of the kernel; of rank 0 per message [s] */

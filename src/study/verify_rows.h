@@ -49,6 +49,10 @@ void verify_row_explain(struct verify_row *row, double quad, bool sane);
 double verify_tolerance_inverse(const struct verify_options *o);
 double verify_tolerance_forward(const struct verify_options *o);
 
+/* verify_lump: v->lumped and its state: bodies on fixed joints made one with their parents when constraint forces need
+ * it. False with *e set when that makes no sense. */
+bool verify_lump(struct verify_case *v, struct err *e);
+
 /* verify_even: the scene without extremes, v->even, with exact accelerations as its reference. False with *e set. */
 bool verify_even(struct verify_case *v, struct err *e);
 

@@ -2,6 +2,7 @@
 #ifndef VP_COST_H
 #define VP_COST_H
 
+#include "base/picoseconds.h"
 #include "sim/sim.h"
 #include "spec/software_spec.h"
 
@@ -19,6 +20,12 @@ struct software_cost {
     sim_ps kernel_time, barrier, shared_latency;
     double kernel_byte, shared_byte; /* [ps/B] */
 };
+
+/* byte_cost: `fixed` and `per_byte` of `bytes`, in whole picoseconds. */
+static inline sim_ps byte_cost(sim_ps fixed, double per_byte, int64_t bytes)
+{
+    return fixed + ps_rounded(per_byte * (double)bytes);
+}
 
 /* message_cost: that of messages of `bytes`. */
 static inline const struct message_cost *message_cost(const struct software_cost *s, int64_t bytes)

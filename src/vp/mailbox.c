@@ -61,7 +61,7 @@ static void bind(struct vp *v, struct comm_request *r, struct message *m)
         return;
     }
     r->active = REQUEST_MATCHED;
-    if (v->waiting == r) world_wake(v->world, v);
+    if (v->waiting == r) vp_wake(v->world, v);
 }
 
 void mailbox_post(struct vp *v, struct comm_request *r)

@@ -41,7 +41,7 @@ static void release_sender(struct message *m, int state)
     s->active = state;
     s->detail = (void *)(intptr_t)m->net.arrival;
     m->send = NULL;
-    if (m->from->waiting == s) world_wake(m->from->world, m->from);
+    if (m->from->waiting == s) vp_wake(m->from->world, m->from);
 }
 
 static void cleared(struct message *m)
@@ -65,5 +65,5 @@ void rendezvous_deliver(struct message *m)
     release_sender(m, REQUEST_DELIVERED);
     r->active = REQUEST_MATCHED;
     r->detail = m;
-    if (m->to->waiting == r) world_wake(m->to->world, m->to);
+    if (m->to->waiting == r) vp_wake(m->to->world, m->to);
 }

@@ -9,7 +9,7 @@ static void begin_service(void *subject, uint64_t service, sim_ps now)
     struct world *w = v->world;
     v->server_start = now > w->server_free ? now : w->server_free;
     w->server_free = ps_later(v->server_start, (sim_ps)service);
-    world_wake(w, v);
+    vp_wake(w, v);
 }
 
 sim_ps server_pass(struct vp *v, int64_t bytes)

@@ -1,6 +1,7 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
- * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; mailbox.c matches messages;
+ * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; clock.c its time; mailbox.c matches
+ * messages; launch.c sends them off;
  * rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links; stuck.c
  * explains deadlocks. */
 #ifndef VP_VP_H
@@ -10,6 +11,8 @@
 #include <stdint.h>
 
 #include "base/arena.h"
+#include "base/check.h"
+#include "base/picoseconds.h"
 #include "base/random.h"
 #include "comm/comm.h"
 #include "machine/node_cost.h"
@@ -81,38 +84,48 @@ struct world {
     sim_ps server_free; /* kernel server */
     int64_t span_capacity;
 
+    void (*arrived)(struct message *m); /* what the end of a message's trip means */
     const struct world_load *load;
 };
 
-/* --- world.c --- */
+/* --- clock.c --- */
 
-/* world_wake: put a rank that waits at the end of the ready ring. */
-void world_wake(struct world *w, struct vp *v);
-
-/* world_time_out: what `v` does next ends after PS_LAST: the run has failed, and this never returns to the rank. */
-_Noreturn void world_time_out(struct vp *v);
-
-/* world_span: record [begin, end) of `v` when spans are recorded; neighbours of one kind are joined. */
-void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message);
-
-/* --- vp_comm.c --- */
-
-/* vp_comm_type: comm.h as a virtual processor implements it. */
-extern const struct comm_type vp_comm_type;
+/* vp_wake: put a rank that waits at the end of the ready ring. */
+void vp_wake(struct world *w, struct vp *v);
 
 /* vp_block: leave the fiber until somebody wakes `v`. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);
+
+/* vp_time_out: what `v` does next ends after PS_LAST: the run has failed, and this never returns to the rank. */
+_Noreturn void vp_time_out(struct vp *v);
+
+/* vp_stage_time: the row of the stage in progress. */
+static inline struct stage_time *vp_stage_time(struct vp *v) { return &v->stages[v->stage]; }
+
+/* vp_advance: the clock becomes `time`. One that passes the end of time stops there: its rank goes no further. */
+static inline void vp_advance(struct vp *v, sim_ps time)
+{
+    if (__builtin_expect(time > PS_LAST, 0)) vp_time_out(v);
+    v->clock = time;
+}
+
+/* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
+ * stage's wait and contention. No effect when the clock is later. */
+void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended);
+
+/* vp_span: record [begin, end) of `v`; neighbours of one kind are joined. For runs that record spans. */
+void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message);
+
+/* --- launch.c --- */
 
 /* vp_launch: hand m over to the network, or to the channel that both processors of one node share; m->net holds nodes,
  * bytes and ready time. `from` and `to` are the ranks at the ends of this trip. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to);
 
-/* vp_arrived: what a trip's end means: world.c's delivery. */
-void vp_arrived(struct message *m);
+/* --- vp_comm.c --- */
 
-/* vp_wait_until: advance the clock to `time`, of which up to `uncontended` would have passed anyway; charged to the
- * stage's wait and contention. No effect when the clock is later. */
-void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended);
+/* vp_comm_type: comm.h as a virtual processor implements it. */
+extern const struct comm_type vp_comm_type;
 
 /* --- server.c --- */
 

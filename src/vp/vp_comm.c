@@ -12,38 +12,6 @@
 
 enum { BARRIER_TAG = 1 << 30 };
 
-static inline struct stage_time *stage_of(struct vp *v) { return &v->stages[v->stage]; }
-
-static inline sim_ps byte_cost(sim_ps fixed, double per_byte, int64_t bytes)
-{
-    return fixed + ps_rounded(per_byte * (double)bytes);
-}
-
-void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
-{
-    v->waiting_for = what;
-    v->waiting = r;
-    fiber_leave(v->fiber);
-    v->waiting_for = WAITING_NOTHING;
-    v->waiting = NULL;
-}
-
-/* A clock that passes the end of time stops there: its rank goes no further, and the run has failed. */
-static inline void advance(struct vp *v, sim_ps time)
-{
-    if (__builtin_expect(time > PS_LAST, 0)) world_time_out(v);
-    v->clock = time;
-}
-
-void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
-{
-    if (time <= v->clock) return;
-    sim_ps free_of_others = uncontended < v->clock ? v->clock : uncontended > time ? time : uncontended;
-    stage_of(v)->wait_ps += free_of_others - v->clock;
-    stage_of(v)->contention_ps += time - free_of_others;
-    advance(v, time);
-}
-
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
@@ -53,9 +21,9 @@ static void charge_send(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
-    advance(v, v->clock + cost);
-    stage_of(v)->send_ps += cost;
-    if (w->record->spans) world_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
+    vp_advance(v, v->clock + cost);
+    vp_stage_time(v)->send_ps += cost;
+    if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
 }
 
 static void charge_receive(struct vp *v, const struct message *m)
@@ -67,24 +35,9 @@ static void charge_receive(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
-    advance(v, v->clock + cost);
-    stage_of(v)->recv_ps += cost;
-    if (w->record->spans) world_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
-}
-
-void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
-{
-    m->net.src = from->node;
-    m->net.dst = to->node;
-    m->net.processor = from->processor;
-    if (!w->shared_channel || from->node != to->node) {
-        net_send(w->net, &m->net);
-        return;
-    }
-    m->net.injected = m->net.ready;
-    m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
-    m->net.uncontended = m->net.arrival;
-    vp_arrived(m);
+    vp_advance(v, v->clock + cost);
+    vp_stage_time(v)->recv_ps += cost;
+    if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
 }
 
 static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r)
@@ -100,8 +53,8 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     m->tag = tag;
     m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
     m->sent = v->clock;
-    stage_of(v)->messages++;
-    stage_of(v)->bytes += bytes;
+    vp_stage_time(v)->messages++;
+    vp_stage_time(v)->bytes += bytes;
     charge_send(v, m);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
@@ -128,7 +81,7 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     struct message *m = r->detail;
     sim_ps begin = v->clock;
     vp_wait_until(v, m->net.arrival, m->net.uncontended);
-    if (v->world->record->spans) world_span(v, SPAN_WAIT, begin, v->clock, r->peer, m->bytes, -1);
+    if (v->world->record->spans) vp_span(v, SPAN_WAIT, begin, v->clock, r->peer, m->bytes, -1);
     charge_receive(v, m);
     if (m->bytes) memcpy(r->buffer, m->data, (size_t)m->bytes);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.id);
@@ -142,9 +95,9 @@ static void finish_receive(struct vp *v, struct comm_request *r)
 static void finish_synchronous(struct vp *v, struct comm_request *r)
 {
     const sim_ps time = (sim_ps)(intptr_t)r->detail, held = time > v->clock ? time - v->clock : 0;
-    if (held && v->world->record->spans) world_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
-    stage_of(v)->send_ps += held;
-    advance(v, v->clock + held);
+    if (held && v->world->record->spans) vp_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
+    vp_stage_time(v)->send_ps += held;
+    vp_advance(v, v->clock + held);
     r->active = REQUEST_DONE;
     r->detail = NULL;
 }
@@ -185,7 +138,7 @@ static void hardware_barrier(struct vp *v)
         w->barrier_count = 0;
         w->barrier_latest = 0;
         for (int i = 0; i < w->nrank; i++)
-            if (&w->vp[i] != v) world_wake(w, &w->vp[i]);
+            if (&w->vp[i] != v) vp_wake(w, &w->vp[i]);
     }
     vp_wait_until(v, w->barrier_release, w->barrier_release);
 }
@@ -198,7 +151,7 @@ static void vp_barrier(struct comm *c)
         if (v->world->machine->software.barrier == BARRIER_HARDWARE) hardware_barrier(v);
         else collective_barrier(c, BARRIER_TAG);
     }
-    if (v->world->record->spans) world_span(v, SPAN_BARRIER, begin, v->clock, -1, 0, -1);
+    if (v->world->record->spans) vp_span(v, SPAN_BARRIER, begin, v->clock, -1, 0, -1);
 }
 
 static void vp_work(struct comm *c, const struct work *work)
@@ -210,10 +163,10 @@ static void vp_work(struct comm *c, const struct work *work)
         double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->noise);
         cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
-    advance(v, v->clock + cost);
-    stage_of(v)->compute_ps += cost;
-    work_add(&stage_of(v)->work, work);
-    if (w->record->spans) world_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
+    vp_advance(v, v->clock + cost);
+    vp_stage_time(v)->compute_ps += cost;
+    work_add(&vp_stage_time(v)->work, work);
+    if (w->record->spans) vp_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
 }
 
 static void vp_stage(struct comm *c, int stage)

@@ -13,42 +13,7 @@
 
 enum { STACK_BYTES = 64 * 1024 };
 
-void world_wake(struct world *w, struct vp *v)
-{
-    int at = w->ready_head + w->ready_count++;
-    CHECK(w->ready_count <= w->nrank);
-    w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
-}
-
-void world_time_out(struct vp *v)
-{
-    if (!v->world->late) v->world->late = v;
-    for (;;) vp_block(v, WAITING_NOTHING, NULL);
-}
-
-void world_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message)
-{
-    struct world *w = v->world;
-    struct run_result *r = w->result;
-    if (begin == end && message < 0) return;
-    if (r->nspan == w->span_capacity) {
-        int64_t capacity = w->span_capacity ? 2 * w->span_capacity : 4096;
-        struct span *grown = TAKE(w->arena, capacity, struct span);
-        if (r->nspan) memcpy(grown, r->span, (size_t)r->nspan * sizeof *grown);
-        r->span = grown;
-        w->span_capacity = capacity;
-    }
-    r->span[r->nspan++] = (struct span){.rank = v->comm.rank,
-                                        .stage = v->stage,
-                                        .kind = kind,
-                                        .begin_ps = begin,
-                                        .end_ps = end,
-                                        .peer = peer,
-                                        .bytes = bytes,
-                                        .message = message};
-}
-
-void vp_arrived(struct message *m)
+static void arrived(struct message *m)
 {
     switch ((enum message_kind)m->kind) {
     case MESSAGE_EAGER:
@@ -65,7 +30,7 @@ void vp_arrived(struct message *m)
 static void deliver(void *context, struct net_message *m)
 {
     (void)context;
-    vp_arrived((struct message *)m);
+    arrived((struct message *)m);
 }
 
 static void rank_main(void *argument)
@@ -97,7 +62,7 @@ static void make_ranks(struct world *w, uint64_t seed)
         v->digest = DIGEST_START;
         if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
         v->fiber = fiber_start(w->fibers, i, rank_main, v);
-        world_wake(w, v);
+        vp_wake(w, v);
     }
 }
 
@@ -261,6 +226,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .result = out,
         .arena = a,
         .scratch = arena_create(),
+        .arrived = arrived,
         .sim = sim_create(),
         .nrank = load->nrank,
         .nstage = load->nstage,

@@ -58,7 +58,7 @@ planted() {
     rm -rf house
     cp -a clean house
     (cd house && eval "$3")
-    case $check in symbols | globals) compile house ;; esac
+    case $check in symbols | globals | cycles) compile house ;; esac
     if said=$(HOUSE=$place/house HOUSE_BUILD=$place/house bash "$HERE/$check.sh" 2>&1); then
         complain "$check.sh does not see: $3"
     elif [[ $said != *"$expected"* ]]; then
@@ -68,7 +68,7 @@ planted() {
 
 clean_house
 compile clean
-for check in includes symbols globals documented lengths listed words readme sizes; do
+for check in includes symbols globals cycles documented lengths listed words readme sizes; do
     said=$(HOUSE=$place/clean HOUSE_BUILD=$place/clean bash "$HERE/$check.sh" 2>&1) ||
         complain "$check.sh does not pass a clean house: $said"
 done
@@ -94,6 +94,8 @@ rm house/libnet.a
 if HOUSE=$place/house HOUSE_BUILD=$place/house bash "$HERE/symbols.sh" >/dev/null 2>&1; then
     complain "symbols.sh does not miss an archive"
 fi
+
+planted cycles 'a circle of files' 'echo "int check_it(int); int k(int n) { return check_it(n); }" >>src/base/base.c; echo "int k(int); int c(int n) { return k(n); }" >>src/base/check.c'
 
 planted globals 'count is writable (.bss)' 'echo "int count;" >>src/vp/vp.c'
 planted globals 'count is writable (.data)' 'echo "int count = 3;" >>src/vp/vp.c'

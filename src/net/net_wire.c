@@ -1,0 +1,76 @@
+/* net_wire.c - what every level asks of the wire: sizes in packets and flits, routes, the slowest rate of a route. */
+#include "net/net_internal.h"
+
+int64_t net_packets(const struct net *n, int64_t bytes)
+{
+    int64_t most = n->machine->network.packet_bytes;
+    return most > 0 && bytes > most ? (bytes + most - 1) / most : 1;
+}
+
+static int64_t wire_flits(const struct net *n, int64_t payload)
+{
+    int64_t flits = (payload + n->machine->network.header_bytes + n->flit_bytes - 1) / n->flit_bytes;
+    return flits > 0 ? flits : 1;
+}
+
+int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index)
+{
+    int64_t most = n->machine->network.packet_bytes, packets = net_packets(n, bytes);
+    CHECK(index >= 0 && index < packets);
+    return wire_flits(n, index < packets - 1 ? most : bytes - (packets - 1) * most * (packets > 1));
+}
+
+int64_t net_flits(const struct net *n, int64_t bytes)
+{
+    int64_t most = n->machine->network.packet_bytes;
+    if (most <= 0 || bytes <= most) return wire_flits(n, bytes);
+    int64_t full = (bytes + most - 1) / most - 1;
+    return full * wire_flits(n, most) + wire_flits(n, bytes - full * most);
+}
+
+uint64_t net_choice(const struct net_message *m)
+{
+    uint64_t z = ((uint64_t)m->id + 1) * 0x9e3779b97f4a7c15u; /* splitmix64 */
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest)
+{
+    struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
+    int h = 0;
+    route[h++] = (struct hop){net_injection(n, m->src), 0, topology_injection_port(n->topology, m->src)};
+    while (topology_next(n->topology, &c, &route[h])) {
+        int link = route[h].link;
+        slow = net_rate_slower(slow, n->link_rate ? n->link_rate[link] : n->link);
+        route[h++].link = net_resource(n, link);
+    }
+    route[h] = (struct hop){net_ejection(n, m->dst), 0, 0};
+    *slowest = slow;
+    return h;
+}
+
+struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop)
+{
+    struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
+    if (!n->link_rate && n->topology->fixed_routes) {
+        *nhop = topology_distance(n->topology, m->src, m->dst);
+        return *nhop > 0 ? net_rate_slower(slow, n->link) : slow;
+    }
+    struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
+    struct hop h;
+    for (*nhop = 0; topology_next(n->topology, &c, &h); ++*nhop)
+        slow = net_rate_slower(slow, n->link_rate ? n->link_rate[h.link] : n->link);
+    return slow;
+}
+
+int net_head_port(const struct net *n, int resource)
+{
+    int from, to, port;
+    if (net_is_injection(n, resource)) return topology_injection_port(n->topology, resource);
+    CHECK(!net_is_ejection(n, resource));
+    topology_link_ends(n->topology, resource - n->nnode, &from, &to, &port);
+    return port;
+}

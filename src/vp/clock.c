@@ -1,0 +1,57 @@
+/* clock.c - a virtual processor's clock: when it stops, waits and goes on, and what the timeline keeps of it. */
+#include <string.h>
+
+#include "vp/vp.h"
+
+void vp_wake(struct world *w, struct vp *v)
+{
+    int at = w->ready_head + w->ready_count++;
+    CHECK(w->ready_count <= w->nrank);
+    w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
+}
+
+void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
+{
+    v->waiting_for = what;
+    v->waiting = r;
+    fiber_leave(v->fiber);
+    v->waiting_for = WAITING_NOTHING;
+    v->waiting = NULL;
+}
+
+void vp_time_out(struct vp *v)
+{
+    if (!v->world->late) v->world->late = v;
+    for (;;) vp_block(v, WAITING_NOTHING, NULL);
+}
+
+void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
+{
+    if (time <= v->clock) return;
+    sim_ps free_of_others = uncontended < v->clock ? v->clock : uncontended > time ? time : uncontended;
+    vp_stage_time(v)->wait_ps += free_of_others - v->clock;
+    vp_stage_time(v)->contention_ps += time - free_of_others;
+    vp_advance(v, time);
+}
+
+void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int peer, int64_t bytes, int64_t message)
+{
+    struct world *w = v->world;
+    struct run_result *r = w->result;
+    if (begin == end && message < 0) return;
+    if (r->nspan == w->span_capacity) {
+        int64_t capacity = w->span_capacity ? 2 * w->span_capacity : 4096;
+        struct span *grown = TAKE(w->arena, capacity, struct span);
+        if (r->nspan) memcpy(grown, r->span, (size_t)r->nspan * sizeof *grown);
+        r->span = grown;
+        w->span_capacity = capacity;
+    }
+    r->span[r->nspan++] = (struct span){.rank = v->comm.rank,
+                                        .stage = v->stage,
+                                        .kind = kind,
+                                        .begin_ps = begin,
+                                        .end_ps = end,
+                                        .peer = peer,
+                                        .bytes = bytes,
+                                        .message = message};
+}
