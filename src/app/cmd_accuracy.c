@@ -11,14 +11,14 @@
 #include "study/accuracy.h"
 
 static const char doc[] =
-    "Measure how wrong each cheaper way is, at the largest points of SCENARIO that\n"
-    "take seconds: network levels, precisions and algorithms, steppers and step\n"
-    "sizes. Rows go to table `ladder` of the database, work-precision diagrams to\n"
-    "accuracy-SCENARIO.png and .svg; failed methods are listed. Ends with the\n"
-    "cheapest rung of each ladder.\n\n"
-    "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n\v"
-    "--within X: the relative error that may be, 2% or 1e-6; without it 2% of simulated times, 1e-10 of accelerations "
-    "and 1e-6 of states.";
+    "Measure the error and the cost of network levels, of precisions and algorithms,\n"
+    "and of integrators and step sizes, at the largest points of SCENARIO that take\n"
+    "seconds. Results go to table `ladder` of the database, and work-precision\n"
+    "diagrams to accuracy-SCENARIO.png and .svg; failed methods are listed. At the\n"
+    "end the cheapest level, method and integrator within the error are printed.\n\n"
+    "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n"
+    "\v--within X: the permitted relative error, such as 2% or 1e-6. The default is 2% for "
+    "simulated times, 1e-10 for accelerations and 1e-6 for states.";
 
 /* "--within X": X is a number or a percentage; NULL: not asked for. */
 static bool read_within(const char *text, double *within, struct err *e)

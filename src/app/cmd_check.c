@@ -7,10 +7,13 @@
 #include "study/probe.h"
 
 static const char doc[] =
-    "Validate scenario, machine, robot (.urdf) and reference vector (.json) files, running nothing.\n\n"
-    "Example: mimdsim check scenarios/speedup-t3e.yaml machines/t3e-300.yaml\n\v"
-    "Every file is looked at; the exit status is that of the first one that is wrong. A machine on which a message is "
-    "faster than one a byte smaller, where a segment of its message software begins, is told on standard error.";
+    "Validate scenario, machine, robot (.urdf) and reference vector (.json) files without running "
+    "anything.\n\n"
+    "Example: mimdsim check scenarios/speedup-t3e.yaml machines/t3e-300.yaml\n"
+    "\vAll files are checked; the exit status is that of the first invalid one. "
+    "A warning on standard error names a machine on which a message is faster than one that is a "
+    "byte smaller "
+    "(where a segment of its message software begins).";
 
 /* One entry of the document: the file, and what is wrong with it. */
 static void print_verdict(struct json *j, const char *file, const struct err *e)

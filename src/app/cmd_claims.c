@@ -8,16 +8,16 @@
 
 static const char doc[] =
     "Judge the claims of the paper by the runs in DB (default paper.db) and print the table.\n"
-    "--explain: search what the paper does not state (rates, overheads, operators, serial\n"
-    "baseline, others' load) for the smallest change under which each claim that fails holds,\n"
-    "and all together; answer in sentences, and draw explain-CLAIM.\n\n"
+    "--explain: vary what the paper leaves open (rates, overheads, operators, serial baseline,\n"
+    "load by others). Find the smallest change under which each failed claim holds, and under\n"
+    "which all hold together; print the result as text, and draw explain-CLAIM.\n\n"
     "Example: mimdsim claims paper.db --json\n"
-    "         mimdsim claims --explain paper.db\n\v"
-    "The search is seeded, its points are stored: killed, it goes on where it was.\n"
-    "--what-if: runs on changed machines (--set, a file of one's own) count, too; without\n"
-    "it only runs on machines as shipped do. A claim whose runs are not all there is not\n"
-    "testable; the text says which are missing and which command makes them.\n"
-    "A claim that fails is a result, not an error: the exit status is 0 when all could be judged.";
+    "         mimdsim claims --explain paper.db\n"
+    "\vThe search is seeded and its points are stored: after an interruption it continues.\n"
+    "--what-if: include runs on changed machines (--set, or your own file of the same name);\n"
+    "without it only runs on machines as shipped count. A claim is not testable if some of its\n"
+    "runs are missing; the text names them and the command that makes them.\n"
+    "A claim that fails is a result, not an error: the exit status is 0 if all could be judged.";
 
 static bool tell_explanations(const struct common *c, const struct claim_rules *rules, struct store *s, struct err *e)
 {

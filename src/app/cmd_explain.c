@@ -16,11 +16,12 @@
 #include "study/savings.h"
 
 static const char doc[] =
-    "Show what SCENARIO will run, without running it: points, messages, operations, and the time and\n"
-    "memory they will take on this computer.\n\n"
-    "Example: mimdsim explain scenarios/speedup-t3e.yaml\n\v"
-    "--measure: run a large point with each of the omissions put back, and tell what it saves: rows of table\n"
-    "`omission` of the database, bars in omissions-SCENARIO.png and .svg.";
+    "Show what SCENARIO will run, without running it: points, messages, operations, omissions,\n"
+    "and the time and memory needed on this computer.\n\n"
+    "Example: mimdsim explain scenarios/speedup-t3e.yaml\n"
+    "\v--measure: run a large point with each omission undone in turn, and report what the "
+    "omission "
+    "saves. Results go to table `omission` of the database and to omissions-SCENARIO.png and .svg.";
 
 enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS };
 

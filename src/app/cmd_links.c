@@ -5,16 +5,20 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Print the most loaded links of run RUN (a number of column id of table run) in the database DB: messages, bytes, "
-    "how long each was busy and how long messages waited for it. First the ten links of the network for which "
-    "messages waited longest, then the ten ports of nodes.\n\n"
-    "Example: mimdsim links mimdsim.db\n\v"
-    "Without RUN: the stored run in which messages waited longest. Loads are there for scenarios with "
-    "`record: {links: true}`. A port of a node has no router at one end: an injection port leads into the network, an "
+    "Print the most heavily loaded links of run RUN (column id of table run) in the database DB: "
+    "messages, bytes, busy time and waiting time. First the ten network links with the longest "
+    "waiting time, "
+    "then the ten ports of nodes.\n\n"
+    "Example: mimdsim links mimdsim.db\n"
+    "\vThe default RUN is the stored run with the longest waiting time. Link loads are recorded "
+    "by scenarios with "
+    "`record: {links: true}`. A port of a node has no router at one end: an injection port leads "
+    "into the network, an "
     "ejection port out of it.";
 
 static const char choose_sql[] =
-    "SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, run_id LIMIT 1";
+    "SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, "
+    "run_id LIMIT 1";
 
 static const char any_sql[] = "SELECT 1 FROM link_load WHERE run_id = CAST(?1 AS INTEGER) LIMIT 1";
 
@@ -26,12 +30,16 @@ static const char links_sql[] =
     " UNION ALL SELECT * FROM (SELECT * FROM link_load WHERE run_id = CAST(?1 AS INTEGER)"
     "  AND (from_router IS NULL OR to_router IS NULL)"
     "  ORDER BY queue_ps DESC, busy_ps DESC, link LIMIT 10)),"
-    " named AS (SELECT *, CASE WHEN from_router IS NULL THEN 'injection' WHEN to_router IS NULL THEN 'ejection'"
+    " named AS (SELECT *, CASE WHEN from_router IS NULL THEN 'injection' WHEN to_router IS NULL "
+    "THEN 'ejection'"
     "  ELSE 'network' END AS kind, from_router IS NULL OR to_router IS NULL AS port FROM top)"
     " SELECT l.run_id, r.machine, r.topology, r.level, r.kernel, r.P, l.kind,"
-    " row_number() OVER (PARTITION BY l.port ORDER BY l.queue_ps DESC, l.busy_ps DESC, l.link) AS place,"
-    " l.link, l.from_router, l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps / 1e6 AS busy_us,"
-    " round(100.0 * l.busy_ps / nullif(r.makespan_ps, 0), 1) AS busy_percent, l.queue_ps / 1e6 AS queue_us"
+    " row_number() OVER (PARTITION BY l.port ORDER BY l.queue_ps DESC, l.busy_ps DESC, l.link) AS "
+    "place,"
+    " l.link, l.from_router, l.to_router, l.node, l.messages, l.sent_bytes, l.busy_ps / 1e6 AS "
+    "busy_us,"
+    " round(100.0 * l.busy_ps / nullif(r.makespan_ps, 0), 1) AS busy_percent, l.queue_ps / 1e6 AS "
+    "queue_us"
     " FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, place";
 
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)

@@ -7,28 +7,33 @@
 #include "spec/field.h"
 
 static const char scenarios_help[] =
-    "List the scenarios, each with its question.\n\nExample: mimdsim scenarios\n\v"
-    "--keys: instead, every key that a scenario, a machine file or --set may give, with its meaning, unit and default, "
-    "as Markdown.";
+    "List the scenarios, each with its question.\n\n"
+    "Example: mimdsim scenarios\n"
+    "\v--keys: list instead all keys of scenarios, machine files and --set, with meaning, unit "
+    "and default, as Markdown.";
 
 /* What only files have, and how their keys are shortened; the settings themselves have their tables. */
 static const char keys_of_files[] =
     "## A scenario\n\n"
     "- `schema_version`: 1.\n"
     "- `question`: one line of text.\n"
-    "- `machine`, `kernel`, `level`, `n`: short for `machine.name` (or a file), `kernel.name`, "
+    "- `machine`, `kernel`, `level`, `n`: abbreviations of `machine.name` (or a file), "
+    "`kernel.name`, "
     "`machine.network.level`, "
     "`model.n`.\n"
-    "- `ranks`: a number, or `n`: as many as bodies.\n"
-    "- `n_over_p`: bodies a processor, in place of `n`.\n"
-    "- `sweep`: keys with lists of values, each with every other: `{n: [8, 64], kernel.solver: [cr, pcr]}`; a list in "
-    "place of a value does the same.\n"
-    "- `only`: leave out other points: `n >= ranks`, `ranks <= processors`.\n"
-    "- `repetitions`: runs of each point that has noise, with other seeds.\n"
-    "- `figures`: what `mimdsim paper` draws of it.\n\n"
-    "Settings below follow as `kernel: {solver: cr}` or `kernel.solver: cr`, and with `--set kernel.solver=cr`; a "
-    "machine "
-    "file has those of `machine` without that word, `schema_version` and `base`, another machine to start from.\n\n";
+    "- `ranks`: a number, or `n` for one rank per body.\n"
+    "- `n_over_p`: bodies per processor, instead of `n`.\n"
+    "- `sweep`: keys with lists of values, combined in every way: `{n: [8, 64], kernel.solver: "
+    "[cr, pcr]}`; a list "
+    "instead of a value does the same.\n"
+    "- `only`: run only these points: `n >= ranks`, `ranks <= processors`.\n"
+    "- `repetitions`: number of runs of a point that has noise, with different seeds.\n"
+    "- `figures`: the figures that `mimdsim paper` draws from it.\n\n"
+    "Give the settings below as `kernel: {solver: cr}` or `kernel.solver: cr`, or with `--set "
+    "kernel.solver=cr`. A "
+    "machine file has the settings of `machine` without that word, `schema_version`, and `base`, "
+    "the machine that it "
+    "starts from.\n\n";
 
 /* Every key with its meaning, in the order of the manual. */
 static void print_keys(const struct common *c)

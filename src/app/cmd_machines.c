@@ -7,9 +7,10 @@
 #include "base/json.h"
 #include "study/rates.h"
 
-static const char doc[] = "List the machines; with NAME, show one with the origin of every value.\n\n"
-                          "Example: mimdsim machines t3e-300\n"
-                          "         mimdsim machines --compare t3e-300 t3e-300-mpt\n";
+static const char doc[] =
+    "List the machines; with NAME, show one with the source of each value.\n\n"
+    "Example: mimdsim machines t3e-300\n"
+    "         mimdsim machines --compare t3e-300 t3e-300-mpt\n";
 
 struct shown {
     struct machine_spec spec;

@@ -8,19 +8,22 @@
 #include "study/netcheck_verdict.h"
 
 static const char doc[] =
-    "Run the cases of each FILE through the network levels, print the error of each case and statistics, and hold them "
-    "against the accuracy that is stated for each level and class of case. A list of messages without reference "
-    "answers "
-    "is played and its times are printed.\n\n"
-    "Example: mimdsim netcheck tests/data/net/makespan.json --level packet\n\v"
-    "      --within=PERCENT       every error must be within this, instead of the stated accuracy\n"
+    "Run the reference cases of each FILE at the network levels, print the error of each case and "
+    "statistics, and compare "
+    "them with the accuracy stated for each level and class of case. A message list without "
+    "reference times is simulated and "
+    "its times are printed.\n\n"
+    "Example: mimdsim netcheck tests/data/net/makespan.json --level packet\n"
+    "\v      --within=PERCENT       require every error to be within this, instead of the stated "
+    "accuracy\n"
     "      --stated               print the stated accuracies and run nothing\n\n"
-    "Forms of cases, told by a key: step (distance), list (trace), hand (messages), load (points), saturation "
-    "(saturation_low). With --json one FILE gives one object, several give a list of objects. What a level cannot run "
-    "is "
-    "counted as skipped, with the reason. The exit status is 1 when a verdict is FAIL, 65 when a file is of no known "
-    "form "
-    "or none of its cases can be answered.";
+    "The form of a case follows from its keys: step (distance), list (trace), hand (messages), "
+    "load (points), saturation "
+    "(saturation_low). With --json one FILE gives one object, several give a list of objects. "
+    "Cases that a level cannot run "
+    "are counted as skipped, with the reason. The exit status is 1 if a verdict is FAIL, and 65 "
+    "if a file has an unknown form "
+    "or none of its cases can be run.";
 
 static bool level_of(const char *word, enum network_level *level, struct err *e)
 {

@@ -21,11 +21,11 @@ static const char doc[] =
     "Reproduce the evaluation of the paper: run its scenarios into paper.db, sample\n"
     "the uncertain machine parameters, measure error against run time, stability\n"
     "and omissions on five scenes, draw the figures, judge the claims, and write\n"
-    "paper.md and paper.html beside the folder of figures.\n\n"
+    "paper.md and paper.html next to the folder of figures.\n\n"
     "Example: mimdsim paper\n"
-    "         mimdsim paper fig7         one figure with its runs\n\v"
-    "What is stored already is not run again unless --force.\n"
-    "--paper-only: without the five scenes, in less than half the time.";
+    "         mimdsim paper fig7         one figure with its runs\n"
+    "\vRuns that are stored already are not repeated, unless --force is given.\n"
+    "--paper-only: omit the five scenes; this takes less than half the time.";
 
 enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
 

@@ -9,9 +9,11 @@
 #include "report/report.h"
 
 static const char doc[] =
-    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv, the script .gp and .provenance.\n\n"
-    "Example: mimdsim plot mimdsim.db fig6 --dir figures\n\v"
-    "Without FIGURE: list the figures there are, what each shows, and the command that makes the rows it needs.";
+    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv, the script .gp and "
+    ".provenance.\n\n"
+    "Example: mimdsim plot mimdsim.db fig6 --dir figures\n"
+    "\vWithout FIGURE: list the available figures, what each shows, and the command that makes "
+    "the runs it needs.";
 
 /* The pictures that figure `name` stands for. */
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j, struct err *e)

@@ -13,12 +13,12 @@
 #include "store/store.h"
 
 static const char doc[] =
-    "Draw every figure that the database DB (default mimdsim.db) has rows for, and\n"
-    "write DB.md and DB.html beside the folder of figures: claims, figures, error\n"
-    "against run time, stability, what was left out and what that saves.\n\n"
-    "Example: mimdsim report mimdsim.db\n\v"
-    "From the database alone: nothing is run. `mimdsim accuracy`, `stability` and\n"
-    "`explain --measure` fill it.";
+    "Draw all figures for which the database DB (default mimdsim.db) has data, and\n"
+    "write DB.md and DB.html next to the folder of figures: claims, figures, error\n"
+    "against run time, stability, omissions and what they save.\n\n"
+    "Example: mimdsim report mimdsim.db\n"
+    "\vNothing is run: `mimdsim accuracy`, `stability` and `explain --measure` fill\n"
+    "the database.";
 
 enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
 

@@ -13,13 +13,18 @@
 
 static const char doc[] =
     "Run every point of SCENARIO, store each in the database, and print the table.\n\n"
-    "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 MB/s\"\n\v"
-    "What is stored already is not run again unless --force. A run whose numbers are wrong is stored as invalid, and "
-    "the exit status is then 1; a deadlock ends with 70. A point that cannot run, whose worker process dies, or that "
-    "outlasts simulated time (13.3 days) is stored as failed with the reason; the others run, and the exit status is "
-    "1. A plan of no other points is refused. What failed is tried again next time.\n\n"
-    "--keep-all: compute too what the scene does not need (mimdsim explain lists it, and how exact leaving it out is); "
-    "the predicted time includes what is kept.";
+    "Example: mimdsim run scenarios/speedup-t3e.yaml --set machine.network.link.bandwidth=\"960 "
+    "MB/s\"\n"
+    "\vRuns that are stored already are not repeated, unless --force is given. If the result of a "
+    "run is wrong, the run is "
+    "stored as invalid and the exit status is 1; a deadlock ends with 70. If a point cannot run, "
+    "its worker process dies, or "
+    "simulated time overflows (13.3 days), it is stored as failed, with the reason. The other "
+    "points run, and the exit status "
+    "is 1. A plan with no valid point is refused. Failed points are tried again the next time.\n\n"
+    "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
+    "error bound of leaving it "
+    "out); the predicted time includes it.";
 
 struct keep {
     struct store *store;

@@ -9,10 +9,10 @@
 #include "study/stability.h"
 
 static const char doc[] =
-    "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, by every\n"
-    "algorithm and stepper, and grade each answer: ok, degraded or failed. Rows go\n"
-    "to table `stability` of the database, a table of marks to stability.png and\n"
-    ".svg, that of a scenario to stability-SCENARIO.png and .svg.\n\n"
+    "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, with\n"
+    "every algorithm and integrator, and grade each result: ok, degraded or failed.\n"
+    "Results go to table `stability` of the database, and a chart to stability.png\n"
+    "and .svg, or stability-SCENARIO.png and .svg.\n\n"
     "Example: mimdsim stability\n";
 
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)

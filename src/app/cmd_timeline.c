@@ -12,16 +12,17 @@
 #include "run/run.h"
 #include "store/store.h"
 
-static const char doc[] = "Show the timeline of one run: of run number RUN of the database DB (default: the first that "
-                          "has one), or of the first "
-                          "point of SCENARIO, which is run for it.\n\n"
-                          "Example: mimdsim timeline scenarios/fig8.yaml\n"
-                          "         mimdsim timeline paper.db --format chrome\n\v"
-                          "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
-                          "timeline.json (Chrome trace "
-                          "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans, pictures "
-                          "20000, since viewers fail "
-                          "on more; what is left out is told.";
+static const char doc[] =
+    "Show the timeline of one run: run RUN of the database DB (default: the first with a "
+    "timeline), or the first point of "
+    "SCENARIO, which is run for this.\n\n"
+    "Example: mimdsim timeline scenarios/fig8.yaml\n"
+    "         mimdsim timeline paper.db --format chrome\n"
+    "\vText goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
+    "timeline.json (Chrome trace "
+    "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans and "
+    "pictures 20000, because viewers "
+    "fail on more; a remark says how many are omitted.";
 
 enum { PICTURE_SPANS = 20000 };
 

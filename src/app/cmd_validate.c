@@ -12,18 +12,23 @@
 #include "study/netcheck.h"
 
 static const char doc[] =
-    "Run the micro-benchmarks of MACHINE (or of all machines) through the simulator and print them beside the "
-    "published "
-    "figures of machines/published.csv, with the error of each; store them as check points.\n\n"
+    "Run the micro-benchmarks of MACHINE (or of all machines) on the simulator and compare the "
+    "results with the published "
+    "values in machines/published.csv. Print the error of each and store the runs as check "
+    "points.\n\n"
     "Example: mimdsim validate t3e-300\n"
-    "         mimdsim validate network\n\v"
-    "`network` holds every network level against the reference answers in tests/data/net, or in the FILEs named, and "
-    "prints a table of errors for documents. A figure whose evidence is E only says that the machine file was "
-    "followed. "
-    "A figure that was used for calibration may be missed by 10 % (5 % for wires and rates of cuts, 20 % for recalled "
-    "figures, class PR), one that was not by 30 %. The exit status is 1 when one is missed by more and its row names "
-    "no cause. The summary tells the errors of both kinds apart. A single machine is also asked what exchanges among "
-    "16 ranks get at every level of the network.";
+    "         mimdsim validate network\n"
+    "\v`network` compares every network level with the reference results in tests/data/net, or in "
+    "the given FILEs, and prints "
+    "a table of errors in Markdown. A value of evidence class E only shows that the machine file "
+    "was implemented correctly. "
+    "Limits of the error: 10 % for values used in calibration (5 % for wires and bisection rates, "
+    "20 % for values quoted from "
+    "memory, class PR), 30 % for values not used in it. The exit status is 1 if an error exceeds "
+    "its limit and the row "
+    "states no cause. The summary shows both kinds separately. For a single machine, exchanges "
+    "among 16 ranks are also "
+    "measured at every level of the network.";
 
 static void print_row(const struct published *p, const struct outcome *o)
 {

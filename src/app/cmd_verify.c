@@ -9,17 +9,22 @@
 #include "study/verify.h"
 
 static const char doc[] =
-    "Run every applicable serial and parallel algorithm, with every solver and several numbers of ranks, on reference\n"
-    "vectors (dynref-1 JSON) and judge every number by how far roundings of the inputs move it.\n\n"
-    "Example: mimdsim verify tests/data/vectors/*.json\n\v"
-    "Verdicts: pass; rounding: above the tolerance, but not in quad precision; algorithm-fails: in quad precision too, "
-    "though the file's answer is confirmed and the algorithm is right about the same scene with even masses (what to "
-    "use "
-    "instead is named); fail; not-applicable.\n\n"
-    "Exit status: 1 when a row fails or nothing passes for a quantity, with --strict also when an algorithm fails; 65 "
-    "for a file with an unknown key, a missing answer, a URDF file that is not there.\n\n"
-    "Tolerances: 1e-12 for inverse and 1e-10 for forward dynamics (single precision: 1e-4 and 1e-3), of each number's "
-    "size times its condition. Nothing in the file changes them.";
+    "Run every applicable serial and parallel algorithm, with every solver and several numbers of ranks, on reference "
+    "vectors (dynref-1 JSON). The tolerance of each number takes into account how much rounding "
+    "of the inputs changes it.\n\n"
+    "Example: mimdsim verify tests/data/vectors/*.json\n"
+    "\vVerdicts: pass; rounding: the error exceeds the tolerance in working precision, but not in "
+    "quad precision; "
+    "algorithm-fails: it does in quad precision too, although the reference value is confirmed "
+    "and the algorithm is correct "
+    "for the same scene with equal masses (the text names an alternative); fail; not-applicable.\n\n"
+    "Exit status: 1 if a row fails or no algorithm passes for a quantity, with --strict also for "
+    "algorithm-fails; 65 "
+    "for a file with an unknown key, a missing result, or the name of a URDF file that does not "
+    "exist.\n\n"
+    "Relative tolerances: 1e-12 for inverse and 1e-10 for forward dynamics (single precision: "
+    "1e-4 and 1e-3), multiplied by "
+    "the condition of each number. Nothing in the file changes them.";
 
 enum {
     KEY_TOLERANCE = 0x200,
@@ -36,12 +41,12 @@ static const struct argp_option options[] = {
     {"tolerance", KEY_TOLERANCE, "X[,Y]", 0,
      "relative tolerance of inverse (X) and forward (Y, default 100 X) dynamics", 0},
     {"serial", KEY_SERIAL, NULL, 0, "serial algorithms only", 0},
-    {"all-ranks", KEY_ALL_RANKS, NULL, 0, "large cases too on P = 1, 2, 3, n/2, n, and by their mass matrix", 0},
-    {"strict", KEY_STRICT, NULL, 0, "exit status 1 also when an algorithm fails on a case", 0},
-    {"precision", KEY_PRECISION, "double|float|quad", 0, "of the algorithms (default double)", 0},
-    {"brief", KEY_BRIEF, NULL, 0, "one line a case; rows only where they do not pass", 0},
-    {"markdown", KEY_MARKDOWN, NULL, 0, "one table of errors, for documents", 0},
-    {"json", KEY_JSON_OUT, NULL, 0, "answer with one JSON document on standard output", 0},
+    {"all-ranks", KEY_ALL_RANKS, NULL, 0, "run large cases too on P = 1, 2, 3, n/2, n, and with the mass matrix", 0},
+    {"strict", KEY_STRICT, NULL, 0, "exit status 1 also for the verdict algorithm-fails", 0},
+    {"precision", KEY_PRECISION, "double|float|quad", 0, "precision of the algorithms (default double)", 0},
+    {"brief", KEY_BRIEF, NULL, 0, "one line per case; rows only if they do not pass", 0},
+    {"markdown", KEY_MARKDOWN, NULL, 0, "a table of errors in Markdown", 0},
+    {"json", KEY_JSON_OUT, NULL, 0, "write one JSON document to standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress", 0},
     {0},
 };

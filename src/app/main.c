@@ -16,10 +16,10 @@ static void print_help(FILE *out)
 {
     fprintf(out, "Usage: mimdsim VERB [OPTION...] [ARGUMENT...]\n"
                  "Predict how a parallel algorithm will run on a machine you do not have.\n\n"
-                 "  mimdsim run scenarios/speedup-t3e.yaml     answer one question, store it, print the table\n"
+                 "  mimdsim run scenarios/speedup-t3e.yaml     run a scenario, store it, print the table\n"
                  "  mimdsim plot mimdsim.db fig6               draw a figure from the database\n\n");
     for (const struct verb *v = verb_list; v->name; v++) fprintf(out, "  %-11s %s\n", v->name, v->title);
-    fprintf(out, "\n'mimdsim VERB --help' tells the options of a verb, with an example. Exit statuses: mimdsim(1).\n");
+    fprintf(out, "\n'mimdsim VERB --help' describes a verb, with an example. Exit statuses: mimdsim(1).\n");
 }
 
 static void print_version(void)
