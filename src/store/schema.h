@@ -2,7 +2,7 @@
 #ifndef STORE_SCHEMA_H
 #define STORE_SCHEMA_H
 
-/* store_schema: all statements of schema.sql, in order. */
-const char *store_schema(void);
+/* schema_text: schema.sql, with "@table@" where rows.h puts columns. */
+const char *schema_text(void);
 
 #endif

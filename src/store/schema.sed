@@ -1,16 +1,11 @@
-# schema.sql as the body of a C function: comments and blank lines go, the rest becomes string literals.
+# schema.sql as the body of a C function: every line becomes a string literal.
 1i\
 /* Made from schema.sql by schema.sed. */\
 #include "store/schema.h"\
 \
-const char *store_schema(void)\
+const char *schema_text(void)\
 {\
     return ""
-s/ *--.*$//
-/^ *$/{
-$!d
-s/.*//
-}
 s/\\/\\\\/g
 s/"/\\"/g
 s/^.*$/        "&\\n"/

@@ -19,66 +19,7 @@ CREATE TABLE build (
 -- One row per run. Its identity, by which a campaign resumes, is (config_hash, seed, rep).
 CREATE TABLE run (
     id               INTEGER PRIMARY KEY,
-    config_hash      TEXT NOT NULL,
-    seed             INTEGER NOT NULL,
-    rep              INTEGER NOT NULL,
-    scenario         TEXT NOT NULL,
-    machine          TEXT NOT NULL,
-    topology         TEXT NOT NULL,
-    level            TEXT NOT NULL,
-    placement        TEXT NOT NULL,
-    kernel           TEXT NOT NULL,
-    formulation      TEXT NOT NULL,
-    solver           TEXT NOT NULL,
-    part_solver      TEXT NOT NULL,
-    operators        TEXT NOT NULL,
-    precision        TEXT NOT NULL,
-    model            TEXT NOT NULL,
-    base             TEXT NOT NULL,
-    joint            TEXT NOT NULL,
-    n                INTEGER NOT NULL,  -- bodies
-    nu               INTEGER NOT NULL,  -- degrees of freedom, 0 when there is no model
-    P                INTEGER NOT NULL,  -- virtual processors
-    compute_noise_cv REAL,
-    background_load  REAL,
-    status           TEXT NOT NULL CHECK (status IN ('ok', 'invalid', 'deadlock', 'failed')),
-    text             TEXT NOT NULL,     -- why it is not ok
-    makespan_ps      INTEGER NOT NULL,
-    measured_s       REAL,              -- what a micro-benchmark's kernel measured, simulated time
-    loop_rows        INTEGER,           -- constraints of closed chains; NULL: no loops
-    loop_rank        INTEGER,           -- independent ones among them: fewer than loop_rows are redundant
-    drift_position   REAL,              -- largest violation of a loop when the run ends, in the model's units
-    drift_velocity   REAL,
-    residual         REAL,              -- largest relative residual of the constraints, as the kernel sees it
-    condition        REAL,              -- lower bound of the condition of the block-scaled system
-    messages         INTEGER NOT NULL,
-    sent_bytes       INTEGER NOT NULL,
-    events           INTEGER NOT NULL,
-    ties             INTEGER NOT NULL,
-    switches         INTEGER NOT NULL,
-    digest           TEXT NOT NULL,     -- 16 hexadecimal digits
-    accounting_error_ps INTEGER NOT NULL, -- largest |sum of all parts - makespan| over the ranks; 0 is exact
-    finish_min_ps    INTEGER,           -- when the first and the last rank ended
-    finish_max_ps    INTEGER,
-    rank_compute_min_ps INTEGER,        -- computing of the least and the most loaded rank
-    rank_compute_max_ps INTEGER,
-    links            INTEGER NOT NULL,  -- link loads that were recorded, stored or not
-    host_s           REAL,
-    host_total_s     REAL,
-    host_peak_bytes  INTEGER,
-    stack_peak_bytes INTEGER,
-    level_asked      TEXT,              -- 'auto-tolerance 2 %': `level` was taken for its measured error
-    level_error      REAL,              -- of the makespan, relative, at level_error_at
-    level_error_at   TEXT,
-    inner_added      INTEGER NOT NULL,  -- refinements that were switched on because the first answer needed them:
-    outer_added      INTEGER NOT NULL,  -- `residual` and all times are those with them
-    twice_added      INTEGER NOT NULL,  -- 1: the residual in twice the digits was switched on, too
-    residual_before  REAL,              -- of that first answer
-    left_out         TEXT NOT NULL,     -- what it left out, with reasons: run_omission as text
-    config_text      TEXT NOT NULL,     -- SHA-256 of it is config_hash
-    machine_changes  TEXT,              -- JSON: settings that are not those of the shipped machine of this name; '{}':
-                                        -- none; NULL: no machine of this name is shipped
-    machine_hash     TEXT,              -- SHA-256 of that shipped machine, as it was when the run was made
+@run@
     build_id         INTEGER NOT NULL REFERENCES build (id),
     created_utc      TEXT NOT NULL,
     UNIQUE (config_hash, seed, rep)
@@ -102,21 +43,7 @@ CREATE TABLE run_setting (
 CREATE TABLE stage (
     run_id            INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     stage             INTEGER NOT NULL,
-    name              TEXT NOT NULL,
-    compute_sum_ps    INTEGER, compute_min_ps    INTEGER NOT NULL, compute_max_ps    INTEGER NOT NULL,
-    send_sum_ps       INTEGER, send_min_ps       INTEGER NOT NULL, send_max_ps       INTEGER NOT NULL,
-    recv_sum_ps       INTEGER, recv_min_ps       INTEGER NOT NULL, recv_max_ps       INTEGER NOT NULL,
-    wait_sum_ps       INTEGER, wait_min_ps       INTEGER NOT NULL, wait_max_ps       INTEGER NOT NULL,
-    contention_sum_ps INTEGER, contention_min_ps INTEGER NOT NULL, contention_max_ps INTEGER NOT NULL,
-    total_sum_ps      INTEGER, total_min_ps      INTEGER NOT NULL, total_max_ps      INTEGER NOT NULL,
-    messages          INTEGER NOT NULL,
-    sent_bytes        INTEGER NOT NULL,
-    flops             INTEGER NOT NULL,
-    divisions         INTEGER NOT NULL,
-    square_roots      INTEGER NOT NULL,
-    sines             INTEGER NOT NULL,
-    copied_bytes      INTEGER NOT NULL,
-    calls             INTEGER NOT NULL,
+@stage@
     PRIMARY KEY (run_id, stage)
 ) STRICT, WITHOUT ROWID;
 
@@ -125,14 +52,7 @@ CREATE TABLE rank_stage (
     run_id        INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     rank          INTEGER NOT NULL,
     stage         INTEGER NOT NULL,
-    compute_ps    INTEGER NOT NULL,
-    send_ps       INTEGER NOT NULL,
-    recv_ps       INTEGER NOT NULL,
-    wait_ps       INTEGER NOT NULL,
-    contention_ps INTEGER NOT NULL,
-    messages      INTEGER NOT NULL,
-    sent_bytes    INTEGER NOT NULL,
-    flops         INTEGER NOT NULL,
+@rank_stage@
     PRIMARY KEY (run_id, rank, stage)
 ) STRICT, WITHOUT ROWID;
 
@@ -140,14 +60,7 @@ CREATE TABLE rank_stage (
 CREATE TABLE baseline (
     run_id       INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     ordinal      INTEGER NOT NULL,
-    name         TEXT NOT NULL,
-    time_ps      INTEGER NOT NULL,
-    flops        INTEGER NOT NULL,
-    divisions    INTEGER NOT NULL,
-    square_roots INTEGER NOT NULL,
-    sines        INTEGER NOT NULL,
-    copied_bytes INTEGER NOT NULL,
-    calls        INTEGER NOT NULL,
+@baseline@
     PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -155,11 +68,8 @@ CREATE TABLE baseline (
 CREATE TABLE error_check (
     run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     ordinal        INTEGER NOT NULL,
-    quantity       TEXT NOT NULL,
-    reference      TEXT NOT NULL,
-    relative_error REAL,               -- NULL: not finite
-    tolerance      REAL,
-    passed         INTEGER NOT NULL CHECK (passed IN (0, 1)),
+@error_check@
+    CHECK (passed IN (0, 1)),
     PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -167,13 +77,7 @@ CREATE TABLE error_check (
 CREATE TABLE link_load (
     run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     link        INTEGER NOT NULL,
-    from_router INTEGER,               -- NULL: injection of `node`
-    to_router   INTEGER,               -- NULL: ejection to `node`
-    node        INTEGER,
-    messages    INTEGER NOT NULL,
-    sent_bytes  INTEGER NOT NULL,
-    busy_ps     INTEGER NOT NULL,
-    queue_ps    INTEGER NOT NULL,
+@link_load@
     PRIMARY KEY (run_id, link)
 ) STRICT, WITHOUT ROWID;
 
@@ -181,14 +85,7 @@ CREATE TABLE link_load (
 CREATE TABLE span (
     run_id   INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
     span     INTEGER NOT NULL,
-    rank     INTEGER NOT NULL,
-    stage    INTEGER NOT NULL,
-    kind     TEXT NOT NULL CHECK (kind IN ('compute', 'send', 'recv', 'wait', 'barrier')),
-    begin_ps INTEGER NOT NULL,
-    end_ps   INTEGER NOT NULL,
-    peer     INTEGER,
-    bytes    INTEGER NOT NULL,
-    message  INTEGER,                  -- pairs a send with its receive
+@span@
     PRIMARY KEY (run_id, span)
 ) STRICT, WITHOUT ROWID;
 
@@ -312,10 +209,7 @@ CREATE TABLE stability (
 -- What was not computed because the scene of the run does not need it.
 CREATE TABLE run_omission (
     run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    what   TEXT NOT NULL,
-    why    TEXT NOT NULL,
-    class  TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),
-    bound  REAL,                       -- largest relative change of a result, of bounded ones
+@run_omission@
     PRIMARY KEY (run_id, what)
 ) STRICT, WITHOUT ROWID;
 

@@ -19,6 +19,7 @@
 #include "base/text.h"
 #include "store/beside.h"
 #include "store/connection.h"
+#include "store/rows.h"
 #include "store/schema.h"
 
 static const char *const statement_sql[] = {
@@ -57,10 +58,12 @@ bool store_exec(struct store *s, const char *sql, struct err *e)
 sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)
 {
     sqlite3_stmt **kept = &s->statement[which];
-    if (*kept == NULL && sqlite3_prepare_v3(s->db, statement_sql[which], -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) {
-        store_failed(s, e);
-        return NULL;
-    }
+    if (*kept != NULL) return *kept;
+    struct text sql = {0};
+    if (statement_sql[which] != NULL) text_add(&sql, "%s", statement_sql[which]);
+    else rows_insert(which, &sql);
+    if (sqlite3_prepare_v3(s->db, sql.s, -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) store_failed(s, e);
+    text_free(&sql);
     return *kept;
 }
 
@@ -105,12 +108,13 @@ static bool check_owner(struct store *s, bool *empty, struct err *e)
 static bool create_schema(struct store *s, struct err *e)
 {
     struct text t = {0};
+    rows_schema(&t);
     text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION, STORE_VERSION);
     text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d), ('span_rows_limit', %d);",
              STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
     bool empty = false, ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, e);
     /* Another program may have made it while we waited for the lock. */
-    if (ok && empty) ok = store_exec(s, store_schema(), e) && store_exec(s, t.s, e);
+    if (ok && empty) ok = store_exec(s, t.s, e);
     if (ok) ok = store_exec(s, "COMMIT", e);
     if (!ok) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     text_free(&t);
@@ -143,7 +147,7 @@ static bool prepare_writer(struct store *s, struct err *e)
     if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
     /* Tables that came after the first databases of this version. */
-    if (!store_exec(s, strstr(store_schema(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
+    if (!store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
 }

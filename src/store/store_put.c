@@ -1,21 +1,16 @@
 /* store_put.c - one finished run becomes rows: run, settings, stages, ranks, baselines, checks, omissions, links,
  * spans.
  *
- * All of them in one transaction. Sums over ranks are made here, so that a run of a million ranks stores as many rows
- * as one of two. */
+ * All of them in one transaction. Which columns a row has, and what they hold, say the tables of columns (rows.h). */
 #include "store/store.h"
 
-#include <math.h>
-#include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/check.h"
-#include "base/text.h"
-#include "spec/field.h"
-#include "store/binding.h"
+#include "measure/run_row.h"
 #include "store/build.h"
+#include "store/rows.h"
 
 /* Run a statement that finds one row id; 0 when there is none. */
 static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err *e)
@@ -56,27 +51,6 @@ int64_t store_run_id(struct store *s, const struct run_spec *spec)
     return id;
 }
 
-/* The word of the choice field that lies `offset` bytes into the struct of table `prefix`. */
-static const char *choice_word(const char *prefix, size_t offset, unsigned value)
-{
-    int ntable;
-    const struct field_table *const *table = field_tables(&ntable);
-    for (int t = 0; t < ntable; t++) {
-        if (strcmp(table[t]->prefix, prefix) != 0) continue;
-        for (int i = 0; i < table[t]->nfield; i++)
-            if (table[t]->field[i].offset == offset && table[t]->field[i].kind == FIELD_CHOICE)
-                return table[t]->field[i].choice[value];
-    }
-    return "";
-}
-
-#define MACHINE_WORD(spec, member)                                                                                     \
-    choice_word("machine", offsetof(struct machine_spec, member), (unsigned)(spec)->machine.member)
-#define MODEL_WORD(spec, member)                                                                                       \
-    choice_word("model", offsetof(struct model_spec, member), (unsigned)(spec)->model.member)
-#define KERNEL_WORD(spec, member)                                                                                      \
-    choice_word("kernel", offsetof(struct kernel_spec, member), (unsigned)(spec)->kernel.member)
-
 /* The row of this program in table build. */
 static bool find_build(struct store *s, struct err *e)
 {
@@ -94,139 +68,22 @@ static bool find_build(struct store *s, struct err *e)
     return true;
 }
 
-static int64_t stage_total(const struct stage_time *t)
+/* The row of a table of columns, behind keys that are bound. */
+static bool put_row(struct store *s, enum statement which, struct binding *b, const void *row, struct err *e)
 {
-    return t->compute_ps + t->send_ps + t->recv_ps + t->wait_ps + t->contention_ps;
-}
-
-/* What is known of all ranks together. */
-struct rank_summary {
-    int64_t accounting_error;
-    int64_t compute_min, compute_max;
-    int64_t finish_min, finish_max;
-};
-
-static struct rank_summary summarise_ranks(const struct run_result *r)
-{
-    struct rank_summary u = {.compute_min = INT64_MAX, .finish_min = INT64_MAX};
-    for (int k = 0; k < r->nrank && r->stage != NULL; k++) {
-        int64_t sum = 0, compute = 0;
-        for (int i = 0; i < r->nstage; i++) {
-            const struct stage_time *t = &r->stage[(int64_t)k * r->nstage + i];
-            sum += stage_total(t);
-            compute += t->compute_ps;
-        }
-        int64_t error = llabs(sum - r->makespan_ps);
-        if (error > u.accounting_error) u.accounting_error = error;
-        if (compute < u.compute_min) u.compute_min = compute;
-        if (compute > u.compute_max) u.compute_max = compute;
-    }
-    for (int k = 0; k < r->nrank && r->finish_ps != NULL; k++) {
-        if (r->finish_ps[k] < u.finish_min) u.finish_min = r->finish_ps[k];
-        if (r->finish_ps[k] > u.finish_max) u.finish_max = r->finish_ps[k];
-    }
-    return u;
-}
-
-static void bind_spec(struct binding *b, const struct run_spec *spec, const struct run_result *r)
-{
-    bind_text(b, spec->config_hash);
-    bind_int(b, (int64_t)spec->seed);
-    bind_int(b, spec->rep);
-    bind_text(b, spec->scenario);
-    bind_text(b, spec->machine.name);
-    bind_text(b, MACHINE_WORD(spec, topology.family));
-    bind_text(b, MACHINE_WORD(spec, network.level));
-    bind_text(b, MACHINE_WORD(spec, placement.kind));
-    bind_text(b, spec->kernel.name);
-    bind_text(b, KERNEL_WORD(spec, formulation));
-    bind_text(b, KERNEL_WORD(spec, solver));
-    bind_text(b, KERNEL_WORD(spec, part_solver));
-    bind_text(b, KERNEL_WORD(spec, operators));
-    bind_text(b, KERNEL_WORD(spec, precision));
-    bind_text(b, MODEL_WORD(spec, generator));
-    bind_text(b, MODEL_WORD(spec, base));
-    bind_text(b, MODEL_WORD(spec, joint));
-    bind_int(b, r->nbody > 0 ? r->nbody : spec->model.nbody);
-    bind_int(b, r->nu);
-    bind_int(b, spec->nrank);
-    bind_real(b, spec->machine.noise.compute_cv);
-    bind_real(b, spec->machine.noise.background_load);
-}
-
-static void bind_result(struct binding *b, const struct run_result *r, char digest[17])
-{
-    static const char *const status[] = {"ok", "invalid", "deadlock", "failed"};
-    struct rank_summary u = summarise_ranks(r);
-    bool has_stages = r->stage != NULL && r->nrank > 0, has_finish = r->finish_ps != NULL && r->nrank > 0;
-    snprintf(digest, 17, "%016llx", (unsigned long long)r->digest);
-    bind_text(b, status[r->status]);
-    bind_text(b, r->text);
-    bind_int(b, r->makespan_ps);
-    bind_real(b, r->measured_s);
-    bind_int_if(b, r->loop_rows > 0, r->loop_rows);
-    bind_int_if(b, r->loop_rows > 0 && r->loop_rank >= 0, r->loop_rank);
-    bind_real(b, r->loop_rows > 0 ? r->drift_position : NAN);
-    bind_real(b, r->loop_rows > 0 ? r->drift_velocity : NAN);
-    bind_real(b, r->residual);
-    bind_real(b, r->condition > 0 ? r->condition : NAN);
-    bind_int(b, r->messages);
-    bind_int(b, r->bytes);
-    bind_int(b, r->events);
-    bind_int(b, r->ties);
-    bind_int(b, r->switches);
-    bind_text(b, digest);
-    bind_int(b, u.accounting_error);
-    bind_int_if(b, has_finish, u.finish_min);
-    bind_int_if(b, has_finish, u.finish_max);
-    bind_int_if(b, has_stages, u.compute_min);
-    bind_int_if(b, has_stages, u.compute_max);
-    bind_int(b, r->nlink);
-    bind_real(b, r->host_s);
-    bind_real(b, r->host_total_s);
-    bind_int(b, r->host_peak_bytes);
-    bind_int(b, r->stack_peak_bytes);
-}
-
-static void bind_level_choice(struct binding *b, const struct run_spec *spec, char asked[64])
-{
-    const struct level_choice *c = &spec->level_choice;
-    snprintf(asked, 64, "auto-tolerance %.9g %%", 100 * spec->machine.network.tolerance);
-    bind_text(b, c->made ? asked : NULL);
-    bind_real(b, c->made ? c->error : NAN);
-    bind_text(b, c->made ? c->at : NULL);
-}
-
-/* The omissions as one text. */
-static void join_omissions(const struct run_result *r, struct text *out)
-{
-    text_add(out, "%s", "");
-    for (int i = 0; i < r->nomission; i++)
-        text_add(out, "%s%s: %s", i > 0 ? "; " : "", r->omission[i].what, r->omission[i].why);
+    rows_bind(which, b, row);
+    return store_step(s, b->statement, e);
 }
 
 static bool put_run(struct store *s, const struct run_spec *spec, const struct run_result *r, int64_t *id,
                     struct err *e)
 {
     struct binding b;
-    char digest[17], asked[64];
-    struct text left_out = {0};
     if (!bind_start(s, STATEMENT_RUN_INSERT, &b, e)) return false;
-    join_omissions(r, &left_out);
-    bind_spec(&b, spec, r);
-    bind_result(&b, r, digest);
-    bind_level_choice(&b, spec, asked);
-    bind_int(&b, r->inner_added);
-    bind_int(&b, r->outer_added);
-    bind_int(&b, r->twice_added);
-    bind_real(&b, run_result_refined(r) ? r->residual_before : NAN);
-    bind_text(&b, left_out.s);
-    bind_text(&b, spec->config_text ? spec->config_text : "");
-    bind_text(&b, spec->machine_changes);
-    bind_text(&b, spec->machine_changes ? spec->machine_hash : NULL);
+    struct run_row row = run_row_make(spec, r);
     bind_int(&b, s->build_id);
-    const bool ok = store_step(s, b.statement, e);
-    text_free(&left_out);
+    const bool ok = put_row(s, STATEMENT_RUN_INSERT, &b, &row, e);
+    run_row_free(&row);
     if (ok) *id = sqlite3_last_insert_rowid(s->db);
     return ok;
 }
@@ -269,79 +126,35 @@ static bool put_settings(struct store *s, int64_t run, const char *config, struc
     return true;
 }
 
-/* Sum, least and most of one quantity over the ranks. */
-struct spread {
-    int64_t sum, min, max;
-    bool fits;              /* the sum fits into 64 bits */
-};
-
-static void spread_add(struct spread *p, int64_t v)
+/* Rows whose key is (run, number). */
+static bool put_numbered(struct store *s, enum statement which, int64_t run, int64_t number, const void *row,
+                         struct err *e)
 {
-    if (__builtin_add_overflow(p->sum, v, &p->sum)) p->fits = false;
-    if (v < p->min) p->min = v;
-    if (v > p->max) p->max = v;
-}
-
-static bool put_stage(struct store *s, int64_t run, const struct run_result *r, int stage, struct err *e)
-{
-    enum { COMPUTE, SEND, RECV, WAIT, CONTENTION, TOTAL, PARTS };
-    struct spread part[PARTS];
-    struct stage_time all = {0};
-    for (int i = 0; i < PARTS; i++) part[i] = (struct spread){0, INT64_MAX, INT64_MIN, true};
-    for (int k = 0; k < r->nrank; k++) {
-        const struct stage_time *t = &r->stage[(int64_t)k * r->nstage + stage];
-        const int64_t value[PARTS] = {t->compute_ps, t->send_ps,       t->recv_ps,
-                                      t->wait_ps,    t->contention_ps, stage_total(t)};
-        for (int i = 0; i < PARTS; i++) spread_add(&part[i], value[i]);
-        all.messages += t->messages;
-        all.bytes += t->bytes;
-        work_add(&all.work, &t->work);
-    }
     struct binding b;
-    if (!bind_start(s, STATEMENT_STAGE, &b, e)) return false;
+    if (!bind_start(s, which, &b, e)) return false;
     bind_int(&b, run);
-    bind_int(&b, stage);
-    bind_text(&b, r->stage_name[stage]);
-    for (int i = 0; i < PARTS; i++) {
-        bind_int_if(&b, part[i].fits, part[i].sum);
-        bind_int(&b, part[i].min);
-        bind_int(&b, part[i].max);
-    }
-    bind_int(&b, all.messages);
-    bind_int(&b, all.bytes);
-    bind_count(&b, all.work.flop);
-    bind_count(&b, all.work.div);
-    bind_count(&b, all.work.sqrt);
-    bind_count(&b, all.work.trig);
-    bind_count(&b, all.work.bytes);
-    bind_count(&b, all.work.call);
-    return store_step(s, b.statement, e);
+    bind_int(&b, number);
+    return put_row(s, which, &b, row, e);
 }
 
 static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage, const struct stage_time *t, struct err *e)
 {
     struct binding b;
-    if (stage_total(t) == 0 && t->messages == 0 && t->work.flop == 0) return true;
+    if (stage_time_idle(t)) return true;
     if (!bind_start(s, STATEMENT_RANK_STAGE, &b, e)) return false;
     bind_int(&b, run);
     bind_int(&b, rank);
     bind_int(&b, stage);
-    bind_int(&b, t->compute_ps);
-    bind_int(&b, t->send_ps);
-    bind_int(&b, t->recv_ps);
-    bind_int(&b, t->wait_ps);
-    bind_int(&b, t->contention_ps);
-    bind_int(&b, t->messages);
-    bind_int(&b, t->bytes);
-    bind_count(&b, t->work.flop);
-    return store_step(s, b.statement, e);
+    return put_row(s, STATEMENT_RANK_STAGE, &b, t, e);
 }
 
 static bool put_stages(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     if (r->stage == NULL || r->nrank == 0) return true;
-    for (int i = 0; i < r->nstage; i++)
-        if (!put_stage(s, run, r, i, e)) return false;
+    for (int i = 0; i < r->nstage; i++) {
+        const struct stage_row row = stage_row_make(r, i);
+        if (!put_numbered(s, STATEMENT_STAGE, run, i, &row, e)) return false;
+    }
     if (s->passing || r->nrank > STORE_RANK_ROWS) return true;
     for (int k = 0; k < r->nrank; k++)
         for (int i = 0; i < r->nstage; i++)
@@ -351,55 +164,25 @@ static bool put_stages(struct store *s, int64_t run, const struct run_result *r,
 
 static bool put_baselines(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
-    for (int i = 0; i < r->nbaseline; i++) {
-        const struct baseline *line = &r->baseline[i];
-        struct binding b;
-        if (!bind_start(s, STATEMENT_BASELINE, &b, e)) return false;
-        bind_int(&b, run);
-        bind_int(&b, i);
-        bind_text(&b, line->name);
-        bind_int(&b, line->time_ps);
-        bind_count(&b, line->work.flop);
-        bind_count(&b, line->work.div);
-        bind_count(&b, line->work.sqrt);
-        bind_count(&b, line->work.trig);
-        bind_count(&b, line->work.bytes);
-        bind_count(&b, line->work.call);
-        if (!store_step(s, b.statement, e)) return false;
-    }
+    for (int i = 0; i < r->nbaseline; i++)
+        if (!put_numbered(s, STATEMENT_BASELINE, run, i, &r->baseline[i], e)) return false;
     return true;
 }
 
 static bool put_errors(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
-    for (int i = 0; i < r->nerror; i++) {
-        const struct error_check *check = &r->error[i];
-        struct binding b;
-        if (!bind_start(s, STATEMENT_ERROR_CHECK, &b, e)) return false;
-        bind_int(&b, run);
-        bind_int(&b, i);
-        bind_text(&b, check->quantity);
-        bind_text(&b, check->reference);
-        bind_real(&b, check->relative);
-        bind_real(&b, check->tolerance);
-        bind_int(&b, check->relative <= check->tolerance); /* a NaN has not passed */
-        if (!store_step(s, b.statement, e)) return false;
-    }
+    for (int i = 0; i < r->nerror; i++)
+        if (!put_numbered(s, STATEMENT_ERROR_CHECK, run, i, &r->error[i], e)) return false;
     return true;
 }
 
 static bool put_omissions(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     for (int i = 0; i < r->nomission; i++) {
-        const struct omission *o = &r->omission[i];
         struct binding b;
         if (!bind_start(s, STATEMENT_OMISSION, &b, e)) return false;
         bind_int(&b, run);
-        bind_text(&b, o->what);
-        bind_text(&b, o->why);
-        bind_text(&b, o->bound > 0 ? "bounded" : "exact");
-        bind_real(&b, o->bound > 0 ? o->bound : NAN);
-        if (!store_step(s, b.statement, e)) return false;
+        if (!put_row(s, STATEMENT_OMISSION, &b, &r->omission[i], e)) return false;
     }
     return true;
 }
@@ -413,22 +196,6 @@ static int compare_load(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-static bool put_link(struct store *s, int64_t run, const struct run_result *r, const struct link_load *l, struct err *e)
-{
-    struct binding b;
-    if (!bind_start(s, STATEMENT_LINK_LOAD, &b, e)) return false;
-    bind_int(&b, run);
-    bind_int(&b, l - r->link);
-    bind_int_if(&b, l->from >= 0, l->from);
-    bind_int_if(&b, l->to >= 0, l->to);
-    bind_int_if(&b, l->node >= 0, l->node);
-    bind_int(&b, l->messages);
-    bind_int(&b, l->bytes);
-    bind_int(&b, l->busy_ps);
-    bind_int(&b, l->queue_ps);
-    return store_step(s, b.statement, e);
-}
-
 static bool put_links(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     if (r->nlink == 0 || r->link == NULL) return true;
@@ -437,31 +204,17 @@ static bool put_links(struct store *s, int64_t run, const struct run_result *r, 
     for (int i = 0; i < r->nlink; i++) order[i] = &r->link[i];
     if (r->nlink > STORE_LINK_ROWS) qsort(order, (size_t)r->nlink, sizeof *order, compare_load);
     bool ok = true;
-    for (int i = 0; i < r->nlink && i < STORE_LINK_ROWS && ok; i++) ok = put_link(s, run, r, order[i], e);
+    for (int i = 0; i < r->nlink && i < STORE_LINK_ROWS && ok; i++)
+        ok = put_numbered(s, STATEMENT_LINK_LOAD, run, order[i] - r->link, order[i], e);
     free(order);
     return ok;
 }
 
 static bool put_spans(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
-    static const char *const kind[] = {"compute", "send", "recv", "wait", "barrier"};
     if (r->span == NULL || r->nspan > STORE_SPAN_ROWS) return true;
-    for (int64_t i = 0; i < r->nspan; i++) {
-        const struct span *p = &r->span[i];
-        struct binding b;
-        if (!bind_start(s, STATEMENT_SPAN, &b, e)) return false;
-        bind_int(&b, run);
-        bind_int(&b, i);
-        bind_int(&b, p->rank);
-        bind_int(&b, p->stage);
-        bind_text(&b, kind[p->kind]);
-        bind_int(&b, p->begin_ps);
-        bind_int(&b, p->end_ps);
-        bind_int_if(&b, p->peer >= 0, p->peer);
-        bind_int(&b, p->bytes);
-        bind_int_if(&b, p->message >= 0, p->message);
-        if (!store_step(s, b.statement, e)) return false;
-    }
+    for (int64_t i = 0; i < r->nspan; i++)
+        if (!put_numbered(s, STATEMENT_SPAN, run, i, &r->span[i], e)) return false;
     return true;
 }
 

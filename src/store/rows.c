@@ -1,0 +1,103 @@
+/* rows.c - statements out of tables of columns (rows.h). */
+#include "store/rows.h"
+
+#include <string.h>
+
+#include "base/check.h"
+#include "measure/run_row.h"
+#include "store/schema.h"
+
+enum { MOST_SEGMENTS = 5 };
+
+/* A table of schema.sql: the keys that are bound first, what a statement fills in itself, and its columns in order. */
+struct row_table {
+    enum statement statement;
+    const char *name, *keys;
+    const char *made, *maker; /* ", column" and ", expression"; "": none */
+    const struct column_table *segment[MOST_SEGMENTS + 1];
+};
+
+static const struct row_table row_table[] = {
+    {STATEMENT_RUN_INSERT, "run", "build_id", ", created_utc", ", strftime('%Y-%m-%dT%H:%M:%SZ', 'now')",
+     {&run_identity_columns, &run_outcome_columns, &run_level_columns, &run_refinement_columns, &run_config_columns}},
+    {STATEMENT_STAGE, "stage", "run_id, stage", "", "", {&stage_row_columns}},
+    {STATEMENT_RANK_STAGE, "rank_stage", "run_id, rank, stage", "", "", {&stage_time_columns}},
+    {STATEMENT_BASELINE, "baseline", "run_id, ordinal", "", "", {&baseline_columns}},
+    {STATEMENT_ERROR_CHECK, "error_check", "run_id, ordinal", "", "", {&error_check_columns}},
+    {STATEMENT_OMISSION, "run_omission", "run_id", "", "", {&omission_columns}},
+    {STATEMENT_LINK_LOAD, "link_load", "run_id, link", "", "", {&link_load_columns}},
+    {STATEMENT_SPAN, "span", "run_id, span", "", "", {&span_columns}},
+};
+enum { TABLES = sizeof row_table / sizeof *row_table };
+
+static const struct row_table *table_of(enum statement which)
+{
+    const struct row_table *t = row_table;
+    while (t < row_table + TABLES && t->statement != which) t++;
+    CHECK(t < row_table + TABLES);
+    return t;
+}
+
+void rows_insert(enum statement which, struct text *sql)
+{
+    const struct row_table *t = table_of(which);
+    int ncolumn = 0;
+    text_add(sql, "INSERT INTO %s (%s%s", t->name, t->keys, t->made);
+    for (int i = 0; t->segment[i] != NULL; i++) ncolumn += columns_list(t->segment[i], sql);
+    /* A question mark for each key, the expression, a question mark for each column. */
+    text_add(sql, ") VALUES (?");
+    for (const char *c = t->keys; *c; c++)
+        if (*c == ',') text_add(sql, ", ?");
+    text_add(sql, "%s", t->maker);
+    for (int i = 0; i < ncolumn; i++) text_add(sql, ", ?");
+    text_add(sql, ")");
+}
+
+/* The columns of the table called name[0 .. length). */
+static void add_columns(const char *name, size_t length, struct text *sql)
+{
+    for (int i = 0; i < TABLES; i++) {
+        const struct row_table *t = &row_table[i];
+        if (strlen(t->name) != length || strncmp(t->name, name, length) != 0) continue;
+        for (int k = 0; t->segment[k] != NULL; k++) columns_define(t->segment[k], sql);
+        return;
+    }
+    CHECK(!"a table of schema.sql without columns");
+}
+
+void rows_schema(struct text *sql)
+{
+    const char *rest = schema_text(), *at;
+    while ((at = strchr(rest, '@')) != NULL) {
+        const char *end = strchr(at + 1, '@');
+        CHECK(end != NULL && end[1] == '\n');
+        text_add_bytes(sql, rest, (size_t)(at - rest));
+        add_columns(at + 1, (size_t)(end - at - 1), sql);
+        rest = end + 2;
+    }
+    text_add(sql, "%s", rest);
+}
+
+static void bind_column(struct binding *b, const struct column *c, const void *row)
+{
+    struct column_value v = {0};
+    column_read(c, row, &v);
+    switch (v.kind) {
+    case VALUE_ABSENT: bind_null(b); break;
+    case VALUE_REAL: bind_real(b, v.real); break;
+    /* What lies in the buffer is gone when the statement runs. */
+    case VALUE_TEXT:
+        sqlite3_bind_text(b->statement, b->next++, v.text, -1, v.text == v.buffer ? SQLITE_TRANSIENT : SQLITE_STATIC);
+        break;
+    default: bind_int(b, v.integer); break;
+    }
+}
+
+void rows_bind(enum statement which, struct binding *b, const void *row)
+{
+    const struct row_table *t = table_of(which);
+    for (int i = 0; t->segment[i] != NULL; i++)
+        for (int k = 0; k < t->segment[i]->n; k++)
+            if (!(t->segment[i]->column[k].flags & COLUMN_NO_SQL)) bind_column(b, &t->segment[i]->column[k], row);
+    CHECK(b->next - 1 == sqlite3_bind_parameter_count(b->statement));
+}

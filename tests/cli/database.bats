@@ -1,0 +1,33 @@
+# database.bats - the tables of the database: none of their columns is lost.
+load helper
+
+small_database() {
+    printf '%s\n' 'schema_version: 1' 'question: One?' 'machine: t3e-300' 'model: {generator: serial-chain}' \
+        'n: 4' 'ranks: 2' 'level: link' 'kernel: dynamics' 'record: {spans: true, links: true}' >own.yaml
+    works mimdsim run own.yaml -o own.db --quiet
+}
+
+columns_of() {
+    works mimdsim query "$1" "SELECT m.type || '|' || m.name || '|' || p.name || '|' || p.type || '|' ||
+        p.\"notnull\" || '|' || p.pk AS line FROM sqlite_schema m, pragma_table_info(m.name) p
+        WHERE m.type IN ('table', 'view') ORDER BY m.name, p.cid"
+}
+
+@test "every column of the tables and views of schema version 5 is there, with its type and key" {
+    small_database
+    columns_of own.db
+    missing=$(sort "$MIMDSIM_SRCDIR/tests/data/schema/version-5.txt" |
+        comm -23 - <(printf '%s\n' "$output" | sed 's/ *$//' | sort))
+    [ -z "$missing" ] || { echo "not there: $missing"; return 1; }
+    [ "$(wc -l <"$MIMDSIM_SRCDIR/tests/data/schema/version-5.txt")" -gt 400 ]
+}
+
+@test "all rows of a run are there: stages, ranks, baselines, checks, links, spans" {
+    small_database
+    for table in run stage rank_stage baseline error_check run_omission link_load span; do
+        works mimdsim query own.db "SELECT count(*) > 0 AS n FROM $table"
+        [ "${lines[1]}" = 1 ] || { echo "no rows in $table"; return 1; }
+    done
+    sql_is own.db "SELECT sum(kind IN ('compute', 'send', 'recv', 'wait', 'barrier')) = count(*) FROM span" 1
+    sql_is own.db "SELECT count(*) FROM error_check WHERE passed <> (relative_error <= tolerance)" 0
+}
