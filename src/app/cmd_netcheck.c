@@ -27,13 +27,13 @@ static const char doc[] =
 
 static bool level_of(const char *word, enum network_level *level, struct err *e)
 {
-    const char *name[NETCHECK_LEVELS];
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    const char *name[LEVELS];
+    for (int l = 0; l < LEVELS; l++) {
         name[l] = netcheck_level_name((enum network_level)l);
         if (strcmp(word, name[l]) == 0) *level = (enum network_level)l;
         if (strcmp(word, name[l]) == 0) return true;
     }
-    const char *near = text_nearest(word, name, NETCHECK_LEVELS);
+    const char *near = text_nearest(word, name, LEVELS);
     return near ? err_set(e, ERR_USAGE, "there is no level '%s'; did you mean '%s'?", word, near)
                 : err_set(e, ERR_USAGE, "there is no level '%s'; there are: loggp, link, packet, flit, auto", word);
 }
@@ -95,7 +95,7 @@ int cmd_netcheck(int argc, char **argv)
     struct err e;
     err_clear(&e);
     enum network_level level = LEVEL_LOGGP;
-    bool wanted[NETCHECK_LEVELS] = {false};
+    bool wanted[LEVELS] = {false};
     bool ok = within_of(limit, &within, &e) && (!c.level || level_of(c.level, &level, &e));
     if (ok && c.level) wanted[level] = true;
     struct arena *a = arena_create();

@@ -48,7 +48,7 @@ static void print_levels(const struct published *p, const struct outcome *o)
 {
     if (!o->contended) return;
     printf("%6s at level", "");
-    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+    for (int i = 0; i < LEVELS; i++) {
         printf("%s %s ", i ? "," : "", validation_level_name(i));
         if (isnan(o->level[i])) printf("-");
         else printf("%.5g (%+.1f %%)", o->level[i] / p->scale, 100 * (o->level[i] - p->value) / p->value);
@@ -265,9 +265,9 @@ static void network_table(const struct netcheck *n)
 {
     const char *slash = strrchr(n->path, '/');
     printf("`%s`:\n\n| network | cases |", slash ? slash + 1 : n->path);
-    for (int l = 0; l < NETCHECK_LEVELS; l++) printf(" `%s` |", netcheck_level_name((enum network_level)l));
+    for (int l = 0; l < LEVELS; l++) printf(" `%s` |", netcheck_level_name((enum network_level)l));
     printf("\n| --- | --- |");
-    for (int l = 0; l < NETCHECK_LEVELS; l++) printf(" --- |");
+    for (int l = 0; l < LEVELS; l++) printf(" --- |");
     putchar('\n');
     for (int g = 0; g <= n->nrow; g++) {
         const char *group = g < n->nrow ? n->row[g].group : NULL;
@@ -277,7 +277,7 @@ static void network_table(const struct netcheck *n)
         int cases = 0;
         for (int k = 0; k < n->nrow; k++) cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
         printf("| %s | %d |", group ? group : "all", cases);
-        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; l < LEVELS; l++) {
             struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
             if (t.cases == 0) printf(" - |");
             else if (t.skipped) printf(" %.1f (%+.0f), %d cases |", 100 * t.mean, 100 * t.worst, t.cases);

@@ -6,7 +6,7 @@
 static bool measure(const struct machine_spec *m, struct contention *row)
 {
     bool any = false;
-    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+    for (int i = 0; i < LEVELS; i++) {
         struct machine_spec at = *m;
         struct err why;
         err_clear(&why);
@@ -36,11 +36,11 @@ void contention_print(const struct contention *row, int n)
 {
     if (n == 0) return;
     printf("\nMB/s that each of %d ranks sends, by level of the network\n%-10s", row[0].ranks, "");
-    for (int i = 0; i < VALIDATION_LEVELS; i++) printf(" %10s", validation_level_name(i));
+    for (int i = 0; i < LEVELS; i++) printf(" %10s", validation_level_name(i));
     putchar('\n');
     for (int k = 0; k < n; k++) {
         printf("%-10s", probe_name(row[k].quantity));
-        for (int i = 0; i < VALIDATION_LEVELS; i++) {
+        for (int i = 0; i < LEVELS; i++) {
             if (isfinite(row[k].level[i])) printf(" %10.5g", row[k].level[i] / 1e6);
             else printf(" %10s", "-");
         }

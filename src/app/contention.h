@@ -12,7 +12,7 @@ enum { CONTENTION_RANKS = 16, CONTENTION_ROWS = 2 };
 struct contention {
     enum probe_quantity quantity;
     int ranks;
-    double level[VALIDATION_LEVELS];
+    double level[LEVELS];
 };
 
 /* contention_measure: total exchange and exchange of halves among CONTENTION_RANKS ranks, or all of a smaller machine,

@@ -32,15 +32,14 @@ static void judge(const struct published *p, struct outcome *o)
 
 const char *validation_level_name(int level)
 {
-    static const char *const name[VALIDATION_LEVELS] = {"loggp", "link", "packet", "flit", "auto"};
-    return name[level];
+    return network_level_name((enum network_level)level);
 }
 
-void validation_levels_json(const double level[VALIDATION_LEVELS], double scale, struct json *j)
+void validation_levels_json(const double level[LEVELS], double scale, struct json *j)
 {
-    static const int sorted[VALIDATION_LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
+    static const int sorted[LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
     json_object(j);
-    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+    for (int i = 0; i < LEVELS; i++) {
         json_key(j, validation_level_name(sorted[i]));
         json_real(j, level[sorted[i]] / scale);
     }
@@ -50,7 +49,7 @@ void validation_levels_json(const double level[VALIDATION_LEVELS], double scale,
 static void measure_levels(const struct published *p, const struct machine_spec *m, struct outcome *o)
 {
     o->contended = true;
-    for (int i = 0; i < VALIDATION_LEVELS; i++) {
+    for (int i = 0; i < LEVELS; i++) {
         struct machine_spec at = *m;
         struct err why;
         err_clear(&why);

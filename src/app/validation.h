@@ -11,13 +11,12 @@
 /* Errors above this need a cause that somebody wrote down. */
 #define VALIDATION_UNEXPLAINED 0.3
 
-enum { VALIDATION_LEVELS = LEVEL_AUTO + 1 };
 
-/* validation_level_name: "loggp", ... of enum network_level below VALIDATION_LEVELS. */
+/* validation_level_name: "loggp", ... of enum network_level below LEVELS. */
 const char *validation_level_name(int level);
 
 /* validation_levels_json: an object of one number a level, each over `scale`; not finite: null. */
-void validation_levels_json(const double level[VALIDATION_LEVELS], double scale, struct json *j);
+void validation_levels_json(const double level[LEVELS], double scale, struct json *j);
 
 /* What a point came to. */
 struct outcome {
@@ -27,7 +26,7 @@ struct outcome {
     double error, tolerance; /* relative */
     const char *verdict;     /* pass, fail, explained, not-testable */
     bool contended;          /* several ranks share the wires: */
-    double level[VALIDATION_LEVELS]; /* then the value at each level of enum network_level, SI, NAN: none */
+    double level[LEVELS]; /* then the value at each level of enum network_level, SI, NAN: none */
 };
 
 /* validation_measure: the figure `p` asked of its simulated machine, and judged.

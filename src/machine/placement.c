@@ -38,9 +38,9 @@ static int ordered_router(const struct machine_spec *m, int i)
 static bool kind_fits(const struct machine_spec *m, struct err *e)
 {
     enum topology_family f = m->topology.family;
-    if (m->placement.kind == PLACEMENT_SNAKE && f != TOPOLOGY_TORUS && f != TOPOLOGY_MESH)
+    if (m->placement.kind == PLACEMENT_SNAKE && !topology_has(f, TOPOLOGY_GRID))
         return err_set(e, ERR_CONFIG, "placement snake needs a torus or a mesh");
-    if (m->placement.kind == PLACEMENT_GRAY && f != TOPOLOGY_HYPERCUBE)
+    if (m->placement.kind == PLACEMENT_GRAY && !topology_has(f, TOPOLOGY_CUBE))
         return err_set(e, ERR_CONFIG, "placement gray needs a hypercube");
     return true;
 }

@@ -7,11 +7,9 @@
 #include "machine/topology_internal.h"
 
 static const struct topology_type *const types[] = {
-    [TOPOLOGY_CROSSBAR] = &topology_crossbar, [TOPOLOGY_TORUS] = &topology_torus,
-    [TOPOLOGY_MESH] = &topology_mesh,         [TOPOLOGY_HYPERCUBE] = &topology_hypercube,
-    [TOPOLOGY_BUS] = &topology_bus,           [TOPOLOGY_FULL_MESH] = &topology_full_mesh,
-    [TOPOLOGY_FAT_TREE] = &topology_fat_tree, [TOPOLOGY_DRAGONFLY] = &topology_dragonfly,
-    [TOPOLOGY_GRAPH] = &topology_graph,
+#define X(constant, word, stem, ndim, routers, traits) [constant] = &topology_##stem,
+    TOPOLOGY_LIST(X)
+#undef X
 };
 
 struct topology *topology_create(const struct topology_spec *s, struct arena *a, struct err *e)

@@ -20,7 +20,9 @@ struct topology_type {
     double (*share)(const struct topology *t, int link); /* of the link rate; NULL: 1 */
 };
 
-extern const struct topology_type topology_crossbar, topology_torus, topology_mesh, topology_hypercube, topology_bus,
-    topology_full_mesh, topology_fat_tree, topology_dragonfly, topology_graph;
+/* Every family's own. */
+#define X(constant, word, stem, ndim, routers, traits) extern const struct topology_type topology_##stem;
+TOPOLOGY_LIST(X)
+#undef X
 
 #endif

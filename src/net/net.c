@@ -6,14 +6,15 @@
 #include "net/net_internal.h"
 
 static const struct net_type *const levels[] = {
-    [LEVEL_LOGGP] = &net_loggp, [LEVEL_LINK] = &net_link, [LEVEL_PACKET] = &net_packet,
-    [LEVEL_FLIT] = &net_flit,   [LEVEL_AUTO] = &net_auto,
+#define X(constant, word, stem, cost, fineness) [constant] = &net_##stem,
+    LEVEL_LIST(X)
+#undef X
 };
 
 /* a bus is one resource, served first come first served: all levels mean the same, which is what `link` does */
 static const struct net_type *level_of(const struct machine_spec *m)
 {
-    enum network_level level = m->topology.family == TOPOLOGY_BUS ? LEVEL_LINK : m->network.level;
+    enum network_level level = topology_has(m->topology.family, TOPOLOGY_SHARED) ? LEVEL_LINK : m->network.level;
     return (size_t)level < sizeof levels / sizeof *levels ? levels[level] : NULL;
 }
 

@@ -59,7 +59,10 @@ struct net {
     void *state;            /* of the level */
 };
 
-extern const struct net_type net_loggp, net_link, net_packet, net_flit, net_auto;
+/* Every level's own. */
+#define X(constant, word, stem, cost, fineness) extern const struct net_type net_##stem;
+LEVEL_LIST(X)
+#undef X
 
 /* Resources are numbered: injection ports of nodes, then links, then ejection ports. */
 static inline int net_injection(const struct net *n, int node) { return (void)n, node; }

@@ -267,26 +267,10 @@ bool machine_file_read(struct machine_file *m, const char *name, const char *nea
     return machine_file_check(&m->spec, m->value[dims].file, m->value[dims].line, e);
 }
 
-/* How many dimensions a family takes: 0 for any. */
-static int family_dims(enum topology_family family)
-{
-    switch (family) {
-    case TOPOLOGY_TORUS:
-    case TOPOLOGY_MESH:
-        return 0;
-    case TOPOLOGY_FAT_TREE:
-        return 2;
-    case TOPOLOGY_DRAGONFLY:
-        return 4;
-    default:
-        return 1;
-    }
-}
-
 bool machine_file_check(const struct machine_spec *m, const char *file, int line, struct err *e)
 {
     const struct topology_spec *t = &m->topology;
-    int expected = family_dims(t->family);
+    const int expected = topology_family_dims(t->family);
     if (expected != 0 && t->ndim != expected)
         return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims has %d numbers; its family takes %d",
                           m->name, t->ndim, expected);
@@ -298,7 +282,7 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
         if (t->link[i][0] >= t->dims[0] || t->link[i][1] >= t->dims[0])
             return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.links names router %d; there are %d",
                               m->name, t->link[i][t->link[i][0] < t->dims[0]], t->dims[0]);
-    if (t->family == TOPOLOGY_GRAPH && t->nlink == 0 && t->dims[0] > 1)
+    if (topology_has(t->family, TOPOLOGY_LISTED) && t->nlink == 0 && t->dims[0] > 1)
         return err_set_at(e, ERR_CONFIG, file, line, "machine %s: family 'graph' needs topology.links", m->name);
     return true;
 }

@@ -10,11 +10,18 @@
 #define AT(member) .offset = offsetof(struct machine_spec, member)
 #define COUNT(member) .count = offsetof(struct machine_spec, member)
 
-static const char *const families[] = {"crossbar",  "torus",    "mesh",      "hypercube", "bus",
-                                       "full-mesh", "fat-tree", "dragonfly", "graph",     NULL};
+static const char *const families[] = {
+#define X(constant, word, stem, ndim, routers, traits) [constant] = word,
+    TOPOLOGY_LIST(X)
+#undef X
+    NULL};
 static const char *const ties[] = {"positive", "parity", "random", NULL};
 static const char *const routings[] = {"minimal", "valiant", NULL};
-static const char *const levels[] = {"loggp", "link", "packet", "flit", "auto", "auto-tolerance", NULL};
+static const char *const levels[] = {
+#define X(constant, word, stem, cost, fineness) [constant] = word,
+    LEVEL_LIST(X)
+#undef X
+    [LEVEL_AUTO_TOLERANCE] = "auto-tolerance", NULL};
 static const char *const arbitrations[] = {"round-robin", "first-come", NULL};
 static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
@@ -22,36 +29,39 @@ static const char *const spreads[] = {"block", "cyclic", NULL};
 
 static const char *idle_with_own_nodes(const struct run_spec *r)
 {
-    enum topology_family f = r->machine.topology.family;
-    return f == TOPOLOGY_FAT_TREE || f == TOPOLOGY_DRAGONFLY ? "topology.dims says how many nodes a router has" : NULL;
+    return topology_has(r->machine.topology.family, TOPOLOGY_OWN_NODES)
+               ? "topology.dims says how many nodes a router has"
+               : NULL;
 }
 
 static const char *idle_without_links(const struct run_spec *r)
 {
-    enum topology_family f = r->machine.topology.family;
-    return f == TOPOLOGY_CROSSBAR || f == TOPOLOGY_BUS ? "the topology has no links between routers" : NULL;
+    return topology_has(r->machine.topology.family, TOPOLOGY_NO_LINKS) ? "the topology has no links between routers"
+                                                                       : NULL;
 }
 
 static const char *idle_unless_ring(const struct run_spec *r)
 {
-    return r->machine.topology.family == TOPOLOGY_TORUS ? NULL : "only a torus has two equally long ways round";
+    return topology_has(r->machine.topology.family, TOPOLOGY_RINGS) ? NULL
+                                                                    : "only a torus has two equally long ways round";
 }
 
 static const char *idle_unless_dragonfly(const struct run_spec *r)
 {
-    enum topology_family f = r->machine.topology.family;
-    bool chooses = f == TOPOLOGY_DRAGONFLY || f == TOPOLOGY_FAT_TREE;
+    bool chooses = topology_has(r->machine.topology.family, TOPOLOGY_CHOOSES);
     return chooses ? NULL : "only dragonflies and fat trees choose their routing";
 }
 
 static const char *idle_unless_hypercube(const struct run_spec *r)
 {
-    return r->machine.topology.family == TOPOLOGY_HYPERCUBE ? NULL : "only a hypercube has Xpress links";
+    return topology_has(r->machine.topology.family, TOPOLOGY_CUBE) ? NULL : "only a hypercube has Xpress links";
 }
 
 static const char *idle_unless_graph(const struct run_spec *r)
 {
-    return r->machine.topology.family == TOPOLOGY_GRAPH ? NULL : "only family 'graph' takes its links from the file";
+    return topology_has(r->machine.topology.family, TOPOLOGY_LISTED)
+               ? NULL
+               : "only family 'graph' takes its links from the file";
 }
 
 static const char *idle_unless_tolerance(const struct run_spec *r)
@@ -375,22 +385,55 @@ static int64_t power(int64_t base, int exponent)
 static int64_t router_count(const struct topology_spec *t)
 {
     switch (t->family) {
-    case TOPOLOGY_TORUS:
-    case TOPOLOGY_MESH: return product(t->dims, t->ndim);
-    case TOPOLOGY_HYPERCUBE: return power(2, t->dims[0]);
-    case TOPOLOGY_FAT_TREE: return power(t->dims[0], t->dims[1]);
-    case TOPOLOGY_DRAGONFLY: return size_count(size_count(t->dims[0], t->dims[1]), t->dims[3]);
-    case TOPOLOGY_CROSSBAR:
-    case TOPOLOGY_BUS:
-    case TOPOLOGY_FULL_MESH:
-    case TOPOLOGY_GRAPH: return t->dims[0];
+#define X(constant, word, stem, ndim, routers, traits) \
+    case constant: return routers;
+        TOPOLOGY_LIST(X)
+#undef X
     }
     return 0;
+}
+
+bool topology_has(enum topology_family f, enum topology_trait trait)
+{
+    static const unsigned has[] = {
+#define X(constant, word, stem, ndim, routers, traits) [constant] = traits,
+        TOPOLOGY_LIST(X)
+#undef X
+    };
+    return (has[f] & trait) != 0;
+}
+
+int topology_family_dims(enum topology_family f)
+{
+    static const int count[] = {
+#define X(constant, word, stem, ndim, routers, traits) [constant] = ndim,
+        TOPOLOGY_LIST(X)
+#undef X
+    };
+    return count[f];
+}
+
+const char *topology_family_name(enum topology_family f) { return families[f]; }
+
+const char *network_level_name(enum network_level level) { return levels[level]; }
+
+void network_levels_by_cost(enum network_level level[LEVELS])
+{
+#define X(constant, word, stem, cost, fineness) level[cost] = constant;
+    LEVEL_LIST(X)
+#undef X
+}
+
+void network_levels_by_fineness(enum network_level level[LEVELS])
+{
+#define X(constant, word, stem, cost, fineness) level[fineness] = constant;
+    LEVEL_LIST(X)
+#undef X
 }
 
 int64_t machine_spec_processors(const struct machine_spec *m)
 {
     const struct topology_spec *t = &m->topology;
-    bool own_nodes = t->family == TOPOLOGY_FAT_TREE || t->family == TOPOLOGY_DRAGONFLY;
+    bool own_nodes = topology_has(t->family, TOPOLOGY_OWN_NODES);
     return size_count(size_count(router_count(t), own_nodes ? 1 : t->nodes_per_router), t->processors_per_node);
 }

@@ -8,20 +8,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spec/level_list.h"
 #include "spec/software_spec.h"
+#include "spec/topology_list.h"
 
 enum { MACHINE_MAX_DIMS = 8 };
 
 enum topology_family {
-    TOPOLOGY_CROSSBAR,  /* every node has one port; nothing shared but injection and ejection */
-    TOPOLOGY_TORUS,     /* k-ary n-cube of mixed radix, dimension-order routes */
-    TOPOLOGY_MESH,      /* the same without wrap links */
-    TOPOLOGY_HYPERCUBE, /* e-cube routes; `nodes_per_router` for bristled ones */
-    TOPOLOGY_BUS,       /* one shared resource */
-    TOPOLOGY_FULL_MESH, /* a link between every two routers */
-    TOPOLOGY_FAT_TREE,  /* k-ary n-tree */
-    TOPOLOGY_DRAGONFLY, /* groups of routers, all-to-all inside and between groups */
-    TOPOLOGY_GRAPH      /* routers and links given in the file */
+#define X(constant, word, stem, ndim, routers, traits) constant,
+    TOPOLOGY_LIST(X)
+#undef X
 };
 
 enum tie_rule {
@@ -63,9 +59,14 @@ struct node_spec {
 };
 
 enum network_level {
-    LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT, LEVEL_AUTO,
+#define X(constant, word, stem, cost, fineness) constant,
+    LEVEL_LIST(X)
+#undef X
     LEVEL_AUTO_TOLERANCE /* the cheapest whose measured error is within `tolerance`; replaced by it before a run */
 };
+
+enum { LEVELS = LEVEL_AUTO_TOLERANCE }; /* levels that a network can be simulated at */
+
 enum arbitration { ARBITRATION_ROUND_ROBIN, ARBITRATION_FIRST_COME };
 
 /* The wire. Zero-load time of a message of b bytes over R = links + 1 resources after injection:
@@ -116,6 +117,18 @@ struct machine_spec {
     struct placement_spec placement;
     struct noise_spec noise;
 };
+
+/* topology_has: whether a family has a trait (topology_list.h). topology_family_dims: how many numbers topology.dims
+ * takes, 0: any. topology_family_name: its word in files. */
+bool topology_has(enum topology_family f, enum topology_trait trait);
+int topology_family_dims(enum topology_family f);
+const char *topology_family_name(enum topology_family f);
+
+/* network_level_name: the word in files, of any level. network_levels_by_cost, network_levels_by_fineness: all levels,
+ * the cheapest or the finest first. */
+const char *network_level_name(enum network_level level);
+void network_levels_by_cost(enum network_level level[LEVELS]);
+void network_levels_by_fineness(enum network_level level[LEVELS]);
 
 /* machine_spec_processors: how many ranks the machine can hold: routers x nodes_per_router x processors_per_node. A fat
  * tree has arity^levels nodes and a dragonfly terminals x routers x groups, whatever nodes_per_router says. */

@@ -11,10 +11,11 @@
 bool run_spec_is_random(const struct run_spec *r)
 {
     const struct machine_spec *m = &r->machine;
-    bool chooses = m->topology.family == TOPOLOGY_DRAGONFLY || m->topology.family == TOPOLOGY_FAT_TREE;
-    bool valiant = chooses && m->topology.routing == ROUTE_VALIANT;
+    const enum topology_family f = m->topology.family;
+    bool valiant = topology_has(f, TOPOLOGY_CHOOSES) && m->topology.routing == ROUTE_VALIANT;
+    bool tie = topology_has(f, TOPOLOGY_RINGS) && m->topology.tie == TIE_RANDOM;
     bool order = strcmp(r->kernel.name, "random-ring") == 0;
-    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || order;
+    return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || order;
 }
 
 uint64_t run_spec_seed(const struct run_spec *r)

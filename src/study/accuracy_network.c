@@ -9,16 +9,7 @@
 #include "study/accuracy_ladder.h"
 #include "study/trial.h"
 
-enum { LEVELS = 5, REPEATS = 3 };
-
-static const struct {
-    const char *name;
-    enum network_level level;
-} level_table[LEVELS] = {{"loggp", LEVEL_LOGGP}, {"link", LEVEL_LINK}, {"packet", LEVEL_PACKET}, {"flit", LEVEL_FLIT},
-                         {"auto", LEVEL_AUTO}};
-
-/* From fine to coarse: the first that answers is the reference. auto is packet by another way. */
-static const int fineness[] = {3, 2, 4, 1, 0};
+enum { REPEATS = 3 };
 
 /* The fastest of a few runs: the others were disturbed. */
 static struct trial run_level(struct ladder *l, enum network_level level)
@@ -96,15 +87,18 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 void ladder_network(struct ladder *l)
 {
     struct trial t[LEVELS];
+    enum network_level fine[LEVELS];
     int finest = -1;
-    for (int i = 0; i < LEVELS; i++) t[i] = run_level(l, level_table[i].level);
-    for (int i = 0; i < LEVELS && finest < 0; i++)
-        if (t[fineness[i]].answered) finest = fineness[i];
+    network_levels_by_fineness(fine);
+    for (int i = 0; i < LEVELS; i++) t[i] = run_level(l, (enum network_level)i);
+    for (int i = 0; i < LEVELS && finest < 0; i++) /* the finest that answers is the reference of the others */
+        if (t[fine[i]].answered) finest = (int)fine[i];
+    const char *reference = finest >= 0 ? network_level_name((enum network_level)finest) : "none";
     double seconds, host_s;
     if (finest >= 0 && closed_form(l, &seconds, &host_s))
         add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s,
-                 "mean work and messages of a rank, no overlap", &t[finest], level_table[finest].name);
+                 "mean work and messages of a rank, no overlap", &t[finest], reference);
     for (int i = 0; i < LEVELS; i++)
-        add_rows(l, level_table[i].name, t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps, t[i].host_s, t[i].text,
-                 finest >= 0 ? &t[finest] : NULL, finest >= 0 ? level_table[finest].name : "none");
+        add_rows(l, network_level_name((enum network_level)i), t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps,
+                 t[i].host_s, t[i].text, finest >= 0 ? &t[finest] : NULL, reference);
 }

@@ -8,14 +8,6 @@
 #include "base/text.h"
 #include "spec/field.h"
 
-/* From cheap to dear. auto gives the times of packet and costs no more. */
-static const struct {
-    const char *name;
-    enum network_level level;
-} by_cost[] = {{"loggp", LEVEL_LOGGP}, {"link", LEVEL_LINK}, {"auto", LEVEL_AUTO}, {"packet", LEVEL_PACKET},
-               {"flit", LEVEL_FLIT}};
-enum { LEVELS = sizeof by_cost / sizeof *by_cost };
-
 void level_family(const struct run_spec *spec, char hex[65])
 {
     struct run_spec x = *spec;
@@ -33,18 +25,20 @@ void level_family(const struct run_spec *spec, char hex[65])
 
 int level_cheapest(const struct level_error *error, int n, double tolerance)
 {
+    enum network_level cheap[LEVELS];
+    network_levels_by_cost(cheap);
     for (int k = 0; k < LEVELS; k++)
         for (int i = 0; i < n; i++)
-            if (strcmp(error[i].level, by_cost[k].name) == 0 && error[i].error <= tolerance) return i;
+            if (strcmp(error[i].level, network_level_name(cheap[k])) == 0 && error[i].error <= tolerance) return i;
     return -1;
 }
 
 void level_take(struct run_spec *spec, const struct level_error *taken)
 {
     int k = 0;
-    while (k < LEVELS && strcmp(by_cost[k].name, taken->level) != 0) k++;
+    while (k < LEVELS && strcmp(network_level_name((enum network_level)k), taken->level) != 0) k++;
     CHECK(k < LEVELS);
-    spec->machine.network.level = by_cost[k].level;
+    spec->machine.network.level = (enum network_level)k;
     spec->level_choice = (struct level_choice){.made = true, .error = taken->error};
     text_copy(spec->level_choice.at, sizeof spec->level_choice.at, taken->at);
 }

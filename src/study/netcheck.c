@@ -35,7 +35,7 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
 static bool any_answer(const struct netcheck *n)
 {
     for (int i = 0; i < n->nrow; i++)
-        for (int l = 0; l < NETCHECK_LEVELS; l++)
+        for (int l = 0; l < LEVELS; l++)
             if (n->row[i].answer[l].ran) return true;
     return false;
 }
@@ -44,7 +44,7 @@ static bool any_answer(const struct netcheck *n)
 static bool nothing_answered(const struct netcheck *n, struct err *e)
 {
     for (int i = 0; i < n->nrow; i++)
-        for (int l = 0; l < NETCHECK_LEVELS; l++)
+        for (int l = 0; l < LEVELS; l++)
             if (n->level[l] && n->row[i].answer[l].why[0])
                 return err_set_at(e, ERR_DATA, n->path, n->row[i].line, "none of its %d cases can be answered; %s: %s",
                                   n->nrow, n->row[i].name, n->row[i].answer[l].why);
@@ -60,7 +60,7 @@ bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const
     if (!one && (root->kind != NODE_LIST || root->count == 0))
         return err_set_at(e, ERR_DATA, path, root->line, "expected a list of reference cases");
     *n = (struct netcheck){.path = path};
-    for (int l = 0; l < NETCHECK_LEVELS; l++) n->level[l] = !level || level[l];
+    for (int l = 0; l < LEVELS; l++) n->level[l] = !level || level[l];
     struct netcheck_reader r = {.n = n, .path = path, .filter = filter, .rows = a, .arena = arena_create(), .e = e};
     struct progress p = progress_make("reference cases", one ? 1 : root->count, quiet);
     bool ok = true;

@@ -13,7 +13,7 @@
 #include "base/json.h"
 #include "spec/machine_spec.h"
 
-enum { NETCHECK_LEVELS = LEVEL_AUTO + 1, NETCHECK_MOST_IGNORED = 64 };
+enum { NETCHECK_MOST_IGNORED = 64 };
 
 /* What a case asks for. */
 enum netcheck_form {
@@ -58,12 +58,12 @@ struct netcheck_row {
     double low, high;       /* reference [cycles], equal but for a band */
     char flaw[160];         /* the reference contradicts itself, "" when not: the row fails whatever the levels say */
     int *src, *dst, *flits; /* played: (nmessage) */
-    struct netcheck_answer answer[NETCHECK_LEVELS];
+    struct netcheck_answer answer[LEVELS];
 };
 
 struct netcheck {
     const char *path;            /* borrowed */
-    bool level[NETCHECK_LEVELS]; /* asked for */
+    bool level[LEVELS]; /* asked for */
     int nrow;
     struct netcheck_row *row; /* (nrow) in the arena */
     int nignored;

@@ -138,7 +138,7 @@ static bool play(struct netcheck_question *k, enum network_level level, struct t
 
 void netcheck_unanswered(struct netcheck_row *row, const char *why)
 {
-    for (int l = 0; l < NETCHECK_LEVELS; l++) text_copy(row->answer[l].why, sizeof row->answer[l].why, why);
+    for (int l = 0; l < LEVELS; l++) text_copy(row->answer[l].why, sizeof row->answer[l].why, why);
 }
 
 void netcheck_ask(struct netcheck_question *k)
@@ -146,7 +146,7 @@ void netcheck_ask(struct netcheck_question *k)
     struct err e;
     struct traffic_result r;
     sizes_of(k);
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    for (int l = 0; l < LEVELS; l++) {
         struct netcheck_answer *answer = &k->row->answer[l];
         if (!k->n->level[l] || !fits_buffers(k, (enum network_level)l, answer)) continue;
         struct arena_mark mark = arena_mark(k->arena);
@@ -211,7 +211,7 @@ static void ask_one_saturation(struct netcheck_question *k, enum network_level l
 
 void netcheck_ask_saturation(struct netcheck_question *k, const char *pattern, int flits)
 {
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    for (int l = 0; l < LEVELS; l++) {
         if (l == LEVEL_LOGGP)
             text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, "without contention nothing saturates");
         else if (k->n->level[l]) ask_one_saturation(k, (enum network_level)l, pattern, flits);

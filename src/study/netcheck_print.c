@@ -6,9 +6,7 @@
 #include "base/text.h"
 #include "study/netcheck_verdict.h"
 
-static const char *const level_names[] = {"loggp", "link", "packet", "flit", "auto"};
-
-const char *netcheck_level_name(enum network_level level) { return level_names[level]; }
+const char *netcheck_level_name(enum network_level level) { return network_level_name(level); }
 
 struct netcheck_total netcheck_total(const struct netcheck *n, const char *group, enum network_level level)
 {
@@ -38,8 +36,8 @@ struct netcheck_total netcheck_total(const struct netcheck *n, const char *group
 static void print_heads(const struct netcheck *n, const char *first, const char *second, FILE *out)
 {
     fprintf(out, "%-66s %9s", first, second);
-    for (int l = 0; l < NETCHECK_LEVELS; l++)
-        if (n->level[l]) fprintf(out, " %10s", level_names[l]);
+    for (int l = 0; l < LEVELS; l++)
+        if (n->level[l]) fprintf(out, " %10s", network_level_name((enum network_level)l));
     fprintf(out, "\n");
 }
 
@@ -51,7 +49,7 @@ static void print_cases(const struct netcheck *n, double within, FILE *out)
         const struct netcheck_row *row = &n->row[i];
         if (row->played) continue;
         fprintf(out, "%-66s %9.6g", row->name, row->high);
-        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; l < LEVELS; l++) {
             const struct netcheck_answer *a = &row->answer[l];
             if (!n->level[l]) continue;
             char mark = netcheck_row_fails(row, (enum network_level)l, within, NULL) ? '!' : ' ';
@@ -79,13 +77,13 @@ static void print_played(const struct netcheck *n, bool brief, FILE *out)
         const struct netcheck_row *row = &n->row[i];
         if (!row->played) continue;
         fprintf(out, "%-66s %9d", row->name, row->nmessage);
-        for (int l = 0; l < NETCHECK_LEVELS; l++)
+        for (int l = 0; l < LEVELS; l++)
             if (n->level[l]) print_time(&row->answer[l], row->answer[l].found, out);
         fprintf(out, "\n");
         for (int m = 0; !brief && row->src && m < row->nmessage; m++) {
             snprintf(name, sizeof name, "  message %d: %d -> %d, %d flits", m, row->src[m], row->dst[m], row->flits[m]);
             fprintf(out, "%-66s %9s", name, "");
-            for (int l = 0; l < NETCHECK_LEVELS; l++)
+            for (int l = 0; l < LEVELS; l++)
                 if (n->level[l])
                     print_time(&row->answer[l], row->answer[l].arrival ? row->answer[l].arrival[m] : 0, out);
             fprintf(out, "\n");
@@ -95,12 +93,13 @@ static void print_played(const struct netcheck *n, bool brief, FILE *out)
 
 static void print_total(const struct netcheck *n, const char *group, double within, FILE *out)
 {
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    for (int l = 0; l < LEVELS; l++) {
         struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
         struct netcheck_verdict v = netcheck_verdict(n, group, (enum network_level)l, within);
         if (!n->level[l] || t.cases == 0) continue;
-        fprintf(out, "%-30s %-7s %6d %7d %7d %9.3f %+9.2f %9.3f ", group ? group : "all", level_names[l], t.cases,
-                t.skipped, t.exact_cases, 100 * t.mean, 100 * t.worst, 100 * t.message_error);
+        fprintf(out, "%-30s %-7s %6d %7d %7d %9.3f %+9.2f %9.3f ", group ? group : "all",
+                network_level_name((enum network_level)l), t.cases, t.skipped, t.exact_cases, 100 * t.mean,
+                100 * t.worst, 100 * t.message_error);
         if (t.messages > 0) fprintf(out, "%9.3f ", 100.0 * (double)t.exact / (double)t.messages);
         else fprintf(out, "%9s ", "-");
         if (!group) fprintf(out, "\n");
@@ -113,12 +112,12 @@ static void print_total(const struct netcheck *n, const char *group, double with
 /* why cases could not be answered, each reason once per level */
 static void print_reasons(const struct netcheck *n, FILE *out)
 {
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    for (int l = 0; l < LEVELS; l++) {
         const char *last = "";
         for (int i = 0; n->level[l] && i < n->nrow; i++) {
             const struct netcheck_answer *a = &n->row[i].answer[l];
             if (a->ran || strcmp(a->why, last) == 0) continue;
-            fprintf(out, "%s skipped %s: %s\n", level_names[l], n->row[i].name, a->why);
+            fprintf(out, "%s skipped %s: %s\n", network_level_name((enum network_level)l), n->row[i].name, a->why);
             last = a->why;
         }
     }
@@ -130,15 +129,15 @@ static void print_findings(const struct netcheck *n, double within, FILE *out)
     int silent = 0;
     for (int i = 0; i < n->nrow; i++) {
         bool any = false;
-        for (int l = 0; l < NETCHECK_LEVELS; l++) any = any || n->row[i].answer[l].ran;
+        for (int l = 0; l < LEVELS; l++) any = any || n->row[i].answer[l].ran;
         silent += !any;
         if (n->row[i].flaw[0])
             fprintf(out, "FAIL %s:%d: %s: %s\n", n->path, n->row[i].line, n->row[i].name, n->row[i].flaw);
-        for (int l = 0; netcheck_opens_group(n, i) && l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; netcheck_opens_group(n, i) && l < LEVELS; l++) {
             struct netcheck_verdict v = netcheck_verdict(n, n->row[i].group, (enum network_level)l, within);
             if (n->level[l] && !v.pass)
-                fprintf(out, "FAIL %s, %s: %d of %d cases; %s\n", n->row[i].group, level_names[l], v.failed, v.cases,
-                        v.why);
+                fprintf(out, "FAIL %s, %s: %d of %d cases; %s\n", n->row[i].group,
+                        network_level_name((enum network_level)l), v.failed, v.cases, v.why);
         }
     }
     if (silent > 0) fprintf(out, "not judged: %d of %d cases, which no level answered\n", silent, n->nrow);
@@ -231,9 +230,9 @@ static void json_rows(const struct netcheck *n, double within, struct json *j)
         key_text(j, "group", row->group);
         json_key(j, "levels");
         json_object(j);
-        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; l < LEVELS; l++) {
             if (!n->level[by_name[l]]) continue;
-            json_key(j, level_names[by_name[l]]);
+            json_key(j, network_level_name((enum network_level)by_name[l]));
             json_answer(j, row, by_name[l], within);
         }
         json_end(j);
@@ -248,7 +247,7 @@ static void json_rows(const struct netcheck *n, double within, struct json *j)
 
 static void json_total(const struct netcheck *n, const char *group, double within, struct json *j)
 {
-    for (int l = 0; l < NETCHECK_LEVELS; l++) {
+    for (int l = 0; l < LEVELS; l++) {
         struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
         struct netcheck_verdict v = netcheck_verdict(n, group, (enum network_level)l, within);
         if (!n->level[l]) continue;
@@ -258,7 +257,7 @@ static void json_total(const struct netcheck *n, const char *group, double withi
         key_int(j, "exact_messages", t.exact);
         key_int(j, "failed", v.failed);
         key_text(j, "group", group ? group : "all");
-        key_text(j, "level", level_names[l]);
+        key_text(j, "level", network_level_name((enum network_level)l));
         key_real(j, "mean_error", t.mean);
         if (group) key_real(j, "mean_limit", v.mean_limit);
         key_real(j, "mean_message_error", t.message_error);

@@ -98,7 +98,7 @@ bool netcheck_pass(const struct netcheck *n, double within)
 {
     for (int i = 0; i < n->nrow; i++) {
         if (n->row[i].flaw[0]) return false;
-        for (int l = 0; netcheck_opens_group(n, i) && l < NETCHECK_LEVELS; l++)
+        for (int l = 0; netcheck_opens_group(n, i) && l < LEVELS; l++)
             if (!netcheck_verdict(n, n->row[i].group, (enum network_level)l, within).pass) return false;
     }
     return true;

@@ -185,7 +185,7 @@ static void auto_equals_packet_on_the_reference_cases(void **state)
 {
     (void)state;
     static const char *const file[] = {DATA "makespan.json", DATA "collectives.json", DATA "makespan_sensitivity.json"};
-    bool level[NETCHECK_LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
+    bool level[LEVELS] = {[LEVEL_PACKET] = true, [LEVEL_AUTO] = true};
     int ran = 0;
     for (int f = 0; f < 3; f++) {
         struct arena *a = arena_create();
@@ -288,7 +288,7 @@ static void hypercube_steps_cost_two_events(void **state)
 {
     (void)state;
     struct arena *a = arena_create();
-    bool level[NETCHECK_LEVELS] = {[LEVEL_AUTO] = true};
+    bool level[LEVELS] = {[LEVEL_AUTO] = true};
     struct netcheck n;
     struct err e;
     err_clear(&e);

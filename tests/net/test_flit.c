@@ -20,7 +20,7 @@
 static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
 {
     struct err e;
-    bool level[NETCHECK_LEVELS] = {[LEVEL_FLIT] = true};
+    bool level[LEVELS] = {[LEVEL_FLIT] = true};
     err_clear(&e);
     if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
     assert_true(n->nrow > 0);

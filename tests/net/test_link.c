@@ -19,7 +19,7 @@
 static void ask(struct netcheck *n, const char *file, const char *filter, struct arena *a)
 {
     struct err e;
-    bool level[NETCHECK_LEVELS] = {[LEVEL_LOGGP] = true, [LEVEL_LINK] = true};
+    bool level[LEVELS] = {[LEVEL_LOGGP] = true, [LEVEL_LINK] = true};
     err_clear(&e);
     if (!netcheck_run(n, file, level, filter, true, a, &e)) fail_msg("%s", e.text);
     assert_true(n->nrow > 0);

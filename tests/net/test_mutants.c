@@ -174,7 +174,7 @@ static bool killed(const char *text, const char *with, const char *path, struct 
     bool read = netcheck_run(&n, path, NULL, NULL, true, a, &e), good = read && netcheck_pass(&n, -1);
     if (c) c->tolerance = c->message = good ? INFINITY : 0;
     for (int i = 0; c && good && i < n.nrow; i++)
-        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; l < LEVELS; l++) {
             const struct netcheck_accuracy *s = netcheck_accuracy_of(&n.row[i], (enum network_level)l);
             if (!n.row[i].counted || !n.row[i].answer[l].ran) continue;
             c->tolerance = fmin(c->tolerance, fmax(-s->low, s->high));

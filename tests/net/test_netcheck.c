@@ -211,7 +211,7 @@ static void a_band_is_met_anywhere_inside(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     struct err e;
-    bool level[NETCHECK_LEVELS] = {[LEVEL_LINK] = true};
+    bool level[LEVELS] = {[LEVEL_LINK] = true};
     err_clear(&e);
     assert_true(netcheck_run(&n, DATA "makespan_sensitivity.json", level, "mesh8x8", true, a, &e));
     assert_int_equal(n.nrow, 18);
@@ -231,7 +231,7 @@ static void latencies_follow_the_reference(void **state)
     struct arena *a = arena_create();
     struct netcheck n;
     struct err e;
-    bool level[NETCHECK_LEVELS] = {[LEVEL_LINK] = true};
+    bool level[LEVELS] = {[LEVEL_LINK] = true};
     err_clear(&e);
     assert_true(netcheck_run(&n, DATA "latency_load.json", level, "0.0100", true, a, &e));
     assert_true(n.nrow > 40);
@@ -250,7 +250,7 @@ static void json_reads_back(void **state)
     char folder[256], path[300];
     struct arena *a = arena_create();
     struct err e;
-    bool level[NETCHECK_LEVELS] = {[LEVEL_LINK] = true};
+    bool level[LEVELS] = {[LEVEL_LINK] = true};
     struct netcheck n;
     scratch_make(folder, sizeof folder);
     FILE *out = fopen(scratch_path(path, sizeof path, folder, "answers.json"), "w");
