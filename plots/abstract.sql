@@ -23,22 +23,22 @@ SELECT 'The paper is: Andres Jaramillo-Botero and Alfons Crespo i Lorente, "A Un
     || 'about log2 n rounds of messages, and reports measurements on a Cray T3E, an Intel Paragon, an SGI Origin2000 and a PC '
     || 'with four processors.' AS text
 UNION ALL
-SELECT 'The question: would the same programs, on models of the same machines, show what the paper says of them? The programs '
-    || 'were written anew after the paper. They ran on simulated machines, of which every number comes from published sources '
-    || 'or is marked as an estimate, and they computed real numbers, which were compared with serial references.'
+SELECT 'The question: do the same programs, on models of the same machines, show what the paper reports? The programs were '
+    || 'written from the description in the paper. They ran on simulated machines, whose parameters come from published sources '
+    || 'or are marked as estimates. They computed actual numbers, which were compared with serial references.'
 UNION ALL
 SELECT CASE WHEN n = 0 THEN 'No claim has been judged.' ELSE
-    format('The answer: of %d claims that were judged, %d hold%s and %d do not%s.', pass + fail, pass,
+    format('The answer: of %d claims judged, %d hold%s and %d do not%s.', pass + fail, pass,
            iif(pass, ' (' || passing || ')', ''), fail, iif(fail, ' (' || failing || ')', '')) ||
     iif(unmade, format(' %d cannot be judged, because runs are missing (%s).', unmade, missing), '') ||
-    iif(indicators, format(' %d indicators, which the paper names without a number, are shown and not judged.', indicators), '') ||
-    ifnull((SELECT ' Where the paper leaves something open, such as its serial code or its solver, variants disagree: ' || list ||
+    iif(indicators, format(' %d indicators for which the paper gives no number are shown but not judged.', indicators), '') ||
+    ifnull((SELECT ' The paper does not specify its serial code or its solver, for example. Variants of these give different verdicts: ' || list ||
                    '.' FROM partly WHERE list IS NOT NULL), '') END FROM tally
 UNION ALL
-SELECT format('It rests on %d runs on %d machines with up to %d processors, of which %d ended well; %s. ', runs, machines, largest,
+SELECT format('The answer is based on %d runs on %d machines with up to %d processors, of which %d succeeded; %s. ', runs, machines, largest,
               ok, iif(failed = 0, format('all %d comparisons with a reference were within tolerance', checks),
                       format('%d of %d comparisons with a reference were not within tolerance', failed, checks))) ||
-       iif(sampled.n > 0, format('Each claim was judged again for %d samples of the machine parameters that are known as a range only. ',
+       iif(sampled.n > 0, format('Each claim was also judged for %d samples of the machine parameters that are known only as a range. ',
                                  sampled.n), '') ||
-       'Which variant gives a verdict, and with which tolerance, follows from the set-up of the paper and not from the values; '
-    || 'it is stated with each claim. Nothing is tuned to make a claim hold or fail.' FROM stored, error, sampled WHERE runs > 0;
+       'The variant and the tolerance that determine a verdict follow from the set-up of the paper and not from the values; '
+    || 'they are stated with each claim. Nothing is tuned to make a claim hold or fail.' FROM stored, error, sampled WHERE runs > 0;

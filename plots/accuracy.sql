@@ -1,6 +1,6 @@
--- Work-precision diagrams of one scenario: the error of every rung of its ladders against the host's seconds and against
--- the seconds that the simulated machine would take. Methods that give the same bits at the same predicted cost share a
--- curve. Rungs that failed are listed, never dropped.
+-- Work-precision diagrams of one scenario: the error of every level, method and step size against the run time on this
+-- computer and against the predicted run time on the machine. Methods that give the same bits at the same predicted cost
+-- share a curve. Failed points are listed below the diagrams.
 -- needs: mimdsim accuracy scenarios/speedup-t3e.yaml
 -- each: SELECT DISTINCT scenario, 'accuracy-' || scenario FROM ladder ORDER BY 1
 WITH place AS ( -- of several points that were measured, the one that takes the machine longest

@@ -1,6 +1,6 @@
 -- The claims of the paper and all their variants: whether each holds, and in which share of the samples of the uncertain
--- machine parameters. The verdict is that of the variant with the thick frame. Claims on the speedup have a cell for each
--- serial baseline, with structured and with dense operators; the others have cells with names of their own.
+-- machine parameters. The variant with the thick frame determines the verdict. Claims on the speedup have a cell for each
+-- serial baseline, with structured and with dense operators; the cells of the other claims are labelled.
 -- needs: mimdsim paper
 -- In a text a low quotation mark stands for the comma, which gnuplot's strcol would take for the cell's end.
 WITH split AS (

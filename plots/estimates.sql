@@ -1,10 +1,10 @@
--- What the analytic estimates said of the claims, and what the simulator found.
-SELECT 'f > 0.97 from P of about 45 (C2) only for dense operators over the same code on one processor' AS estimate,
+-- What the analytic estimates predicted for the claims, and what the simulator found.
+SELECT 'f > 0.97 from P of about 45 (C2) only for dense operators relative to the same code on one processor' AS estimate,
        iif((SELECT group_concat(variant, '; ') FROM claim WHERE id = 'C2' AND variant <> '' AND verdict = 'pass')
                = 'parallel code on one processor, dense', 'confirmed',
            iif((SELECT count(*) FROM claim WHERE id = 'C2' AND variant <> '' AND share > 0
                     AND variant <> 'parallel code on one processor, dense') = 0, 'confirmed in part', 'refuted')) AS verdict,
-       ifnull((SELECT 'over the same code, dense: ' || note || iif(value IS NULL, '', format('; crossed at P = %d', value)) ||
+       ifnull((SELECT 'relative to the same code, dense: ' || note || iif(value IS NULL, '', format('; crossed at P = %d', value)) ||
                       iif(share IS NULL, '', format('; in %d %% of the samples from 33 to 64', round(100 * share)))
                FROM claim WHERE id = 'C2' AND variant = 'parallel code on one processor, dense'), 'not judged') ||
        ifnull('; other variants that reach it in some samples: ' ||
@@ -35,7 +35,7 @@ SELECT 'a shared machine, noise or scattered placement could make the drop of C3
        ifnull((SELECT group_concat(variant || format(': S(128) / best of fewer = %.2f, ', value) || note, '; ') FROM claim
                WHERE id = 'C3' AND variant <> '' AND variant NOT LIKE '%,%'), 'not judged')
 UNION ALL
-SELECT 'more bodies a processor lift S but do not lower f: the second half of C7 is not reproduced',
+SELECT 'more bodies per processor increase S but do not lower f: the second half of C7 is not reproduced',
        CASE (SELECT max(verdict = 'pass') FROM claim WHERE id = 'C7' AND variant NOT LIKE '%: %' AND variant <> '')
             WHEN 0 THEN iif(EXISTS (SELECT 1 FROM claim WHERE id = 'C7' AND variant LIKE 'same n: %' AND verdict = 'pass'),
                             'confirmed at the same P; at the same n the claim holds', 'confirmed')

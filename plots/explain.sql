@@ -1,5 +1,5 @@
--- What would make a claim hold: the plane of the two parameters that matter most, the others as in the answer. Each cell is
--- a point that was simulated and judged by the claim's own query.
+-- What would make a claim hold: the plane of the two most important parameters, with the others as in the answer. Each cell is
+-- a simulated point, judged by the query of the claim.
 -- needs: mimdsim claims --explain paper.db
 -- each: SELECT DISTINCT subject, 'explain-' || subject FROM explain_map ORDER BY length(subject), subject
 WITH answer AS (

@@ -1,5 +1,5 @@
--- Figure 5: where the time of each stage goes at n = P = 16 and 128 on the Cray T3E. Means over the ranks: over all
--- stages they add up to the makespan. With contention (the finest level of the network that is stored).
+-- Figure 5: how the time of each stage is spent at n = P = 16 and 128 on the Cray T3E. Means over the ranks; their sum
+-- over all stages is the makespan. With contention (the most detailed network level stored).
 -- needs: mimdsim paper fig5
 WITH chosen AS (
     SELECT id, row_number() OVER (PARTITION BY P ORDER BY formulation = 'paper' DESC, operators = 'structured' DESC,

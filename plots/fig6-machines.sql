@@ -1,5 +1,5 @@
--- Figure 6 for the paper's four machines side by side: speedup of the complete dynamics for n = P, over the same code on
--- one processor, the fastest serial code, and each serial code.
+-- Figure 6 for the paper's four machines side by side: speedup of the complete dynamics for n = P, relative to the same
+-- code on one processor, to the fastest serial code, and to each serial code.
 -- needs: mimdsim paper fig6-machines
 WITH point AS (
     SELECT *, CASE WHEN machine LIKE 't3e%' THEN 1 WHEN machine LIKE 'paragon%' THEN 2

@@ -1,6 +1,6 @@
 -- Figure 6: speedup of the complete parallel dynamics for n = P on the Cray T3E, one curve per serial baseline, and the
--- degree of parallelism f that each point has by Amdahl's law, 1/S = (1 - f) + f/P; how much longer the run takes with
--- contention (the finest level of the network that is stored) than without (loggp).
+-- degree of parallelism f of each point by Amdahl's law, 1/S = (1 - f) + f/P; the additional time due to contention (the
+-- most detailed network level stored, compared with loggp).
 -- needs: mimdsim paper fig6
 WITH most AS ( -- the machine with most points; the T3E where several have as many
     SELECT machine FROM run

@@ -1,7 +1,7 @@
 -- Figure 7: the block tridiagonal solver of the forward dynamics (stage CFA[2]) on the Paragon for up to 256 processors
 -- and several n: left its speedup over the best serial solver (the same stage on one processor), right over
--- conventional PCR on as many processors, by the stage's mean time over the ranks. Every solver that is stored is a curve:
--- the variant of the paper is not known.
+-- conventional PCR on the same number of processors, by the mean time of the stage over the ranks. Each stored solver has a
+-- curve, because the variant of the paper is not known.
 -- needs: mimdsim paper fig7
 WITH solve AS (
     SELECT r.*, CASE r.solver WHEN 'partition' THEN 'partition + ' || r.part_solver ELSE r.solver END AS method,

@@ -1,4 +1,4 @@
--- Figure 8: who did what when at n = P = 4 on the Origin2000: the recorded timeline, in microseconds.
+-- Figure 8: timeline of the ranks at n = P = 4 on the Origin2000, in microseconds.
 -- needs: mimdsim paper fig8
 WITH chosen AS (
     SELECT id FROM run

@@ -1,4 +1,4 @@
-# fig9-machines.gp - speedup for several numbers of bodies a processor on four machines, one panel each.
+# fig9-machines.gp - speedup for several numbers of bodies per processor on four machines, one panel each.
 data = figure.".csv"
 stats data using "series" nooutput
 last = int(STATS_max)
@@ -9,7 +9,7 @@ smin = STATS_min
 array ratio[last]; array machine[4] = ["", "", "", ""]
 stats data using (ratio[int(column("series"))] = column("bodies_per_processor"), \
     machine[int(column("panel"))] = strcol("machine").", ".strcol("level"), \
-    headline = "Speedup of the complete dynamics with n/P bodies a processor, on four machines", \
+    headline = "Speedup of the complete dynamics with n/P bodies per processor, on four machines", \
     subline = strcol("formulation")." formulation, ".strcol("operators")." operators, over the parallel code on one processor", 0) nooutput
 of(m, k, v) = column("panel") == m && column("series") == k ? v : NaN
 ymin = 2**floor(log(smin)/log(2)); if (ymin > 0.5) { ymin = 0.5 }

@@ -1,5 +1,5 @@
 -- Figure 9 for the paper's four machines side by side: speedup of the complete dynamics over the parallel code on one
--- processor, for n/P = 1, 2, 4, 8, 16 bodies a processor.
+-- processor, for n/P = 1, 2, 4, 8, 16 bodies per processor.
 -- needs: mimdsim paper fig9-machines
 WITH point AS (
     SELECT v.*, CASE WHEN v.machine LIKE 't3e%' THEN 1 WHEN v.machine LIKE 'paragon%' THEN 2

@@ -1,4 +1,4 @@
-# fig9.gp - speedup for several numbers of bodies a processor; left over the same code, right over the fastest serial.
+# fig9.gp - speedup for several numbers of bodies per processor; left over the same code, right over the fastest serial.
 data = figure.".csv"
 stats data using "series" nooutput
 last = int(STATS_max)
@@ -8,7 +8,7 @@ stats data using "speedup" nooutput
 smin = STATS_min
 array ratio[last]
 stats data using (ratio[int(column("series"))] = column("bodies_per_processor"), \
-    headline = "Speedup of the complete dynamics with n/P bodies a processor, on ".strcol("machine"), \
+    headline = "Speedup of the complete dynamics with n/P bodies per processor, on ".strcol("machine"), \
     subline = strcol("formulation")." formulation, ".strcol("operators")." operators, network level ".strcol("level"), 0) nooutput
 array over[2] = ["over the parallel code on one processor", "over the fastest serial code"]
 of(p, k, v) = column("panel") == p && column("series") == k ? v : NaN

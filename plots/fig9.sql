@@ -1,5 +1,5 @@
--- Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies a processor on the Cray T3E: over the
--- same code on one processor, and over the fastest serial code; below, the degree of parallelism f of each point.
+-- Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies per processor: on the Cray T3E, relative
+-- to the same code on one processor, and to the fastest serial code; below, the degree of parallelism f of each point.
 -- needs: mimdsim paper fig9
 WITH point AS (
     SELECT *, row_number() OVER (PARTITION BY baseline, n, P

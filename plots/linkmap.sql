@@ -1,5 +1,5 @@
 -- Load of every link of one run on a mesh or torus: the share of the run during which the link leaving each router in each
--- direction was busy, and how long messages waited for it. The run with the most waiting that is stored.
+-- direction was busy, and how long messages waited for it. The stored run with the longest waiting time is shown.
 -- needs: mimdsim run bisection   (any scenario with record: {links: true} on a mesh or torus)
 WITH RECURSIVE candidate AS (
     SELECT r.id, v.value AS dims,

@@ -1,5 +1,5 @@
--- One-way time against message size on the machines that were run, and the published points beside them. Published
--- rates and round trips are shown as the one-way times that they mean; an empty message is drawn at 4 bytes.
+-- One-way time against message size on the simulated machines, compared with published values. Published rates and round
+-- trips are converted to one-way times; an empty message is drawn at 4 bytes.
 -- needs: mimdsim run pingpong-machines && mimdsim validate all
 WITH size AS (
     SELECT r.id, r.machine, 1.0 * r.sent_bytes / r.messages AS bytes, r.measured_s * 1e6 AS us,

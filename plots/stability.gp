@@ -48,7 +48,7 @@ do for [format in formats] {
     set label 98 subline at screen 0.5,at_y(42) center noenhanced textcolor rgb grey
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set label 1 "Accelerations and short motions" at screen at_x(14),at_y(72) left font strong
-    set label 2 "number in a cell: power of ten of the relative error, against quad precision, of a short motion against a tight one;  =0: no error at all;  ×: no answer;  –: not known;  blank: does not apply" \
+    set label 2 "number: power of ten of the relative error (accelerations: against quad precision; short motions: against a tight tolerance);  =0: no error;  ×: no result;  –: unknown;  blank: not applicable" \
         at screen at_x(14),at_y(92) left noenhanced font tiny textcolor rgb "#505050"
     set lmargin at screen at_x(14); set rmargin at screen at_x(wide - right_edge)
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper_end)
@@ -75,7 +75,7 @@ do for [format in formats] {
     unset label 97; unset label 98; unset label 99
     if (motions > 0) {
         set label 1 "Motions of stiff cases" at screen at_x(14),at_y(lower - 82) left font strong
-        set label 2 "own steppers: the largest stable step by bisection (in the model's time), then, from half of it on, as many as 1% takes;  others: tolerance 1e-6, mean step;  not run: evaluations it would take" \
+        set label 2 "built-in integrators: largest stable step by bisection (model time), then from half of it on as many steps as 1% needs;  others: tolerance 1e-6, mean step;  not run: evaluations needed" \
             at screen at_x(14),at_y(lower - 62) left noenhanced font tiny textcolor rgb "#505050"
         set tmargin at screen at_y(lower); set bmargin at screen at_y(lower_end)
         unit = (wide - left_edge - 90 - 14)/(steppers + 1.75)

@@ -1,5 +1,5 @@
--- The stability suite, or the scenes of one scenario: every stiff or extreme case against every algorithm: ok, degraded or
--- failed, and how wrong. Accelerations and motions are two tables, since their columns mean other things.
+-- The stability suite, or the scenes of one scenario: every stiff or extreme case with every algorithm: ok, degraded or
+-- failed, and the error. Accelerations and motions are two tables, because their columns differ in meaning.
 -- needs: mimdsim stability
 -- each: SELECT DISTINCT suite, iif(suite = 'suite', 'stability', 'stability-' || suite) FROM stability ORDER BY suite <> 'suite', 1
 WITH mine AS (

@@ -2,8 +2,8 @@
 -- test: mean slope of S(P) from 16 to 32 is at least twice that from 2 to 16
 -- unit: ratio of slopes
 -- designated: fastest serial, structured
--- judged: the fastest serial code, which the text names as the baseline, with structured operators, as that code has them,
---   too; level link. The paper gives no number; "sharply" is taken as twice the slope, and nothing less counts.
+-- judged: the fastest serial code, which the text names as the baseline, with structured operators, as in that code;
+--   level link. The paper gives no number; "sharply" is interpreted as at least twice the slope.
 -- points: t3e-300, dynamics, n = P = 2, 16, 32 at level link
 -- needs: mimdsim paper fig6
 -- explore: sample-t3e n=2,16,32 level=link

@@ -1,9 +1,9 @@
--- statement: A free-floating base costs almost nothing more at many bodies.
+-- statement: With many bodies a free-floating base costs almost nothing more.
 -- test: T(floating) / T(fixed) at n = P = 128 within 2 % of 1
 -- unit: T(floating) / T(fixed)
 -- designated: structured
 -- judged: structured operators as in the other claims, on the largest machine of the paper, level link. "Almost nothing" is
---   taken as 2 %, less than what the averages of runs on shared machines, as the paper has them, could tell.
+--   interpreted as 2 %, which averages of runs on shared machines, as in the paper, could not resolve.
 -- points: t3e-300, dynamics, n = P = 128 with a fixed and with a floating base at level link
 -- needs: mimdsim paper paper-floating
 -- explore: sample-t3e n=128 level=link

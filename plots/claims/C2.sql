@@ -2,8 +2,8 @@
 -- test: the smallest P with f >= 0.97 lies from 33 to 64
 -- unit: processors
 -- designated: fastest serial, structured
--- judged: the fastest serial code, which the text names as the baseline, with structured operators, as that code has them,
---   too; level link. "About 45" is taken as 33 to 64, a factor of 1.4 either way; not reaching 0.97 at all is a failure.
+-- judged: the fastest serial code, which the text names as the baseline, with structured operators, as in that code;
+--   level link. "About 45" is interpreted as 33 to 64, a factor of 1.4 either way; if 0.97 is never reached, the claim fails.
 -- points: t3e-300, dynamics, n = P = 16, 32, 48, 64, 128 at level link
 -- needs: mimdsim paper fig6
 -- explore: sample-t3e n=2,4,8,16,32,48,64,128 level=link

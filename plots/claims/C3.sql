@@ -1,15 +1,15 @@
--- statement: The speedup drops near the largest number of processors, because messages meet on common routes.
--- test: S(128) below the largest S of fewer processors with contention, and not so without
+-- statement: The speedup drops near the largest number of processors, because messages share routes.
+-- test: with contention S(128) is below the largest S of fewer processors, without contention it is not
 -- unit: S(128) / max S(P < 128)
 -- designated: fastest serial, structured
--- judged: the fastest serial code, which the text names as the baseline, with structured operators, as that code has them,
---   too; level link. Any drop counts, as the paper gives no size of it, but contention has to make it.
+-- judged: the fastest serial code, which the text names as the baseline, with structured operators, as in that code;
+--   level link. Any drop counts, because the paper gives no size, but contention has to cause it.
 -- points: t3e-300, dynamics, n = P = 64, 112, 128 at levels link and loggp
 -- needs: mimdsim paper fig6
 -- explore: sample-t3e n=64,112,128
--- Rows for a machine that is not one's own: random placement, noise, background load; there S is the mean over
--- repetitions, and holds when it drops whatever the contention of its own messages is; 'at 128 only': runs on fewer
--- processors have the machine for themselves. They are never judged: the claim says what makes the drop.
+-- Rows for a shared machine: random placement, noise, background load. There S is the mean over repetitions, and the row
+-- holds if S drops, whatever the contention of its own messages; 'at 128 only': runs on fewer processors have the machine to
+-- themselves. These rows do not determine the verdict, because the claim names the cause of the drop.
 WITH point AS (
     SELECT v.*, v.baseline || ', ' || v.operators AS variant
     FROM v_speedup v JOIN run r ON r.id = v.run_id JOIN v_machine_state m ON m.run_id = r.id
@@ -49,7 +49,7 @@ shared_ends AS (
     SELECT variant, max(CASE P WHEN 128 THEN speedup END) AS last, max(CASE WHEN P < 128 THEN speedup END) AS best
     FROM shared GROUP BY variant)
 SELECT variant, last / best AS value, 1.0 AS threshold, iif(last >= best, 0, free_last >= free_best) AS holds, missing,
-       format('contention makes the run at 128 %.1f %% longer, a drop needs more than %.0f %%', 100 * (free_last / last - 1),
+       format('contention makes the run at 128 %.1f %% longer; a drop requires more than %.0f %%', 100 * (free_last / last - 1),
               100 * (free_last / best - 1)) AS note,
        iif(last < best AND free_last >= free_best, min(1 - last / best, free_last / free_best - 1),
            min(1 - last / best, 0) + min(free_last / free_best - 1, 0)) AS margin
@@ -61,7 +61,7 @@ SELECT variant, last / best, 1.0, last < best, missing,
 FROM shared_ends LEFT JOIN shared_gap USING (variant)
 UNION ALL
 SELECT s.variant || ' at 128 only', s.last / e.best, 1.0, s.last < e.best, ifnull(h.missing, g.missing),
-       format('S(128) = %.2f, best of fewer processors on a machine of their own %.2f', s.last, e.best),
+       format('S(128) = %.2f, best of fewer processors, alone on the machine, %.2f', s.last, e.best),
        1 - s.last / e.best
 FROM shared_ends s JOIN ends e ON e.variant = 'fastest serial, structured' LEFT JOIN shared_gap h ON h.variant = s.variant
      LEFT JOIN gap g ON g.variant = e.variant

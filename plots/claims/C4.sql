@@ -1,9 +1,9 @@
 -- statement: With few bodies the velocity stage NE[1] dominates, with many bodies cyclic reduction CFA[2] does.
--- test: of all stages NE[1] takes the most at n = P = 16 and CFA[2] at 128
--- unit: NE[1] / CFA[2] at 128 over the same at 16
+-- test: of all stages NE[1] takes longest at n = P = 16 and CFA[2] at 128
+-- unit: NE[1] / CFA[2] at 128 divided by the same at 16
 -- designated: time, dense
--- judged: the stages' mean times over the ranks, which add up to the run time, with dense operators, because the text blames
---   the matrices for the dear velocity stage; level link. 16 and 128 are the sizes of the paper's figure 5.
+-- judged: the stages' mean times over the ranks, which add up to the run time, with dense operators, because the text attributes
+--   the cost of the velocity stage to the matrices; level link. 16 and 128 are the sizes of the paper's figure 5.
 -- points: t3e-300, dynamics, n = P = 16 and 128 at level link
 -- needs: mimdsim paper fig5
 -- explore: sample-t3e n=16,128 level=link

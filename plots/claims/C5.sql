@@ -2,8 +2,8 @@
 -- test: S < 1 for some n = P < 16
 -- unit: smallest S for P < 16
 -- designated: fastest serial, structured
--- judged: the fastest serial code, which the text names as the baseline, with structured operators, as that code has them,
---   too; level link. The claim says "can be": one size below 16 is enough.
+-- judged: the fastest serial code, which the text names as the baseline, with structured operators, as in that code;
+--   level link. The claim says "can be", so one size below 16 is enough.
 -- points: t3e-300, dynamics, n = P = 2, 4, 8 at level link
 -- needs: mimdsim paper fig6
 -- explore: sample-t3e n=2,4,8 level=link

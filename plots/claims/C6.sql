@@ -1,15 +1,15 @@
 -- statement: On the Paragon the modified cyclic reduction beats the best serial solver and conventional parallel reduction.
--- test: time of CFA[2] at P = 16 .. 256: less than the best serial solver and than conventional PCR, at every P
--- unit: smallest gain over the better of both
+-- test: time of CFA[2] at P = 16 .. 256: less than for the best serial solver and for conventional PCR, at every P
+-- unit: smallest speedup over the faster of the two
 -- designated: partition + pcr, n = 256
--- judged: the paper does not print its variant. It calls it a modified distribution of the rows of parallel cyclic reduction
+-- judged: the paper does not specify its variant. It calls it a modified distribution of the rows of parallel cyclic reduction
 --   for more bodies than processors: of the solvers here only "partition + pcr" changes the distribution of the rows and
---   keeps PCR for the rest. It gives no n either: 256 puts 1 to 16 bodies on each of 256 to 16 processors, the range of the
---   paper's study of packing (figure 9). Level link, structured operators. It has to win at every P from 16 on.
+--   keeps PCR for the rest. It does not give n either: 256 puts 1 to 16 bodies on each of 256 to 16 processors, the range of the
+--   paper's study of packing (figure 9). Level link, structured operators. It has to be faster at every P from 16 on.
 -- points: paragon, forward, n = 256 at level link: thomas on 1 processor, pcr and partition + pcr on 16 and 256
 -- needs: mimdsim paper fig7
 -- explore: sample-paragon n=256
--- All other candidates are shown: five solvers, with n = 256 and with n = 1024.
+-- All other candidates are shown: five solvers, with n = 256 and n = 1024.
 WITH solve AS (
     SELECT r.n, r.P, CASE r.solver WHEN 'partition' THEN 'partition + ' || r.part_solver ELSE r.solver END AS method,
            min(s.total_sum_ps / (1.0 * r.P)) AS stage_ps

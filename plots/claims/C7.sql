@@ -1,17 +1,17 @@
--- statement: More bodies a processor lift the speedup slightly and lower the degree of parallelism.
+-- statement: More bodies per processor raise the speedup slightly and lower the degree of parallelism.
 -- test: S(n/P = 16) > S(n/P = 1) and f(n/P = 16) < f(n/P = 1) at every P >= 16
 -- unit: f(n/P = 16) - f(n/P = 1) at the largest P
 -- designated: fastest serial, structured
--- judged: the fastest serial code, which the text names as the baseline, with structured operators, as that code has them,
---   too; level link. Both halves at the same P, as figure 9 of the paper draws them; 1 and 16 are the ends of its range.
+-- judged: the fastest serial code, which the text names as the baseline, with structured operators, as in that code;
+--   level link. Both parts are compared at the same P, as in figure 9 of the paper; 1 and 16 are the ends of its range.
 -- points: t3e-300, dynamics with solver partition, n/P = 1 and 16 on 16 and 64 processors at level link
 -- needs: mimdsim paper fig9
 -- explore: sample-t3e-packing
 -- explore: sample-t3e-same-n
--- never: at one number of processors f is an increasing function of S, so that what lifts S lifts f
--- At one P, f is an increasing function of S, so both halves exclude each other whatever the machine. Rows 'speedup
--- only' test the first half alone; rows 'same n' compare f at the same number of bodies, n on n/16 processors with n
--- on n. The serial code of order n^3 is not run for many bodies; there fewer P are compared.
+-- never: at one number of processors f is an increasing function of S, so that what raises S raises f
+-- At one P, f is an increasing function of S, so the two parts exclude each other on any machine. Rows 'speedup
+-- only' test only the first part; rows 'same n' compare f at the same number of bodies, n on n/16 processors with n
+-- on n. The serial code of order n^3 is not run for many bodies; fewer values of P are compared there.
 WITH point AS (
     SELECT v.n, v.P, v.n / v.P AS ratio, v.operators, v.baseline || ', ' || v.operators AS variant,
            v.speedup, v.parallel_fraction AS f
@@ -37,7 +37,7 @@ same AS (
     FROM point a JOIN point b ON b.n = a.n AND b.variant = a.variant AND a.ratio = 1 AND b.ratio = 16
     GROUP BY a.variant HAVING a.n = max(a.n))
 SELECT variant, f16 - f1 AS value, 0.0 AS threshold, lifted AND lowered AS holds, missing,
-       format('from 1 to 16 bodies a processor S goes from %.2f to %.2f and f from %.3f to %.3f at P = %d',
+       format('from 1 to 16 bodies per processor S goes from %.2f to %.2f and f from %.3f to %.3f at P = %d',
               s1, s16, f1, f16, P) AS note, min(lift, fall) AS margin
 FROM last JOIN every USING (variant) LEFT JOIN gap USING (variant)
 UNION ALL

@@ -1,9 +1,9 @@
 -- statement: Inverse dynamics is finer grained; forward dynamics communicates more but overlaps more.
--- test: at n = P: flops per message inverse < forward, forward sends more bytes, and waits a smaller share of its time
+-- test: at n = P: fewer flops per message in inverse dynamics; forward dynamics sends more bytes and waits a smaller share of its time
 -- unit: flops per message, forward / inverse
 -- designated: P = 128, structured
--- judged: the largest machine of the paper, where messages matter most, with structured operators as in the other claims;
---   level link. All three parts have to hold; any difference counts, as the paper gives no numbers.
+-- judged: the largest machine of the paper, where messages are most important, with structured operators as in the other claims;
+--   level link. All three parts have to hold; any difference counts, because the paper gives no numbers.
 -- points: t3e-300, dynamics, n = P = 128 at level link
 -- needs: mimdsim paper fig5
 -- explore: sample-t3e n=16,128 level=link

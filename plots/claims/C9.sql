@@ -1,10 +1,10 @@
 -- statement: log2 n rounds of communication are visible, and for n = P the time grows as log2 n.
--- test: messages of NE[2] are those of ceil(log2 P) doubling rounds, and T(2P) - T(P) from P = 8 is constant within 5 %
--- unit: spread of T(2P) - T(P) over its mean
+-- test: NE[2] sends the messages of ceil(log2 P) doubling rounds, and T(2P) - T(P) from P = 8 is constant within 5 %
+-- unit: spread of T(2P) - T(P) divided by its mean
 -- designated: structured
 -- judged: structured operators as in the other claims, without contention (level loggp), because the claim is about the
---   algorithm, on a T3E of 16 x 8 x 8 nodes, so that more sizes can be seen than the paper has. Constant is
---   taken as within 5 % of the mean step.
+--   algorithm, on a T3E of 16 x 8 x 8 nodes, to cover more sizes than the paper. "Constant" is
+--   interpreted as within 5 % of the mean step.
 -- points: t3e-300 with topology.dims [16, 8, 8], dynamics, n = P = 8, 16, 32, 64, 128 at level loggp
 -- needs: mimdsim paper paper-scaling
 -- explore: sample-t3e n=8,16,32,64,128 level=loggp

@@ -1,8 +1,8 @@
--- statement: Indicator load spread: most minus least computing of a processor, over the mean.
--- test: none: the paper names the indicator without a number
+-- statement: Indicator load spread: largest minus smallest computing time of a processor, divided by the mean.
+-- test: none: the paper gives no number for the indicator
 -- unit: spread
 -- designated: P = 128, structured
--- judged: nothing: there is no number to hold it against. Shown for the largest machine of the paper, structured operators.
+-- judged: nothing: there is no number to compare it with. Shown for the largest machine of the paper, structured operators.
 -- points: t3e-300, dynamics, n = P = 128 at level link
 -- needs: mimdsim paper fig5
 WITH latest AS (

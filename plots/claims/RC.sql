@@ -1,8 +1,8 @@
--- statement: Indicator R/C: run time over the time of communication and synchronisation.
--- test: none: the paper names the indicator without a number
+-- statement: Indicator R/C: run time divided by the time of communication and synchronisation.
+-- test: none: the paper gives no number for the indicator
 -- unit: R/C
 -- designated: P = 128, structured
--- judged: nothing: there is no number to hold it against. Shown for the largest machine of the paper, structured operators.
+-- judged: nothing: there is no number to compare it with. Shown for the largest machine of the paper, structured operators.
 -- points: t3e-300, dynamics, n = P = 128 at level link
 -- needs: mimdsim paper fig5
 WITH latest AS (

@@ -22,7 +22,7 @@ load helper
     json_is '$[31].rep' 1
 }
 
-@test "bodies a processor and the size of messages are columns when they are swept" {
+@test "bodies per processor and the size of messages are columns when they are swept" {
     works mimdsim run n-over-p --quiet --json --set ranks=2 --set level=loggp
     json_is '$[1].n_over_p' 2
     works mimdsim run pingpong --quiet --json --set kernel.message='8 B,64 KiB'
@@ -130,13 +130,13 @@ END
 
 @test "plot without a figure lists what each shows and the command that makes its rows" {
     works mimdsim plot
-    stdout_says "fig5           Figure 5: where the time of each stage goes"
+    stdout_says "fig5           Figure 5: how the time of each stage is spent"
     stdout_says "needs: mimdsim paper fig5"
     listed=$(grep -c '^[a-z]' <<<"$output")
     [ "$listed" -eq "$(find "$MIMDSIM_DATA/plots" -name '*.gp' ! -name style.gp | wc -l)" ]
     [ "$(grep -c ' needs: mimdsim ' <<<"$output")" -eq "$listed" ]
     [ "$(awk '{ if (length($0) > n) n = length($0) } END { print n }' <<<"$output")" -le 130 ]
-    stdout_says "fig9           Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies a processor"
+    stdout_says "fig9           Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies per processor"
     grep '^[a-z]' <<<"$output" | LC_ALL=C sort -C -k 1,1
     works mimdsim plot --json
     json_is '$[2].name' fig5

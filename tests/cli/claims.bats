@@ -262,7 +262,7 @@ solver() {
     works mimdsim report planted.db --quiet
     [ "$(grep '^## ' planted.md | head -2 | tr '\n' ' ')" = '## Abstract ## Contents ' ]
     grep -q 'Jaramillo-Botero' planted.md
-    grep -q 'of 2 claims that were judged, 1 hold (C2) and 1 do not (C1)' planted.md
+    grep -q 'of 2 claims judged, 1 hold (C2) and 1 do not (C1)' planted.md
     # what is linked to is there, in Markdown by its name, in HTML by its id, and every section is linked to
     sed -n 's/^- \[.*(#\(.*\))$/\1/p' planted.md | sort >linked.md
     sed -n 's/^## //p' planted.md | grep -v -e Abstract -e Contents | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9\n_-' | sort >there.md
@@ -278,7 +278,7 @@ solver() {
     speedups link 24:2300
     verdict C2 '' fail
     works mimdsim report planted.db --quiet
-    grep -q 'of 2 claims that were judged, 0 hold and 2 do not (C1, C2)' planted.md
+    grep -q 'of 2 claims judged, 0 hold and 2 do not (C1, C2)' planted.md
 }
 
 @test "the figure of the claims has a cell for every variant, and a frame for the one that is judged" {
