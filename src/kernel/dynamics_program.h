@@ -7,8 +7,6 @@
 #include "kernel/scene.h"
 #include "program/program.h"
 
-extern const struct program_type inverse_program, forward_program, dynamics_program;
-
 /* What they publish. */
 enum dynamics_output {
     OUTPUT_TAU,            /* (nu) inverse dynamics: joint forces, model order */

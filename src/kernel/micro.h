@@ -9,32 +9,25 @@
 
 /* pingpong: ranks 0 and P-1 exchange; half the round trip. */
 extern const struct kernel_type pingpong_kernel;
-extern const struct program_type pingpong_program;
 
 /* shift: every rank sends to rank + distance (mod P) and receives from rank - distance; time per repetition. */
 extern const struct kernel_type shift_kernel;
-extern const struct program_type shift_program;
 
 /* all-to-all: every rank sends to every other, rank + 1 first; time per repetition. */
 extern const struct kernel_type all_to_all_kernel;
-extern const struct program_type all_to_all_program;
 
 /* bisection: rank i exchanges with rank i + P/2; time per repetition. */
 extern const struct kernel_type bisection_kernel;
-extern const struct program_type bisection_program;
 
 /* hot-spot: every rank sends to rank 0; time per repetition. */
 extern const struct kernel_type hot_spot_kernel;
-extern const struct program_type hot_spot_program;
 
 /* ring, random-ring: every rank sends to and receives from both its neighbours at once, as the effective bandwidth
  * benchmark's patterns (Rabenseifner, Koniges 2001); in the order of ranks, or in one drawn from the run's seed; in
  * rings of kernel_spec.ring_ranks or a little more. Time per repetition. */
 extern const struct kernel_type ring_kernel, random_ring_kernel;
-extern const struct program_type ring_program, random_ring_program;
 
 /* barrier: time per barrier. */
 extern const struct kernel_type barrier_kernel;
-extern const struct program_type barrier_program;
 
 #endif

@@ -15,17 +15,13 @@
 /* One of each collective (gather's and scatter's linear algorithms are those for blocks of different sizes, too). */
 extern const struct kernel_type broadcast_kernel, reduce_kernel, allreduce_kernel, gather_kernel, scatter_kernel,
     allgather_kernel, alltoall_kernel, scan_kernel, reduce_scatter_kernel;
-extern const struct program_type broadcast_program, reduce_program, allreduce_program, gather_program, scatter_program,
-    allgather_program, alltoall_program, scan_program, reduce_scatter_program;
 
 /* message-barrier: a barrier out of messages, whatever the machine has. */
 extern const struct kernel_type message_barrier_kernel;
-extern const struct program_type message_barrier_program;
 
 /* alltoallv: rank r has (r + d) mod P / (P - 1) of twice the message for rank d, in whole elements: blocks from nothing
  * to twice the message, their mean. */
 extern const struct kernel_type alltoallv_kernel;
-extern const struct program_type alltoallv_program;
 
 /* micro_collective_algorithm: what a spec's kernel will use, NULL with ERR_CONFIG when it cannot: no such algorithm,
  * not at this number of ranks. */

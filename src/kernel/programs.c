@@ -1,35 +1,18 @@
-/* programs.c - the table of built-in programs: a new one is a line here and files of its own. */
+/* programs.c - the built-in programs by name, from their list (spec/program_list.h). */
 #include "kernel/programs.h"
 
 #include <string.h>
 
-#include "kernel/dynamics_program.h"
-#include "kernel/micro.h"
-#include "kernel/micro_collective.h"
+#include "spec/program_list.h"
+
+#define X(word, stem, traits) extern const struct program_type stem##_program;
+PROGRAM_LIST(X)
+#undef X
 
 static const struct program_type *const programs[] = {
-    &inverse_program,
-    &forward_program,
-    &dynamics_program,
-    &pingpong_program,
-    &shift_program,
-    &bisection_program,
-    &all_to_all_program,
-    &hot_spot_program,
-    &ring_program,
-    &random_ring_program,
-    &barrier_program,
-    &message_barrier_program,
-    &broadcast_program,
-    &reduce_program,
-    &allreduce_program,
-    &gather_program,
-    &scatter_program,
-    &allgather_program,
-    &alltoall_program,
-    &alltoallv_program,
-    &scan_program,
-    &reduce_scatter_program,
+#define X(word, stem, traits) &stem##_program,
+    PROGRAM_LIST(X)
+#undef X
 };
 
 const struct program_type *const *program_list(int *n)

@@ -18,25 +18,23 @@ static const char *const residuals[] = {"working", "twice", NULL};
 static const char *const partitions[] = {"block", "balanced", NULL};
 static const char *const refinement_rules[] = {"as-needed", "as-given", NULL};
 static const char *const step_rules[] = {"semi-implicit", "kdk", "rk4", "linearly-implicit", NULL};
-static const char *const benchmarks[] = {"pingpong", "bisection", "all-to-all", "barrier",
-                                         "hot-spot", "shift",     "ring",       "random-ring"};
-static const char *const further_collectives[] = {"alltoallv", "message-barrier"};
 
-bool kernel_spec_is_collective(const struct kernel_spec *k)
+bool kernel_spec_has(const struct kernel_spec *k, enum program_trait trait)
 {
-    for (size_t i = 0; i < sizeof further_collectives / sizeof *further_collectives; i++)
-        if (strcmp(k->name, further_collectives[i]) == 0) return true;
-    enum collective_kind kind = collective_find(k->name);
-    return kind != COLLECTIVE_KINDS && kind != COLLECTIVE_BARRIER;
+    static const struct {
+        const char *name;
+        unsigned traits;
+    } list[] = {
+#define X(word, stem, traits) {word, traits},
+        PROGRAM_LIST(X)
+#undef X
+    };
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        if (strcmp(k->name, list[i].name) == 0) return (list[i].traits & trait) != 0;
+    return (trait & (PROGRAM_SCENE | PROGRAM_FORWARD)) != 0; /* a name that the plan is about to refuse */
 }
 
-bool kernel_spec_needs_model(const struct kernel_spec *k)
-{
-    if (kernel_spec_is_collective(k)) return false;
-    for (size_t i = 0; i < sizeof benchmarks / sizeof *benchmarks; i++)
-        if (strcmp(k->name, benchmarks[i]) == 0) return false;
-    return true;
-}
+bool kernel_spec_needs_model(const struct kernel_spec *k) { return kernel_spec_has(k, PROGRAM_SCENE); }
 
 static const char *idle_without_model(const struct run_spec *r)
 {
@@ -52,7 +50,7 @@ static const char *idle_without_forward(const struct run_spec *r)
 {
     const char *why = idle_without_model(r);
     if (why != NULL) return why;
-    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics solves no system" : NULL;
+    return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL : "inverse dynamics solves no system";
 }
 
 static bool branches(const struct run_spec *r)
@@ -98,40 +96,35 @@ static const char *idle_unless_shift(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    return strcmp(r->kernel.name, "shift") == 0 ? NULL : "only 'shift' has a distance";
+    return kernel_spec_has(&r->kernel, PROGRAM_DISTANCE) ? NULL : "only 'shift' has a distance";
 }
 
 static const char *idle_without_message(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    bool barrier = strcmp(r->kernel.name, "barrier") == 0 || strcmp(r->kernel.name, "message-barrier") == 0;
-    return barrier ? "a barrier has no size" : NULL;
+    return kernel_spec_has(&r->kernel, PROGRAM_MESSAGE) ? NULL : "a barrier has no size";
 }
 
 static const char *idle_without_algorithm(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    return kernel_spec_is_collective(&r->kernel) ? NULL : "only collectives have algorithms";
+    return kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE) ? NULL : "only collectives have algorithms";
 }
 
 static const char *idle_without_root(const struct run_spec *r)
 {
-    static const char *const rooted[] = {"broadcast", "reduce", "gather", "scatter"};
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    for (size_t i = 0; i < sizeof rooted / sizeof *rooted; i++)
-        if (strcmp(r->kernel.name, rooted[i]) == 0) return NULL;
-    return "only broadcast, reduce, gather and scatter have a root";
+    return kernel_spec_has(&r->kernel, PROGRAM_ROOT) ? NULL : "only broadcast, reduce, gather and scatter have a root";
 }
 
 static const char *idle_unless_ring(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
     if (why != NULL) return why;
-    bool ring = strcmp(r->kernel.name, "ring") == 0 || strcmp(r->kernel.name, "random-ring") == 0;
-    return ring ? NULL : "only 'ring' and 'random-ring' have rings";
+    return kernel_spec_has(&r->kernel, PROGRAM_RING) ? NULL : "only 'ring' and 'random-ring' have rings";
 }
 
 static const char *idle_without_branch_choice(const struct run_spec *r)
@@ -163,7 +156,7 @@ static const char *idle_without_scans(const struct run_spec *r)
     const struct model_spec *m = &r->model;
     const struct kernel_spec *k = &r->kernel;
     const bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
-    if (strcmp(k->name, "forward") != 0 || from_file || m->rate != 0 || k->steps > 0 || k->outer_refinements > 0)
+    if (kernel_spec_has(k, PROGRAM_INVERSE) || from_file || m->rate != 0 || k->steps > 0 || k->outer_refinements > 0)
         return NULL;
     if (k->formulation == FORMULATION_DIRECT) return "nothing moves, so the direct formulation scans nothing";
     const bool still = m->base != BASE_MOVING || all_zero(m->base_acceleration, 6);

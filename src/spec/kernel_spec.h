@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spec/program_list.h"
+
 enum formulation { FORMULATION_PAPER, FORMULATION_DIRECT };
 enum solver { SOLVER_PCR_SYMMETRIC, SOLVER_PCR, SOLVER_CR, SOLVER_CR_PCR, SOLVER_PARTITION, SOLVER_THOMAS };
 enum operators { OPERATORS_STRUCTURED, OPERATORS_DENSE };
@@ -43,11 +45,11 @@ struct kernel_spec {
     int root;                    /* collectives: rank; from the end when negative */
 };
 
+/* kernel_spec_has: whether the program has a trait (program_list.h). */
+bool kernel_spec_has(const struct kernel_spec *k, enum program_trait trait);
+
 /* kernel_spec_needs_model: false for the message benchmarks. */
 bool kernel_spec_needs_model(const struct kernel_spec *k);
-
-/* kernel_spec_is_collective: whether it is a collective whose algorithm can be chosen. */
-bool kernel_spec_is_collective(const struct kernel_spec *k);
 
 /* kernel_spec_implicit: whether its time steps treat springs linearly implicitly; false without steps. */
 static inline bool kernel_spec_implicit(const struct kernel_spec *k)

@@ -193,7 +193,7 @@ static const char *idle_in_programs(const struct run_spec *r)
 
 static const char *idle_without_collectives(const struct run_spec *r)
 {
-    return kernel_spec_is_collective(&r->kernel) ? NULL : "this kernel calls no collective that it chooses";
+    return kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE) ? NULL : "this kernel calls no collective that it chooses";
 }
 
 static const struct field fields[] = {

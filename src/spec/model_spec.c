@@ -120,7 +120,7 @@ static const char *idle_unless_forward(const struct run_spec *r)
 {
     const char *why = idle_from_vector(r);
     if (why != NULL) return why;
-    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics finds the forces itself" : NULL;
+    return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL : "inverse dynamics finds the forces itself";
 }
 
 static const struct field fields[] = {

@@ -14,7 +14,7 @@ bool run_spec_is_random(const struct run_spec *r)
     const enum topology_family f = m->topology.family;
     bool valiant = topology_has(f, TOPOLOGY_CHOOSES) && m->topology.routing == ROUTE_VALIANT;
     bool tie = topology_has(f, TOPOLOGY_RINGS) && m->topology.tie == TIE_RANDOM;
-    bool order = strcmp(r->kernel.name, "random-ring") == 0;
+    bool order = kernel_spec_has(&r->kernel, PROGRAM_RANDOM);
     return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || order;
 }
 
@@ -34,7 +34,7 @@ static const char *const baseline_rules[] = {"all", "needed", NULL};
 static const char *idle_without_choice(const struct run_spec *r)
 {
     if (!kernel_spec_needs_model(&r->kernel)) return "this kernel only sends messages and has no serial code";
-    return strcmp(r->kernel.name, "inverse") == 0 ? "inverse dynamics has one serial code" : NULL;
+    return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL : "inverse dynamics has one serial code";
 }
 
 static const struct field fields[] = {

@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include <stdio.h>
 #include <string.h>
 
 #include "comm/collective_rules.h"
@@ -167,6 +168,9 @@ static void every_program_is_complete_in_every_precision(void **state)
         const struct program_type *t = list[k];
         assert_true(t->name && t->title && t->open && t->prepare && t->estimate);
         assert_ptr_equal(program_find(t->name), t);
+        struct kernel_spec spec = {0};
+        snprintf(spec.name, sizeof spec.name, "%s", t->name);
+        assert_int_equal(kernel_spec_has(&spec, PROGRAM_SCENE), t->has_scene);
         for (int precision = 0; precision < 3 && t->has_scene; precision++)
             expect_complete(kernel_find_precision(t->name, (enum precision)precision), t->name);
         if (!t->has_scene) expect_complete(t->context, t->name);
