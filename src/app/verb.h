@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "app/verb_list.h"
 #include "base/err.h"
 #include "plan/plan.h"
 #include "run/catalogue.h"
@@ -20,24 +21,9 @@ struct verb {
 extern const struct verb verb_list[];
 
 /* The verbs. Each reads its command line (argv[0] is "mimdsim VERB") and returns the exit status. */
-int cmd_run(int argc, char **argv);       /* run a scenario */
-int cmd_plot(int argc, char **argv);      /* draw figures */
-int cmd_check(int argc, char **argv);     /* validate files */
-int cmd_explain(int argc, char **argv);   /* estimate a scenario */
-int cmd_machines(int argc, char **argv);  /* list, show or compare machines */
-int cmd_scenarios(int argc, char **argv); /* list scenarios */
-int cmd_kernels(int argc, char **argv);   /* list kernels */
-int cmd_query(int argc, char **argv);     /* SQL */
-int cmd_paper(int argc, char **argv);
-int cmd_claims(int argc, char **argv);
-int cmd_timeline(int argc, char **argv);
-int cmd_netcheck(int argc, char **argv);  /* network levels against references */
-int cmd_validate(int argc, char **argv);  /* machines against published figures */
-int cmd_links(int argc, char **argv);     /* the most loaded links */
-int cmd_verify(int argc, char **argv);    /* reference vectors */
-int cmd_accuracy(int argc, char **argv);  /* error against run time */
-int cmd_report(int argc, char **argv);    /* all that a database holds */
-int cmd_stability(int argc, char **argv); /* stiff and extreme cases */
+#define X(function, word, title) int function(int argc, char **argv);
+VERB_LIST(X)
+#undef X
 
 enum { COMMON_MOST_SETS = 256 };
 

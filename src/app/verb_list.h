@@ -1,0 +1,26 @@
+/* verb_list.h - the verbs of the command line, one line each, in the order of `mimdsim --help`. A new verb is a line
+ * here and a file cmd_WORD.c that defines it. Columns of X: function, word, one line for --help. */
+#ifndef APP_VERB_LIST_H
+#define APP_VERB_LIST_H
+
+#define VERB_LIST(X)                                                                                                   \
+    X(cmd_run, "run", "run a scenario, store every run, print the table")                                              \
+    X(cmd_paper, "paper", "reproduce the paper: runs, figures, claims, report")                                        \
+    X(cmd_claims, "claims", "judge the claims of the paper by a database")                                             \
+    X(cmd_plot, "plot", "draw a figure from a database")                                                               \
+    X(cmd_timeline, "timeline", "show when ranks compute, send and wait: picture, text or trace")                      \
+    X(cmd_explain, "explain", "show what a scenario will run and cost")                                                \
+    X(cmd_check, "check", "validate files without running")                                                            \
+    X(cmd_machines, "machines", "list machines, show one with its sources, or compare two")                            \
+    X(cmd_scenarios, "scenarios", "list scenarios")                                                                    \
+    X(cmd_kernels, "kernels", "list kernels")                                                                          \
+    X(cmd_verify, "verify", "compare every algorithm with reference vectors")                                          \
+    X(cmd_validate, "validate", "compare machines with published values, networks with references")                    \
+    X(cmd_links, "links", "show the most heavily loaded links of a run")                                               \
+    X(cmd_netcheck, "netcheck", "compare the network levels with reference results")                                   \
+    X(cmd_accuracy, "accuracy", "measure error against run time: network, arithmetic, integration")                    \
+    X(cmd_stability, "stability", "test every algorithm on stiff and extreme cases")                                   \
+    X(cmd_report, "report", "report on a whole database: figures, Markdown and HTML")                                  \
+    X(cmd_query, "query", "run SQL on a database")
+
+#endif
