@@ -15,24 +15,6 @@ static const char doc[] =
     "byte smaller "
     "(where a segment of its message software begins).";
 
-/* One entry of the document: the file, and what is wrong with it. */
-static void print_verdict(struct json *j, const char *file, const struct err *e)
-{
-    bool fine = e->kind == ERR_NONE;
-    json_object(j);
-    json_key(j, "exit_status");
-    json_int(j, err_exit_status(e->kind));
-    json_key(j, "file");
-    json_text(j, file);
-    json_key(j, "kind");
-    json_text(j, err_word(e->kind));
-    json_key(j, "line");
-    json_int(j, e->line);
-    json_key(j, "text");
-    json_text(j, fine ? "" : e->text);
-    json_end(j);
-}
-
 /* Steps of the message software that go down: they may be meant, as where a protocol is switched too late. */
 static void tell_steps_down(const char *file)
 {
@@ -70,7 +52,7 @@ int cmd_check(int argc, char **argv)
         err_clear(&e);
         bool fine = model_file_is(c.arg[i]) ? model_file_check(c.arg[i], c.quiet ? NULL : stderr, &e)
                                             : plan_check_file(c.arg[i], &o, &e);
-        if (c.json) print_verdict(&j, c.arg[i], &e);
+        if (c.json) common_error_json(&j, c.arg[i], &e);
         else if (fine && !c.quiet) printf("%s: ok\n", c.arg[i]);
         if (!fine) err_print(&e);
         if (fine && !c.quiet && !model_file_is(c.arg[i])) tell_steps_down(c.arg[i]);

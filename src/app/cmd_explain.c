@@ -10,6 +10,7 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "measure/run_row.h"
 #include "run/run.h"
 #include "spec/field.h"
 #include "store/store.h"
@@ -128,65 +129,73 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     for (int i = 0; all && i < all->nunused; i++) printf("unused: %s\n", all->unused[i]);
 }
 
-static void json_pair(struct json *j, const char *key, double value)
+static void set_text(struct column_value *v, const char *s)
 {
-    json_key(j, key);
-    json_real(j, value);
+    v->kind = VALUE_TEXT;
+    v->text = s;
 }
 
-static void json_kinds(struct json *j, const struct plan *p, const struct run_estimate *r)
+static void read_class(const struct column *c, const void *row, struct column_value *v)
 {
-    struct kinds *k = kinds_of(p, r);
-    json_key(j, "omissions");
-    json_array(j);
-    for (int i = 0; i < k->n; i++) {
-        const struct omission *o = &k->kind[i].omission;
-        json_object(j);
-        json_key(j, "bound");
-        if (o->bound > 0) json_real(j, o->bound);
-        else json_null(j);
-        json_key(j, "class");
-        json_text(j, o->bound > 0 ? "bounded" : "exact");
-        json_pair(j, "runs", k->kind[i].runs);
-        json_key(j, "what");
-        json_text(j, o->what);
-        json_key(j, "why");
-        json_text(j, o->why);
-        json_end(j);
-    }
-    json_end(j);
-    free(k);
+    (void)c;
+    set_text(v, omission_class(&((const struct kind *)row)->omission));
 }
+
+#define KIND(member) .offset = offsetof(struct kind, member)
+
+static const struct column kind_column[] = {
+    {"bound", COLUMN_REAL, KIND(omission.bound), .absent = ABSENT_ZERO, .doc = "largest relative change of a result"},
+    {"class", COLUMN_STRING, .value = read_class, .doc = "exact or bounded"},
+    {"runs", COLUMN_INT, KIND(runs), .doc = "that leave it out"},
+    {"what", COLUMN_CHARS, KIND(omission.what), .doc = "was left out"},
+    {"why", COLUMN_CHARS, KIND(omission.why), .doc = "why no result needs it"},
+};
+static const struct column_table kind_columns = COLUMNS(kind_column);
+
+/* A planned run with its estimate. */
+struct planned {
+    const struct run_spec *spec;
+    const struct run_estimate *estimate;
+};
+
+static void read_level(const struct column *c, const void *row, struct column_value *v)
+{
+    struct text level = choice_of(((const struct planned *)row)->spec, c->more);
+    text_copy(v->buffer, sizeof v->buffer, level.s);
+    text_free(&level);
+    set_text(v, v->buffer);
+}
+
+#define SPEC(member) .part = PART(struct planned, spec), .offset = offsetof(struct run_spec, member)
+#define ESTIMATE(member) .part = PART(struct planned, estimate), .offset = offsetof(struct run_estimate, member)
+
+static const struct column planned_column[] = {
+    {"bodies", COLUMN_INT64, ESTIMATE(nbody), .doc = "of the model"},
+    {"bytes", COLUMN_REAL, ESTIMATE(bytes), .doc = "sent, estimated"},
+    {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
+    {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
+    {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},
+    {"kernel", COLUMN_CHARS, SPEC(kernel.name), .doc = "the parallel program"},
+    {"level", COLUMN_STRING, .value = read_level, .more = "machine.network.level", .doc = "of the network"},
+    {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "its name"},
+    {"messages", COLUMN_REAL, ESTIMATE(messages), .doc = "estimated"},
+    {"ranks", COLUMN_INT, SPEC(nrank), .doc = "virtual processors"},
+};
+static const struct column_table planned_columns = COLUMNS(planned_column);
 
 /* `measured` NULL: without --measure. */
 static void print_json(const struct plan *p, const struct run_estimate *r, const struct savings *measured)
 {
     struct json j = json_make(stdout);
     json_object(&j);
-    json_kinds(&j, p, r);
-    json_key(&j, "question");
-    json_text(&j, p->question);
+    struct kinds *k = kinds_of(p, r);
+    json_key(&j, "omissions");
+    columns_json_list(&kind_columns, k->kind, k->n, sizeof *k->kind, &j);
+    free(k);
+    json_key_text(&j, "question", p->question);
     json_key(&j, "runs");
     json_array(&j);
-    for (int i = 0; i < p->nrun; i++) {
-        json_object(&j);
-        json_pair(&j, "bodies", (double)r[i].nbody);
-        json_pair(&j, "bytes", r[i].bytes);
-        json_pair(&j, "flops", r[i].flops);
-        json_pair(&j, "host_bytes", r[i].host_bytes);
-        json_pair(&j, "host_s", r[i].host_s);
-        json_key(&j, "kernel");
-        json_text(&j, p->run[i].kernel.name);
-        struct text level = choice_of(&p->run[i], "machine.network.level");
-        json_key(&j, "level");
-        json_text(&j, level.s);
-        text_free(&level);
-        json_key(&j, "machine");
-        json_text(&j, p->run[i].machine.name);
-        json_pair(&j, "messages", r[i].messages);
-        json_pair(&j, "ranks", p->run[i].nrank);
-        json_end(&j);
-    }
+    for (int i = 0; i < p->nrun; i++) columns_json(&planned_columns, &(struct planned){&p->run[i], &r[i]}, &j);
     json_end(&j);
     if (measured) savings_json(&j, measured);
     json_key(&j, "unused");

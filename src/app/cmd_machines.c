@@ -5,6 +5,7 @@
 #include "app/parameters.h"
 #include "app/verb.h"
 #include "base/json.h"
+#include "measure/column.h"
 #include "study/rates.h"
 
 static const char doc[] =
@@ -29,29 +30,20 @@ static int list_machines(const struct common *c, struct arena *a)
     return 0;
 }
 
-static void origin_json(struct json *j, const struct origin *o)
-{
-    json_object(j);
-    json_key(j, "evidence");
-    json_text(j, o->evidence);
-    json_key(j, "file");
-    json_text(j, o->file);
-    json_key(j, "key");
-    json_text(j, o->key);
-    json_key(j, "line");
-    json_int(j, o->line);
-    json_key(j, "max");
-    json_real(j, o->max);
-    json_key(j, "min");
-    json_real(j, o->min);
-    json_key(j, "source");
-    json_text(j, o->source);
-    json_key(j, "validate");
-    json_text(j, o->validate);
-    json_key(j, "value");
-    json_text(j, o->value);
-    json_end(j);
-}
+#define ORIGIN(member) .offset = offsetof(struct origin, member)
+
+static const struct column origin_column[] = {
+    {"evidence", COLUMN_STRING, ORIGIN(evidence), .doc = "P, PR, D or E"},
+    {"file", COLUMN_STRING, ORIGIN(file), .doc = "where it is given"},
+    {"key", COLUMN_STRING, ORIGIN(key), .doc = "its name"},
+    {"line", COLUMN_INT, ORIGIN(line), .doc = "of the file"},
+    {"max", COLUMN_REAL, ORIGIN(max), .doc = "largest published value, in SI units"},
+    {"min", COLUMN_REAL, ORIGIN(min), .doc = "least published value, in SI units"},
+    {"source", COLUMN_STRING, ORIGIN(source), .doc = "citation or arithmetic"},
+    {"validate", COLUMN_STRING, ORIGIN(validate), .doc = "published figure that uses it"},
+    {"value", COLUMN_STRING, ORIGIN(value), .doc = "with its unit"},
+};
+static const struct column_table origin_columns = COLUMNS(origin_column);
 
 /* A list of segments, one a line, follows its key. */
 static void print_segments(const char *list)
@@ -124,8 +116,7 @@ static void json_sustained(struct json *j, const struct shown *m)
         json_key(j, list ? "small_dense" : "linpack_100");
         json_object(j);
         for (int i = 0; i < 3; i++) {
-            json_key(j, name[sorted[i]]);
-            json_real(j, list ? s.rate[sorted[i]] : s.linpack[sorted[i]]);
+            json_key_real(j, name[sorted[i]], list ? s.rate[sorted[i]] : s.linpack[sorted[i]]);
         }
         json_end(j);
     }
@@ -144,17 +135,12 @@ static void show_one(const struct common *c, const struct shown *m, struct arena
     }
     struct json j = json_make(stdout);
     json_object(&j);
-    json_key(&j, "name");
-    json_text(&j, m->spec.name);
-    json_key(&j, "processors");
-    json_int(&j, machine_spec_processors(&m->spec));
+    json_key_text(&j, "name", m->spec.name);
+    json_key_int(&j, "processors", machine_spec_processors(&m->spec));
     json_sustained(&j, m);
-    json_key(&j, "title");
-    json_text(&j, m->spec.title);
+    json_key_text(&j, "title", m->spec.title);
     json_key(&j, "values");
-    json_array(&j);
-    for (int i = 0; i < m->n; i++) origin_json(&j, &m->origin[i]);
-    json_end(&j);
+    columns_json_list(&origin_columns, m->origin, m->n, sizeof *m->origin, &j);
     json_end(&j);
     json_finish(&j);
 }
@@ -176,8 +162,7 @@ static void difference_json(struct json *j, const char *key, const struct shown 
     }
     json_object(j);
     for (int i = 0; i < 3; i++) {
-        json_key(j, name[order[i]]);
-        json_text(j, value[order[i]]);
+        json_key_text(j, name[order[i]], value[order[i]]);
     }
     json_end(j);
 }

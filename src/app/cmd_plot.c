@@ -51,12 +51,9 @@ static void print_figure(const struct common *c, struct json *j, const char *nam
     report_figure_about(plan_data_dir(), name, &title, &needs);
     if (c->json) {
         json_object(j);
-        json_key(j, "name");
-        json_text(j, name);
-        json_key(j, "needs");
-        json_text(j, needs.s);
-        json_key(j, "title");
-        json_text(j, title.s);
+        json_key_text(j, "name", name);
+        json_key_text(j, "needs", needs.s);
+        json_key_text(j, "title", title.s);
         json_end(j);
     } else {
         printf("%-14s %s\n", name, title.s);

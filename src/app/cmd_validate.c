@@ -6,6 +6,7 @@
 #include "app/contention.h"
 #include "app/validation.h"
 #include "app/verb.h"
+#include "base/check.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "store/store.h"
@@ -56,67 +57,98 @@ static void print_levels(const struct published *p, const struct outcome *o)
     putchar('\n');
 }
 
-static void json_pair(struct json *j, const char *key, double value)
+/* A published figure and what became of it. */
+struct point {
+    const struct published *published;
+    const struct outcome *outcome;
+};
+
+static const struct point *point(const void *row) { return row; }
+
+static void set_text(struct column_value *v, const char *s)
 {
-    json_key(j, key);
-    json_real(j, value);
+    v->kind = VALUE_TEXT;
+    v->text = s;
 }
 
-static void json_word(struct json *j, const char *key, const char *value)
+static void read_use(const struct column *c, const void *row, struct column_value *v)
 {
-    json_key(j, key);
-    json_text(j, value);
+    (void)c;
+    set_text(v, published_use_name(point(row)->published->use));
 }
 
-static void json_row(struct json *j, const struct published *p, const struct outcome *o)
+static void read_quantity(const struct column *c, const void *row, struct column_value *v)
 {
-    json_object(j);
-    json_word(j, "at", p->at_text);
-    json_word(j, "calibrated", published_use_name(p->use));
-    json_word(j, "cause", p->cause);
-    json_word(j, "class", p->evidence);
-    json_pair(j, "high", p->high / p->scale);
-    json_word(j, "id", p->id);
-    if (o->contended) {
-        json_key(j, "levels");
-        validation_levels_json(o->level, p->scale, j);
-    }
-    json_pair(j, "low", p->low / p->scale);
-    json_word(j, "machine", p->machine);
-    json_pair(j, "published", p->value / p->scale);
-    json_word(j, "quantity", probe_name(p->quantity));
-    json_pair(j, "relative_error", o->measured ? o->error : NAN);
-    json_pair(j, "simulated", o->value / p->scale);
-    json_word(j, "source", p->source);
-    json_pair(j, "tolerance", o->tolerance);
-    json_word(j, "unit", p->unit);
-    json_word(j, "verdict", o->verdict);
-    json_word(j, "why", o->why);
-    json_end(j);
+    (void)c;
+    set_text(v, probe_name(point(row)->published->quantity));
 }
+
+/* Where it holds, with the row of the file: one place may have several figures. */
+static void read_place(const struct column *c, const void *row, struct column_value *v)
+{
+    const struct published *p = point(row)->published;
+    (void)c;
+    CHECK(snprintf(v->buffer, sizeof v->buffer, "%s%s%s", p->at_text, *p->at_text ? " " : "", p->id) <
+          (int)sizeof v->buffer);
+    set_text(v, v->buffer);
+}
+
+/* A figure in the unit of the file: the real at the column's place over the unit. */
+static void read_in_unit(const struct column *c, const void *row, struct column_value *v)
+{
+    const char *base = c->part == PART(struct point, outcome) ? (const char *)point(row)->outcome
+                                                              : (const char *)point(row)->published;
+    const double x = *(const double *)(const void *)(base + c->offset) / point(row)->published->scale;
+    if (!isfinite(x)) return;
+    v->kind = VALUE_REAL;
+    v->real = x;
+}
+
+static void write_levels(const struct column *c, const void *row, struct json *j)
+{
+    (void)c;
+    validation_levels_json(point(row)->outcome->level, point(row)->published->scale, j);
+}
+
+static bool is_contended(const void *row) { return point(row)->outcome->contended; }
+
+static bool is_measured(const void *row) { return point(row)->outcome->measured; }
+
+#define PUBLISHED(member) .part = PART(struct point, published), .offset = offsetof(struct published, member)
+#define OUTCOME(member) .part = PART(struct point, outcome), .offset = offsetof(struct outcome, member)
+
+static const struct column point_column[] = {
+    {"at", COLUMN_STRING, PUBLISHED(at_text), .flags = COLUMN_NO_SQL, .doc = "as written in the file"},
+    {"at", COLUMN_STRING, .value = read_place, .flags = COLUMN_NO_JSON, .doc = "the same, and the row of the file"},
+    {"calibrated", COLUMN_STRING, .value = read_use, .flags = COLUMN_NO_SQL, .doc = "whether the file was fitted"},
+    {"cause", COLUMN_STRING, PUBLISHED(cause), .doc = "of an error that is explained"},
+    {"class", COLUMN_STRING, PUBLISHED(evidence), .doc = "evidence: P, PR, D or E"},
+    {"high", COLUMN_REAL, PUBLISHED(high), .value = read_in_unit, .flags = COLUMN_NO_SQL, .doc = "largest published"},
+    {"id", COLUMN_STRING, PUBLISHED(id), .flags = COLUMN_NO_SQL, .doc = "row of the file"},
+    {"levels", COLUMN_STRING, .json = write_levels, .known = is_contended, .flags = COLUMN_NO_SQL,
+     .doc = "what each level of the network makes of it"},
+    {"low", COLUMN_REAL, PUBLISHED(low), .value = read_in_unit, .flags = COLUMN_NO_SQL, .doc = "least published"},
+    {"subject", COLUMN_STRING, PUBLISHED(machine), .key = "machine", .doc = "the machine"},
+    {"reference", COLUMN_REAL, PUBLISHED(value), .value = read_in_unit, .key = "published", .doc = "what is published"},
+    {"quantity", COLUMN_STRING, .value = read_quantity, .doc = "what was measured"},
+    {"relative_error", COLUMN_REAL, OUTCOME(error), .known = is_measured, .doc = "of the simulated value"},
+    {"value", COLUMN_REAL, OUTCOME(value), .value = read_in_unit, .known = is_measured, .flags = COLUMN_NO_JSON,
+     .doc = "what the simulated machine does"},
+    {"simulated", COLUMN_REAL, OUTCOME(value), .value = read_in_unit, .flags = COLUMN_NO_SQL,
+     .doc = "what the simulated machine does"},
+    {"source", COLUMN_STRING, PUBLISHED(source), .doc = "where it is published"},
+    {"tolerance", COLUMN_REAL, OUTCOME(tolerance), .doc = "relative"},
+    {"unit", COLUMN_STRING, PUBLISHED(unit), .doc = "of all figures of the row"},
+    {"verdict", COLUMN_STRING, OUTCOME(verdict), .doc = "pass, fail, explained or not-testable"},
+    {"why", COLUMN_CHARS, OUTCOME(why), .flags = COLUMN_NO_SQL, .doc = "it was not measured"},
+};
+static const struct column_table point_columns = COLUMNS(point_column);
 
 static bool keep(struct store *s, const struct published *p, const struct outcome *o, struct err *e)
 {
-    static const char *const name[] = {"suite", "subject",        "quantity",  "at",    "unit",    "reference",
-                                       "value", "relative_error", "tolerance", "class", "verdict", "source", "cause"};
-    struct text at = {0};
-    text_add(&at, "%s%s%s", p->at_text, *p->at_text ? " " : "", p->id);
-    const struct store_value value[] = {store_text("machines"),
-                                        store_text(p->machine),
-                                        store_text(probe_name(p->quantity)),
-                                        store_text(at.s),
-                                        store_text(p->unit),
-                                        store_real(p->value / p->scale),
-                                        o->measured ? store_real(o->value / p->scale) : store_null(),
-                                        o->measured ? store_real(o->error) : store_null(),
-                                        store_real(o->tolerance),
-                                        store_text(p->evidence),
-                                        store_text(o->verdict),
-                                        store_text(p->source),
-                                        store_text(p->cause)};
-    bool ok = store_insert(s, "check_point", sizeof name / sizeof *name, name, value, e);
-    text_free(&at);
-    return ok;
+    static const char *const name[] = {"suite"};
+    const struct store_value value[] = {store_text("machines")};
+    return store_insert_row(s, "check_point", 1, name, value, &point_columns, &(struct point){p, o}, e);
 }
 
 /* The points shown so far. */
@@ -126,41 +158,38 @@ struct table {
     struct outcome *outcome;
 };
 
-static void json_group(struct json *j, const char *key, const struct validation_group *g)
+static bool has_points(const void *row) { return ((const struct validation_group *)row)->n > 0; }
+
+#define GROUP(member) .offset = offsetof(struct validation_group, member)
+
+static const struct column group_column[] = {
+    {"above_30_percent", COLUMN_INT, GROUP(above), .doc = "points whose error is larger"},
+    {"mean_error", COLUMN_REAL, GROUP(mean), .known = has_points, .doc = "of its size"},
+    {"median_error", COLUMN_REAL, GROUP(median), .known = has_points, .doc = "of its size"},
+    {"points", COLUMN_INT, GROUP(n), .doc = "of the group"},
+    {"without_cause", COLUMN_INT, GROUP(unnamed), .doc = "above 30 %, for which no cause is known"},
+    {"worst_error", COLUMN_REAL, GROUP(worst), .known = has_points, .doc = "with its sign"},
+    {"worst_id", COLUMN_STRING, GROUP(worst_id), .doc = "row of the file"},
+};
+static const struct column_table group_columns = COLUMNS(group_column);
+
+static void write_group(const struct column *c, const void *row, struct json *j)
 {
-    json_key(j, key);
-    json_object(j);
-    json_key(j, "above_30_percent");
-    json_int(j, g->above);
-    json_pair(j, "mean_error", g->n ? g->mean : NAN);
-    json_pair(j, "median_error", g->n ? g->median : NAN);
-    json_key(j, "points");
-    json_int(j, g->n);
-    json_key(j, "without_cause");
-    json_int(j, g->unnamed);
-    json_pair(j, "worst_error", g->n ? g->worst : NAN);
-    json_word(j, "worst_id", g->worst_id);
-    json_end(j);
+    columns_json(&group_columns, (const char *)row + c->offset, j);
 }
 
-static void json_summary(struct json *j, const struct validation_summary *s)
-{
-    json_key(j, "summary");
-    json_object(j);
-    json_group(j, "calibrated", &s->calibrated);
-    json_key(j, "estimated");
-    json_int(j, s->estimated);
-    json_key(j, "explained");
-    json_int(j, s->explained);
-    json_key(j, "failed");
-    json_int(j, s->failed);
-    json_group(j, "held", &s->held);
-    json_key(j, "not_testable");
-    json_int(j, s->untested);
-    json_key(j, "points");
-    json_int(j, s->shown);
-    json_end(j);
-}
+#define SUMMARY(member) .offset = offsetof(struct validation_summary, member)
+
+static const struct column summary_column[] = {
+    {"calibrated", COLUMN_STRING, SUMMARY(calibrated), .json = write_group, .doc = "points used for calibration"},
+    {"estimated", COLUMN_INT, SUMMARY(estimated), .doc = "points of class E, which are in no group"},
+    {"explained", COLUMN_INT, SUMMARY(explained), .doc = "points missed for a known cause"},
+    {"failed", COLUMN_INT, SUMMARY(failed), .doc = "points missed without one"},
+    {"held", COLUMN_STRING, SUMMARY(held), .json = write_group, .doc = "points not used for calibration"},
+    {"not_testable", COLUMN_INT, SUMMARY(untested), .doc = "points that the machine lacks"},
+    {"points", COLUMN_INT, SUMMARY(shown), .doc = "all of them"},
+};
+static const struct column_table summary_columns = COLUMNS(summary_column);
 
 static void print_group(const char *name, const struct validation_group *g)
 {
@@ -200,9 +229,11 @@ static void print_table(const struct common *c, const struct table *t, const str
     contention_json(row, nrow, &j);
     json_key(&j, "points");
     json_array(&j);
-    for (int i = 0; i < t->n; i++) json_row(&j, t->row[i], &t->outcome[i]);
+    for (int i = 0; i < t->n; i++)
+        columns_json(&point_columns, &(struct point){t->row[i], &t->outcome[i]}, &j);
     json_end(&j);
-    json_summary(&j, s);
+    json_key(&j, "summary");
+    columns_json(&summary_columns, s, &j);
     json_end(&j);
     json_finish(&j);
 }

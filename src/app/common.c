@@ -120,24 +120,24 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
+void common_error_json(struct json *j, const char *file, const struct err *e)
+{
+    json_object(j);
+    json_key_int(j, "exit_status", err_exit_status(e->kind));
+    json_key_text(j, "file", file);
+    json_key_text(j, "kind", err_word(e->kind));
+    json_key_int(j, "line", e->line);
+    json_key_text(j, "text", e->kind == ERR_NONE ? "" : e->text);
+    json_end(j);
+}
+
 /* The document of a failure. */
 static void print_error(const struct err *e)
 {
     struct json j = json_make(stdout);
     json_object(&j);
     json_key(&j, "error");
-    json_object(&j);
-    json_key(&j, "exit_status");
-    json_int(&j, err_exit_status(e->kind));
-    json_key(&j, "file");
-    json_text(&j, e->file);
-    json_key(&j, "kind");
-    json_text(&j, err_word(e->kind));
-    json_key(&j, "line");
-    json_int(&j, e->line);
-    json_key(&j, "text");
-    json_text(&j, e->text);
-    json_end(&j);
+    common_error_json(&j, e->file, e);
     json_end(&j);
     json_finish(&j);
 }
@@ -232,10 +232,8 @@ void common_print_pairs(const struct common *c, int n, const char *const *name, 
             continue;
         }
         json_object(&j);
-        json_key(&j, "name");
-        json_text(&j, name[i]);
-        json_key(&j, "title");
-        json_text(&j, title[i]);
+        json_key_text(&j, "name", name[i]);
+        json_key_text(&j, "title", title[i]);
         json_end(&j);
     }
     if (c->json) {

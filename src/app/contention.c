@@ -56,12 +56,9 @@ void contention_json(const struct contention *row, int n, struct json *j)
         json_object(j);
         json_key(j, "levels");
         validation_levels_json(row[k].level, 1, j);
-        json_key(j, "quantity");
-        json_text(j, probe_name(row[k].quantity));
-        json_key(j, "ranks");
-        json_int(j, row[k].ranks);
-        json_key(j, "unit");
-        json_text(j, "B/s");
+        json_key_text(j, "quantity", probe_name(row[k].quantity));
+        json_key_int(j, "ranks", row[k].ranks);
+        json_key_text(j, "unit", "B/s");
         json_end(j);
     }
     json_end(j);

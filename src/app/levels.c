@@ -13,17 +13,10 @@ enum { MOST_LEVELS = 8, HEX = 65 };
 
 bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *e)
 {
-    static const char *const name[] = {"scenario", "ladder", "at", "family", "method", "rung", "ordinal", "quantity",
-                                       "reference", "relative_error", "host_s", "machine_ps", "status", "text"};
+    static const char *const name[] = {"scenario", "ordinal"};
     for (int i = 0; i < r->nrung; i++) {
-        const struct accuracy_rung *x = &r->rung[i];
-        const struct store_value value[] = {
-            store_text(r->scenario), store_text(x->ladder), store_text(x->at), store_text(x->family),
-            store_text(x->method), store_text(x->rung), store_int(i), store_text(x->quantity),
-            store_text(x->reference), store_real(x->error), store_real(x->host_s),
-            x->machine_ps >= 0 ? store_int(x->machine_ps) : store_null(), store_text(rung_status_word(x->status)),
-            store_text(x->text)};
-        if (!store_insert(s, "ladder", 14, name, value, e)) return false;
+        const struct store_value value[] = {store_text(r->scenario), store_int(i)};
+        if (!store_insert_row(s, "ladder", 2, name, value, &accuracy_rung_columns, &r->rung[i], e)) return false;
     }
     return true;
 }

@@ -40,8 +40,7 @@ void validation_levels_json(const double level[LEVELS], double scale, struct jso
     static const int sorted[LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
     json_object(j);
     for (int i = 0; i < LEVELS; i++) {
-        json_key(j, validation_level_name(sorted[i]));
-        json_real(j, level[sorted[i]] / scale);
+        json_key_real(j, validation_level_name(sorted[i]), level[sorted[i]] / scale);
     }
     json_end(j);
 }

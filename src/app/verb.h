@@ -8,6 +8,7 @@
 
 #include "app/verb_list.h"
 #include "base/err.h"
+#include "base/json.h"
 #include "plan/plan.h"
 #include "run/catalogue.h"
 
@@ -68,6 +69,9 @@ void common_print_pairs(const struct common *c, int n, const char *const *name, 
 
 /* common_fail: print *e (as JSON on stdout with --json, always on stderr) and return its exit status. */
 int common_fail(const struct common *c, const struct err *e);
+
+/* common_error_json: the object {exit_status, file, kind, line, text} of an error; of none, kind ERR_NONE. */
+void common_error_json(struct json *j, const char *file, const struct err *e);
 
 /* common_wants_json: whether --json stands among the options. */
 bool common_wants_json(int argc, char **argv);

@@ -125,6 +125,30 @@ void json_null(struct json *j)
     fputs("null", j->out);
 }
 
+void json_key_text(struct json *j, const char *key, const char *s)
+{
+    json_key(j, key);
+    json_text(j, s);
+}
+
+void json_key_int(struct json *j, const char *key, int64_t v)
+{
+    json_key(j, key);
+    json_int(j, v);
+}
+
+void json_key_real(struct json *j, const char *key, double v)
+{
+    json_key(j, key);
+    json_real(j, v);
+}
+
+void json_key_bool(struct json *j, const char *key, bool v)
+{
+    json_key(j, key);
+    json_bool(j, v);
+}
+
 void json_finish(struct json *j)
 {
     CHECK(j->depth == 0 && !j->key_open);

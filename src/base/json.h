@@ -31,6 +31,12 @@ void json_real(struct json *j, double v);
 void json_bool(struct json *j, bool v);
 void json_null(struct json *j);
 
+/* json_key_text, json_key_int, json_key_real, json_key_bool: a key and its value. */
+void json_key_text(struct json *j, const char *key, const char *s);
+void json_key_int(struct json *j, const char *key, int64_t v);
+void json_key_real(struct json *j, const char *key, double v);
+void json_key_bool(struct json *j, const char *key, bool v);
+
 /* json_finish: end the document with a newline and flush; CHECKs that everything was closed. */
 void json_finish(struct json *j);
 

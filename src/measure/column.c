@@ -125,12 +125,15 @@ static int sort_keys(const struct column_table *t, const struct column *sorted[M
     return n;
 }
 
-static void json_value(const struct column_value *v, struct json *j)
+static void json_value(const struct column *c, const struct column_value *v, struct json *j)
 {
     switch (v->kind) {
     case VALUE_ABSENT: json_null(j); break;
-    case VALUE_INT: json_int(j, v->integer); break;
-    case VALUE_REAL: json_real(j, v->real); break;
+    case VALUE_INT:
+        if (c->json_scale != 0) json_real(j, (double)v->integer * c->json_scale);
+        else json_int(j, v->integer);
+        break;
+    case VALUE_REAL: json_real(j, c->json_scale != 0 ? v->real * c->json_scale : v->real); break;
     case VALUE_TEXT: json_text(j, v->text); break;
     case VALUE_BOOL: json_bool(j, v->integer); break;
     }
@@ -142,16 +145,15 @@ static void json_row(const struct column *const *sorted, int n, const void *row,
     for (int i = 0; i < n; i++) {
         const struct column *c = sorted[i];
         struct column_value v = {0};
+        const bool known = c->known == NULL || c->known(row);
+        if (!known && (c->flags & COLUMN_OPTIONAL || c->json != NULL)) continue;
+        json_key(j, json_name(c));
         if (c->json != NULL) {
-            if (c->known != NULL && !c->known(row)) continue;
-            json_key(j, json_name(c));
             c->json(c, row, j);
             continue;
         }
         column_read(c, row, &v);
-        if (v.kind == VALUE_ABSENT && c->flags & COLUMN_OPTIONAL) continue;
-        json_key(j, json_name(c));
-        json_value(&v, j);
+        json_value(c, &v, j);
     }
     json_end(j);
 }
@@ -177,7 +179,8 @@ void columns_title(const struct column_table *t, FILE *out)
 {
     for (int i = 0; i < t->n; i++) {
         const struct column *c = &t->column[i];
-        if (c->title != NULL) fprintf(out, "%s%*s", c->before != NULL ? c->before : "", c->width, c->title);
+        if (c->title != NULL && c->title[0])
+            fprintf(out, "%s%*s", c->before != NULL ? c->before : "", c->width, c->title);
     }
     fputc('\n', out);
 }
@@ -192,7 +195,7 @@ static void print_real(const struct column *c, double x, FILE *out)
     }
 }
 
-void columns_print(const struct column_table *t, const void *row, FILE *out)
+void columns_cells(const struct column_table *t, const void *row, FILE *out)
 {
     for (int i = 0; i < t->n; i++) {
         const struct column *c = &t->column[i];
@@ -200,12 +203,16 @@ void columns_print(const struct column_table *t, const void *row, FILE *out)
         if (c->title == NULL) continue;
         if (c->before != NULL) fputs(c->before, out);
         column_read(c, row, &v);
-        switch (v.kind) {
-        case VALUE_ABSENT: fprintf(out, "%*s", c->width, "-"); break;
-        case VALUE_TEXT: fprintf(out, "%*s", c->width, v.text); break;
-        case VALUE_REAL: print_real(c, v.real, out); break;
-        default: fprintf(out, "%*" PRId64, c->width, v.integer); break;
-        }
+        if (v.kind == VALUE_ABSENT) fprintf(out, "%*s", c->width, "-");
+        else if (v.kind == VALUE_TEXT) fprintf(out, "%*s", c->width, v.text);
+        else if (v.kind == VALUE_REAL) print_real(c, v.real, out);
+        else if (c->style) print_real(c, (double)v.integer, out);
+        else fprintf(out, "%*" PRId64, c->width, v.integer);
     }
+}
+
+void columns_print(const struct column_table *t, const void *row, FILE *out)
+{
+    columns_cells(t, row, out);
     fputc('\n', out);
 }

@@ -43,7 +43,7 @@ enum {
     COLUMN_NULL = 1,     /* the database lets it be absent */
     COLUMN_NO_SQL = 2,   /* not in the database */
     COLUMN_NO_JSON = 4,  /* not in JSON */
-    COLUMN_OPTIONAL = 8  /* in JSON without its key when it is absent */
+    COLUMN_OPTIONAL = 8  /* in JSON without its key where `known` says no */
 };
 
 struct column {
@@ -59,12 +59,14 @@ struct column {
     /* Makes the value, of the SQL type of `kind`, from the row; what it leaves alone is absent. NULL: see `offset`. */
     void (*value)(const struct column *c, const void *row, struct column_value *v);
     const char *more; /* for `value` */
-    void (*json)(const struct column *c, const void *row, struct json *j); /* writes a list or an object instead */
+    /* Writes a list or an object into JSON instead, where known. */
+    void (*json)(const struct column *c, const void *row, struct json *j);
     const char *key;    /* in JSON; NULL: as `name` */
+    double json_scale;  /* 0: as it is; else a real, this times the value */
     const char *title;  /* on the terminal; NULL: not there */
     const char *before; /* there: text in front of it, NULL: nothing */
     int width;          /* there, negative: aligned to the left, 0: as long as it is */
-    char style;         /* there, of a real: 'e', 'f' or 'g' with `digits`, of the value times `scale` */
+    char style;         /* there, 'e', 'f' or 'g': a real with `digits`, of the value times `scale`; 0: as it is */
     int digits;
     double scale;       /* 0: 1 */
     const char *doc;    /* one line for the manual */
@@ -95,8 +97,10 @@ int columns_list(const struct column_table *t, struct text *sql);
 void columns_json(const struct column_table *t, const void *row, struct json *j);
 void columns_json_list(const struct column_table *t, const void *row, int n, size_t size, struct json *j);
 
-/* columns_title, columns_print: the line of titles, and a row as aligned text, each with its line break. */
+/* columns_title, columns_print: the line of titles, and a row as aligned text, each with its line break. A column whose
+ * title is "" has no place in the line of titles. columns_cells: as columns_print, the line goes on. */
 void columns_title(const struct column_table *t, FILE *out);
 void columns_print(const struct column_table *t, const void *row, FILE *out);
+void columns_cells(const struct column_table *t, const void *row, FILE *out);
 
 #endif

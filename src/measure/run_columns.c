@@ -156,18 +156,21 @@ static const struct column error_check[] = {
 };
 const struct column_table error_check_columns = COLUMNS(error_check);
 
-static const char *const omission_class[] = {"exact", "bounded"};
+static const char *const class_word[] = {"exact", "bounded"};
+
+const char *omission_class(const struct omission *o) { return class_word[o->bound > 0]; }
 
 static void read_class(const struct column *c, const void *row, struct column_value *v)
 {
+    (void)c;
     v->kind = VALUE_TEXT;
-    v->text = c->word[((const struct omission *)row)->bound > 0];
+    v->text = omission_class(row);
 }
 
 static const struct column omission[] = {
     {"what", COLUMN_CHARS, .offset = offsetof(struct omission, what), .doc = "was not computed"},
     {"why", COLUMN_CHARS, .offset = offsetof(struct omission, why), .doc = "why no result needs it"},
-    {"class", COLUMN_WORD, .value = read_class, WORDS(omission_class),
+    {"class", COLUMN_WORD, .value = read_class, WORDS(class_word),
      .doc = "exact: the results are the same numbers; bounded: to within `bound`"},
     {"bound", COLUMN_REAL, .offset = offsetof(struct omission, bound), .flags = COLUMN_NULL, .absent = ABSENT_ZERO,
      .doc = "largest relative change of a result, of bounded ones"},

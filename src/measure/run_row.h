@@ -37,6 +37,9 @@ struct run_row {
 /* stage_time_total: where the time of a rank went in a stage, all of it [ps]. */
 int64_t stage_time_total(const struct stage_time *t);
 
+/* omission_class: "exact" or "bounded". */
+const char *omission_class(const struct omission *o);
+
 /* stage_time_idle: a rank that did nothing in a stage has no row of its own. */
 bool stage_time_idle(const struct stage_time *t);
 

@@ -33,27 +33,17 @@ struct listing {
     char verdict[16]; /* of the claim that is open: its key comes after the variants, as keys are sorted */
 };
 
-static void member(struct json *j, const char *key, const struct store_value *v)
-{
-    json_key(j, key);
-    if (v->kind == STORE_TEXT) json_text(j, v->text);
-    else if (v->kind == STORE_INT) json_int(j, v->integer);
-    else if (v->kind == STORE_REAL) json_real(j, v->real);
-    else json_null(j);
-}
-
 static void close_claim(struct listing *l)
 {
     if (!l->open) return;
     json_end(&l->j);
-    json_key(&l->j, "verdict");
-    json_text(&l->j, l->verdict);
+    json_key_text(&l->j, "verdict", l->verdict);
     json_end(&l->j);
     l->open = false;
 }
 
 /* Columns of json_sql; a variant does not repeat what all variants of a claim share. */
-enum column { COLUMN_JUDGED = 2, COLUMN_STATEMENT = 6, COLUMN_TESTABLE = 8, COLUMN_UNIT = 10,
+enum claim_column { COLUMN_JUDGED = 2, COLUMN_STATEMENT = 6, COLUMN_TESTABLE = 8, COLUMN_UNIT = 10,
               COLUMN_VARIANT = 14, COLUMN_VERDICT = 15 };
 static const char json_sql[] = "SELECT holding, id, judged, note, samples, share, statement, test, testable, threshold,"
                                " unit, value, value_high,"
@@ -67,7 +57,9 @@ static bool json_claim(void *context, int ncolumn, const char *const *name, cons
     json_object(&l->j);
     for (int i = 0; i < ncolumn; i++) {
         bool shared = i <= COLUMN_JUDGED || (i >= COLUMN_STATEMENT && i <= COLUMN_TESTABLE) || i == COLUMN_UNIT;
-        if (own ? i < COLUMN_VARIANT : !shared) member(&l->j, name[i], &value[i]);
+        if (own ? i >= COLUMN_VARIANT : shared) continue;
+        json_key(&l->j, name[i]);
+        report_value_json(&l->j, &value[i]);
     }
     if (own) {
         json_key(&l->j, "variants");

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "base/err.h"
+#include "base/json.h"
 #include "base/text.h"
 #include "store/store.h"
 
@@ -46,6 +47,9 @@ int report_figures(const char *data_dir, char ***name);
 /* report_figure_about: what figure `name` shows, as much of the first sentence of its description as a line holds
  * (*title), and the command that fills a database for it (*needs); "" when it does not say. The caller frees both. */
 void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs);
+
+/* report_value_json: one value of a row as the next value of a document. */
+void report_value_json(struct json *j, const struct store_value *v);
 
 /* report_query: print the rows of `sql` as an aligned table (or as JSON, one document with
  * sorted keys) on `out`. */

@@ -105,7 +105,7 @@ struct document_rows {
     struct json j;
     struct arena *a;
     int ncolumn;
-    struct column {
+    struct key_place {
         char *name;
         int at;
     } * column; /* (ncolumn) by name */
@@ -113,7 +113,7 @@ struct document_rows {
 
 static int compare_columns(const void *a, const void *b)
 {
-    const struct column *x = a, *y = b;
+    const struct key_place *x = a, *y = b;
     int order = strcmp(x->name, y->name);
     return order ? order : x->at - y->at;
 }
@@ -136,12 +136,22 @@ static bool json_header(void *context, int ncolumn, const char *const *name, con
     struct document_rows *d = context;
     (void)value;
     d->ncolumn = ncolumn;
-    d->column = TAKE(d->a, ncolumn, struct column);
-    for (int i = 0; i < ncolumn; i++) d->column[i] = (struct column){arena_text(d->a, name[i]), i};
+    d->column = TAKE(d->a, ncolumn, struct key_place);
+    for (int i = 0; i < ncolumn; i++) d->column[i] = (struct key_place){arena_text(d->a, name[i]), i};
     qsort(d->column, (size_t)ncolumn, sizeof *d->column, compare_columns);
     name_apart(d);
     json_array(&d->j);
     return true;
+}
+
+void report_value_json(struct json *j, const struct store_value *v)
+{
+    switch (v->kind) {
+    case STORE_NULL: json_null(j); break;
+    case STORE_INT: json_int(j, v->integer); break;
+    case STORE_REAL: json_real(j, v->real); break;
+    case STORE_TEXT: json_text(j, v->text); break;
+    }
 }
 
 static bool json_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
@@ -151,14 +161,8 @@ static bool json_row(void *context, int ncolumn, const char *const *name, const 
     (void)name;
     json_object(j);
     for (int i = 0; i < ncolumn; i++) {
-        const struct store_value *v = &value[d->column[i].at];
         json_key(j, d->column[i].name);
-        switch (v->kind) {
-        case STORE_NULL: json_null(j); break;
-        case STORE_INT: json_int(j, v->integer); break;
-        case STORE_REAL: json_real(j, v->real); break;
-        case STORE_TEXT: json_text(j, v->text); break;
-        }
+        report_value_json(j, &value[d->column[i].at]);
     }
     json_end(j);
     return true;

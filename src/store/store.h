@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/err.h"
+#include "measure/column.h"
 #include "measure/run_result.h"
 #include "spec/run_spec.h"
 
@@ -58,6 +59,10 @@ struct store_value store_text(const char *v);
  *   Returns false with ERR_DATA (no such table or column, a value that the table forbids), ERR_BUSY or ERR_IO. */
 bool store_insert(struct store *s, const char *table, int ncolumn, const char *const *name,
                   const struct store_value *value, struct err *e);
+
+/* store_insert_row: as store_insert, the columns of `t` with their values in `row`, behind (n) keys of other origin. */
+bool store_insert_row(struct store *s, const char *table, int n, const char *const *name,
+                      const struct store_value *value, const struct column_table *t, const void *row, struct err *e);
 
 /* store_delete: remove the rows of `table` where `column` equals `value` (a suite that is filled anew). */
 bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e);

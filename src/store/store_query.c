@@ -151,6 +151,30 @@ bool store_insert(struct store *s, const char *table, int ncolumn, const char *c
     return ok;
 }
 
+bool store_insert_row(struct store *s, const char *table, int n, const char *const *name,
+                      const struct store_value *value, const struct column_table *t, const void *row, struct err *e)
+{
+    const char *all[MAX_INSERT];
+    struct store_value cell[MAX_INSERT];
+    struct column_value read[MAX_INSERT]; /* which the texts may lie in */
+    CHECK(n + t->n <= MAX_INSERT);
+    for (int i = 0; i < n; i++) {
+        all[i] = name[i];
+        cell[i] = value[i];
+    }
+    for (int i = 0; i < t->n; i++) {
+        struct column_value *v = &read[i];
+        if (t->column[i].flags & COLUMN_NO_SQL) continue;
+        column_read(&t->column[i], row, v);
+        all[n] = t->column[i].name;
+        cell[n++] = v->kind == VALUE_ABSENT ? store_null()
+                    : v->kind == VALUE_REAL ? store_real(v->real)
+                    : v->kind == VALUE_TEXT ? store_text(v->text)
+                                            : store_int(v->integer);
+    }
+    return store_insert(s, table, n, all, cell, e);
+}
+
 bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e)
 {
     struct text sql = {0};

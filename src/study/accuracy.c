@@ -12,12 +12,6 @@
 #include "study/accuracy_ladder.h"
 #include "study/level_choice.h"
 
-const char *rung_status_word(enum rung_status s)
-{
-    static const char *const word[] = {"ok", "degraded", "failed"};
-    return word[s];
-}
-
 /* --- the cheapest rung ------------------------------------------------------------------------------------------ */
 
 static double cost_of(const struct accuracy_rung *x)

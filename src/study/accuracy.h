@@ -15,6 +15,7 @@
 
 #include "base/arena.h"
 #include "base/err.h"
+#include "measure/column.h"
 #include "spec/run_spec.h"
 
 enum rung_status { RUNG_OK, RUNG_DEGRADED, RUNG_FAILED };
@@ -76,7 +77,7 @@ struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const ch
 void accuracy_print(FILE *out, const struct accuracy_report *r);
 void accuracy_print_json(FILE *out, const struct accuracy_report *r);
 
-/* rung_status_word: "ok", "degraded", "failed". */
-const char *rung_status_word(enum rung_status s);
+/* The columns of the structs, as the database has them, and as they are printed. */
+extern const struct column_table accuracy_rung_columns, accuracy_choice_columns;
 
 #endif

@@ -5,21 +5,66 @@
 #include "base/json.h"
 #include "study/accuracy.h"
 
-static void print_number(FILE *out, const char *format, int width, double x)
+#define RUNG(member) .offset = offsetof(struct accuracy_rung, member)
+
+static const char *const status_word[] = {"ok", "degraded", "failed"};
+
+/* The name of the rung, but not a second time where it is that of its method. */
+static void read_rung(const struct column *c, const void *row, struct column_value *v)
 {
-    if (isfinite(x)) fprintf(out, format, width, x);
-    else fprintf(out, "%*s", width, "-");
+    const struct accuracy_rung *x = row;
+    (void)c;
+    v->kind = VALUE_TEXT;
+    v->text = strcmp(x->method, x->rung) == 0 ? "" : x->rung;
 }
+
+static const struct column rung_column[] = {
+    {"ladder", COLUMN_CHARS, RUNG(ladder), .doc = "network, arithmetic or integration"},
+    {"at", COLUMN_CHARS, RUNG(at), .doc = "point of the scenario: \"n=P=128\""},
+    {"family", COLUMN_CHARS, RUNG(family), .flags = COLUMN_NO_JSON,
+     .doc = "SHA-256 of the settings without sizes, level and seeds: what it holds for"},
+    {"method", COLUMN_CHARS, RUNG(method), .title = "method", .before = "  ", .width = -24, .doc = "a curve"},
+    {"rung", COLUMN_CHARS, RUNG(rung), .doc = "a point on it: level, step size, tolerance"},
+    {"rung_shown", COLUMN_STRING, .value = read_rung, .flags = COLUMN_NO_SQL | COLUMN_NO_JSON, .title = "rung",
+     .before = " ", .width = -18, .doc = "as `rung`, blank where that is the method"},
+    {"quantity", COLUMN_CHARS, RUNG(quantity), .doc = "what was compared"},
+    {"reference", COLUMN_CHARS, RUNG(reference), .doc = "with what"},
+    {"status", COLUMN_WORD, RUNG(status), WORDS(status_word), .title = "status", .before = " ", .width = -9,
+     .doc = "whether it is good enough, poor, or no answer"},
+    {"relative_error", COLUMN_REAL, RUNG(error), .flags = COLUMN_NULL, .key = "error", .title = "error", .width = 10,
+     .style = 'e', .digits = 2, .doc = "NULL: failed, or not finite"},
+    {"host_s", COLUMN_REAL, RUNG(host_s), .flags = COLUMN_NULL, .title = "host_ms", .width = 12, .style = 'f',
+     .digits = 4, .scale = 1e3, .doc = "time on this computer"},
+    {"machine_ps", COLUMN_INT64, RUNG(machine_ps), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE, .key = "machine_s",
+     .json_scale = 1e-12, .title = "machine_us", .width = 14, .style = 'f', .digits = 3, .scale = 1e-6,
+     .doc = "predicted time on the machine"},
+    {"text", COLUMN_CHARS, RUNG(text), .title = "", .before = "  ", .doc = "why it failed; processors used"},
+};
+const struct column_table accuracy_rung_columns = COLUMNS(rung_column);
+
+#define CHOICE(member) .offset = offsetof(struct accuracy_choice, member)
+#define CHOSEN(member) \
+    .part = PART(struct accuracy_choice, rung), .offset = offsetof(struct accuracy_rung, member), .known = has_rung
+
+static bool has_rung(const void *row) { return ((const struct accuracy_choice *)row)->rung != NULL; }
+
+static const struct column choice_column[] = {
+    {"ladder", COLUMN_STRING, CHOICE(ladder), .doc = "network, arithmetic or integration"},
+    {"at", COLUMN_STRING, CHOICE(at), .flags = COLUMN_NO_JSON, .doc = "point of the scenario"},
+    {"quantity", COLUMN_STRING, CHOICE(quantity), .doc = "what was compared"},
+    {"tolerance", COLUMN_REAL, CHOICE(tolerance), .doc = "largest error asked for"},
+    {"method", COLUMN_CHARS, CHOSEN(method), .flags = COLUMN_NULL, .doc = "NULL: no rung is within the tolerance"},
+    {"rung", COLUMN_CHARS, CHOSEN(rung), .flags = COLUMN_NULL, .doc = "the cheapest that is"},
+    {"relative_error", COLUMN_REAL, CHOSEN(error), .flags = COLUMN_NULL, .key = "error", .doc = "of that rung"},
+    {"cost_ratio", COLUMN_REAL, CHOICE(cost_ratio), .known = has_rung, .flags = COLUMN_NULL,
+     .doc = "of the finest rung's cost to this one's"},
+};
+const struct column_table accuracy_choice_columns = COLUMNS(choice_column);
 
 /* One rung, whose first quantity is x[0] and whose others follow. */
 static void print_rung(FILE *out, const struct accuracy_rung *x, int n)
 {
-    fprintf(out, "  %-24s %-18s %-9s", x->method, strcmp(x->method, x->rung) == 0 ? "" : x->rung,
-            rung_status_word(x->status));
-    print_number(out, "%*.2e", 10, x->error);
-    print_number(out, "%*.4f", 12, x->host_s * 1e3);
-    print_number(out, "%*.3f", 14, x->machine_ps >= 0 ? (double)x->machine_ps * 1e-6 : NAN);
-    fprintf(out, "  %s", x->text);
+    columns_cells(&accuracy_rung_columns, x, out);
     for (int i = 1; i < n && isfinite(x->error); i++)
         fprintf(out, "%s%s %.1e", i > 1 || x->text[0] ? ", " : "", x[i].quantity, x[i].error);
     fprintf(out, "\n");
@@ -66,8 +111,7 @@ void accuracy_print(FILE *out, const struct accuracy_report *r)
         n = rung_length(r, i);
         if (strcmp(ladder, x->ladder) != 0) {
             fprintf(out, "%s%s, %s: %s against %s\n", i > 0 ? "\n" : "", x->ladder, x->at, x->quantity, x->reference);
-            fprintf(out, "  %-24s %-18s %-9s%10s%12s%14s\n", "method", "rung", "status", "error", "host_ms",
-                    "machine_us");
+            columns_title(&accuracy_rung_columns, out);
         }
         ladder = x->ladder;
         print_rung(out, x, n);
@@ -76,65 +120,15 @@ void accuracy_print(FILE *out, const struct accuracy_report *r)
     for (int i = 0; i < r->nchoice; i++) print_choice(out, &r->choice[i]);
 }
 
-static void json_pair(struct json *j, const char *key, const char *value)
-{
-    json_key(j, key);
-    json_text(j, value);
-}
-
-static void json_number(struct json *j, const char *key, double value)
-{
-    json_key(j, key);
-    json_real(j, value);
-}
-
-static void json_rung(struct json *j, const struct accuracy_rung *x)
-{
-    json_object(j);
-    json_pair(j, "at", x->at);
-    json_number(j, "error", x->error);
-    json_number(j, "host_s", x->host_s);
-    json_pair(j, "ladder", x->ladder);
-    json_number(j, "machine_s", x->machine_ps >= 0 ? (double)x->machine_ps * 1e-12 : NAN);
-    json_pair(j, "method", x->method);
-    json_pair(j, "quantity", x->quantity);
-    json_pair(j, "reference", x->reference);
-    json_pair(j, "rung", x->rung);
-    json_pair(j, "status", rung_status_word(x->status));
-    json_pair(j, "text", x->text);
-    json_end(j);
-}
-
-static void json_choice(struct json *j, const struct accuracy_choice *c)
-{
-    json_object(j);
-    json_number(j, "cost_ratio", c->rung ? c->cost_ratio : NAN);
-    json_number(j, "error", c->rung ? c->rung->error : NAN);
-    json_pair(j, "ladder", c->ladder);
-    json_key(j, "method");
-    if (c->rung) json_text(j, c->rung->method);
-    else json_null(j);
-    json_pair(j, "quantity", c->quantity);
-    json_key(j, "rung");
-    if (c->rung) json_text(j, c->rung->rung);
-    else json_null(j);
-    json_number(j, "tolerance", c->tolerance);
-    json_end(j);
-}
-
 void accuracy_print_json(FILE *out, const struct accuracy_report *r)
 {
     struct json j = json_make(out);
     json_object(&j);
     json_key(&j, "choices");
-    json_array(&j);
-    for (int i = 0; i < r->nchoice; i++) json_choice(&j, &r->choice[i]);
-    json_end(&j);
+    columns_json_list(&accuracy_choice_columns, r->choice, r->nchoice, sizeof *r->choice, &j);
     json_key(&j, "rungs");
-    json_array(&j);
-    for (int i = 0; i < r->nrung; i++) json_rung(&j, &r->rung[i]);
-    json_end(&j);
-    json_pair(&j, "scenario", r->scenario);
+    columns_json_list(&accuracy_rung_columns, r->rung, r->nrung, sizeof *r->rung, &j);
+    json_key_text(&j, "scenario", r->scenario);
     json_end(&j);
     json_finish(&j);
 }

@@ -4,6 +4,7 @@
 
 #include "base/json.h"
 #include "base/text.h"
+#include "measure/column.h"
 #include "study/netcheck_verdict.h"
 
 const char *netcheck_level_name(enum network_level level) { return network_level_name(level); }
@@ -163,112 +164,173 @@ void netcheck_print(const struct netcheck *n, double within, bool brief, FILE *o
     print_findings(n, within, out);
 }
 
-/* Keys are sorted, in every object. */
-static void key_int(struct json *j, const char *key, int64_t value)
-{
-    json_key(j, key);
-    json_int(j, value);
-}
+/* --- JSON --------------------------------------------------------------------------------------------------------- */
 
-static void key_real(struct json *j, const char *key, double value)
-{
-    json_key(j, key);
-    json_real(j, value);
-}
+/* What the columns are of: a case, its answer at a level, or the statistics of a group at a level. */
+struct shown {
+    const struct netcheck *all;
+    const struct netcheck_row *row;
+    const struct netcheck_answer *answer;
+    enum network_level level;
+    double within;
+    const char *group; /* NULL: all */
+    struct netcheck_total total;
+    struct netcheck_verdict verdict;
+};
 
-static void key_text(struct json *j, const char *key, const char *value)
-{
-    json_key(j, key);
-    json_text(j, value);
-}
+static const struct shown *shown(const void *row) { return row; }
 
-static void json_arrivals(struct json *j, const struct netcheck_row *row, const struct netcheck_answer *a)
+static bool ran(const void *x) { return shown(x)->answer->ran; }
+
+static bool was_played(const void *x) { return shown(x)->answer->arrival != NULL; }
+
+static bool has_reference(const void *x) { return !shown(x)->row->played; }
+
+static bool has_error(const void *x) { return ran(x) && has_reference(x); }
+
+static bool is_judged(const void *x) { return has_error(x) && shown(x)->row->counted; }
+
+static bool is_compared(const void *x) { return ran(x) && shown(x)->row->compared && !shown(x)->answer->deadlock; }
+
+static bool says_why(const void *x) { return shown(x)->answer->why[0]; }
+
+static void write_arrivals(const struct column *c, const void *x, struct json *j)
 {
-    json_key(j, "arrival");
+    const double *arrival = shown(x)->answer->arrival;
+    (void)c;
     json_array(j);
-    for (int m = 0; m < row->nmessage; m++)
-        if (a->arrival[m] < 1e15) json_real(j, a->arrival[m]);
+    for (int m = 0; m < shown(x)->row->nmessage; m++)
+        if (arrival[m] < 1e15) json_real(j, arrival[m]);
         else json_null(j);
     json_end(j);
 }
 
-static void json_answer(struct json *j, const struct netcheck_row *row, enum network_level level, double within)
+static void set_word(struct column_value *v, const char *s)
 {
-    const struct netcheck_answer *a = &row->answer[level];
-    bool compared = a->ran && row->compared && !a->deadlock;
-    json_object(j);
-    if (a->arrival) json_arrivals(j, row, a);
-    if (a->ran) {
-        json_key(j, "deadlock");
-        json_bool(j, a->deadlock);
-    }
-    if (compared) key_int(j, "differing_messages", a->differing);
-    if (a->ran && !row->played) key_real(j, "error", a->error);
-    if (a->ran) key_int(j, "events", a->events);
-    if (a->ran) key_real(j, "found", a->found);
-    if (compared) key_real(j, "mean_message_error", a->message_error);
-    json_key(j, "ran");
-    json_bool(j, a->ran);
-    if (a->ran && row->counted && !row->played)
-        key_text(j, "verdict", netcheck_row_fails(row, level, within, NULL) ? "FAIL" : "pass");
-    if (a->why[0]) key_text(j, "why", a->why);
-    if (compared) key_real(j, "worst_message_error", a->message_worst);
-    json_end(j);
+    v->kind = VALUE_TEXT;
+    v->text = s;
 }
 
-static void json_rows(const struct netcheck *n, double within, struct json *j)
+static void read_row_verdict(const struct column *c, const void *x, struct column_value *v)
+{
+    (void)c;
+    set_word(v, netcheck_row_fails(shown(x)->row, shown(x)->level, shown(x)->within, NULL) ? "FAIL" : "pass");
+}
+
+/* A key that is there when `test` holds; a number that is not finite is null then. */
+#define WHEN(test) .known = (test), .flags = COLUMN_OPTIONAL
+#define ANSWER(member) .part = PART(struct shown, answer), .offset = offsetof(struct netcheck_answer, member)
+
+static const struct column answer_column[] = {
+    {"arrival", COLUMN_STRING, .json = write_arrivals, .known = was_played, .doc = "of each message [cycles]"},
+    {"deadlock", COLUMN_BOOL, ANSWER(deadlock), WHEN(ran), .doc = "the network was stuck"},
+    {"differing_messages", COLUMN_INT, ANSWER(differing), WHEN(is_compared), .doc = "arrivals that are not the same"},
+    {"error", COLUMN_REAL, ANSWER(error), WHEN(has_error), .doc = "relative to the reference"},
+    {"events", COLUMN_INT64, ANSWER(events), WHEN(ran), .doc = "dispatched by the simulator"},
+    {"found", COLUMN_REAL, ANSWER(found), WHEN(ran), .doc = "time [cycles], or load at saturation"},
+    {"mean_message_error", COLUMN_REAL, ANSWER(message_error), WHEN(is_compared), .doc = "of arrivals, relative"},
+    {"ran", COLUMN_BOOL, ANSWER(ran), .doc = "whether the level can run the case"},
+    {"verdict", COLUMN_STRING, .value = read_row_verdict, WHEN(is_judged), .doc = "by the stated accuracy"},
+    {"why", COLUMN_CHARS, ANSWER(why), WHEN(says_why), .doc = "it cannot"},
+    {"worst_message_error", COLUMN_REAL, ANSWER(message_worst), WHEN(is_compared), .doc = "the largest of them"},
+};
+static const struct column_table answer_columns = COLUMNS(answer_column);
+
+static void write_levels(const struct column *c, const void *x, struct json *j)
 {
     static const enum network_level by_name[] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
-    json_array(j);
-    for (int i = 0; i < n->nrow; i++) {
-        const struct netcheck_row *row = &n->row[i];
-        json_object(j);
-        key_text(j, "case", row->name);
-        json_key(j, "counted");
-        json_bool(j, row->counted && !row->played);
-        if (row->flaw[0]) key_text(j, "flaw", row->flaw);
-        key_text(j, "group", row->group);
-        json_key(j, "levels");
-        json_object(j);
-        for (int l = 0; l < LEVELS; l++) {
-            if (!n->level[by_name[l]]) continue;
-            json_key(j, network_level_name((enum network_level)by_name[l]));
-            json_answer(j, row, by_name[l], within);
-        }
-        json_end(j);
-        key_int(j, "line", row->line);
-        key_int(j, "messages", row->nmessage);
-        if (!row->played) key_real(j, "reference_high", row->high);
-        if (!row->played) key_real(j, "reference_low", row->low);
-        json_end(j);
+    (void)c;
+    json_object(j);
+    for (int l = 0; l < LEVELS; l++) {
+        struct shown at = *shown(x);
+        if (!at.all->level[by_name[l]]) continue;
+        at.level = by_name[l];
+        at.answer = &at.row->answer[at.level];
+        json_key(j, network_level_name(at.level));
+        columns_json(&answer_columns, &at, j);
     }
     json_end(j);
 }
 
-static void json_total(const struct netcheck *n, const char *group, double within, struct json *j)
+static void read_counted(const struct column *c, const void *x, struct column_value *v)
+{
+    (void)c;
+    v->kind = VALUE_BOOL;
+    v->integer = shown(x)->row->counted && !shown(x)->row->played;
+}
+
+static bool has_flaw(const void *x) { return shown(x)->row->flaw[0]; }
+
+#define CASE(member) .part = PART(struct shown, row), .offset = offsetof(struct netcheck_row, member)
+
+static const struct column case_column[] = {
+    {"case", COLUMN_CHARS, CASE(name), .doc = "its name"},
+    {"counted", COLUMN_BOOL, .value = read_counted, .doc = "whether there is something to compare with"},
+    {"flaw", COLUMN_CHARS, CASE(flaw), WHEN(has_flaw), .doc = "in what the reference contradicts itself"},
+    {"group", COLUMN_CHARS, CASE(group), .doc = "what it is counted with"},
+    {"levels", COLUMN_STRING, .json = write_levels, .doc = "an answer for each level"},
+    {"line", COLUMN_INT, CASE(line), .doc = "in the file"},
+    {"messages", COLUMN_INT, CASE(nmessage), .doc = "of the case"},
+    {"reference_high", COLUMN_REAL, CASE(high), WHEN(has_reference), .doc = "largest right answer [cycles]"},
+    {"reference_low", COLUMN_REAL, CASE(low), WHEN(has_reference), .doc = "least right answer [cycles]"},
+};
+static const struct column_table case_columns = COLUMNS(case_column);
+
+static bool is_group(const void *x) { return shown(x)->group != NULL; }
+
+static bool group_judged(const void *x) { return is_group(x) && shown(x)->verdict.cases > 0; }
+
+static bool group_fails(const void *x) { return is_group(x) && !shown(x)->verdict.pass; }
+
+static void read_group(const struct column *c, const void *x, struct column_value *v)
+{
+    (void)c;
+    set_word(v, is_group(x) ? shown(x)->group : "all");
+}
+
+static void read_level(const struct column *c, const void *x, struct column_value *v)
+{
+    (void)c;
+    set_word(v, network_level_name(shown(x)->level));
+}
+
+static void read_group_verdict(const struct column *c, const void *x, struct column_value *v)
+{
+    (void)c;
+    set_word(v, shown(x)->verdict.pass ? "pass" : "FAIL");
+}
+
+#define TOTAL(member) .offset = offsetof(struct shown, total.member)
+#define VERDICT(member) .offset = offsetof(struct shown, verdict.member)
+
+static const struct column total_column[] = {
+    {"cases", COLUMN_INT, TOTAL(cases), .doc = "answered"},
+    {"exact_cases", COLUMN_INT, TOTAL(exact_cases), .doc = "with the reference's time"},
+    {"exact_messages", COLUMN_INT64, TOTAL(exact), .doc = "with the reference's arrival"},
+    {"failed", COLUMN_INT, VERDICT(failed), .doc = "cases that break the stated accuracy"},
+    {"group", COLUMN_STRING, .value = read_group, .doc = "of cases"},
+    {"level", COLUMN_STRING, .value = read_level, .doc = "of the network"},
+    {"mean_error", COLUMN_REAL, TOTAL(mean), .doc = "of its size, relative"},
+    {"mean_limit", COLUMN_REAL, VERDICT(mean_limit), WHEN(is_group), .doc = "what it may be"},
+    {"mean_message_error", COLUMN_REAL, TOTAL(message_error), .doc = "over the cases"},
+    {"messages", COLUMN_INT64, TOTAL(messages), .doc = "compared"},
+    {"skipped", COLUMN_INT, TOTAL(skipped), .doc = "cases that the level cannot run"},
+    {"verdict", COLUMN_STRING, .value = read_group_verdict, WHEN(group_judged), .doc = "by the stated accuracy"},
+    {"why", COLUMN_CHARS, VERDICT(why), WHEN(group_fails), .doc = "it fails"},
+    {"worst_error", COLUMN_REAL, TOTAL(worst), .doc = "with its sign"},
+    {"worst_high", COLUMN_REAL, VERDICT(high), WHEN(is_group), .doc = "the largest that it may be"},
+    {"worst_low", COLUMN_REAL, VERDICT(low), WHEN(is_group), .doc = "the least that it may be"},
+};
+static const struct column_table total_columns = COLUMNS(total_column);
+
+static void json_totals(const struct netcheck *n, const char *group, double within, struct json *j)
 {
     for (int l = 0; l < LEVELS; l++) {
-        struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
-        struct netcheck_verdict v = netcheck_verdict(n, group, (enum network_level)l, within);
+        struct shown x = {.all = n, .level = (enum network_level)l, .within = within, .group = group};
         if (!n->level[l]) continue;
-        json_object(j);
-        key_int(j, "cases", t.cases);
-        key_int(j, "exact_cases", t.exact_cases);
-        key_int(j, "exact_messages", t.exact);
-        key_int(j, "failed", v.failed);
-        key_text(j, "group", group ? group : "all");
-        key_text(j, "level", network_level_name((enum network_level)l));
-        key_real(j, "mean_error", t.mean);
-        if (group) key_real(j, "mean_limit", v.mean_limit);
-        key_real(j, "mean_message_error", t.message_error);
-        key_int(j, "messages", t.messages);
-        key_int(j, "skipped", t.skipped);
-        if (group && v.cases > 0) key_text(j, "verdict", v.pass ? "pass" : "FAIL");
-        if (group && !v.pass) key_text(j, "why", v.why);
-        key_real(j, "worst_error", t.worst);
-        if (group) key_real(j, "worst_high", v.high);
-        if (group) key_real(j, "worst_low", v.low);
-        json_end(j);
+        x.total = netcheck_total(n, group, x.level);
+        x.verdict = netcheck_verdict(n, group, x.level, within);
+        columns_json(&total_columns, &x, j);
     }
 }
 
@@ -276,21 +338,24 @@ void netcheck_json_object(const struct netcheck *n, double within, struct json *
 {
     json_object(j);
     json_key(j, "cases");
-    json_rows(n, within, j);
+    json_array(j);
+    for (int i = 0; i < n->nrow; i++)
+        columns_json(&case_columns, &(struct shown){.all = n, .row = &n->row[i], .within = within}, j);
+    json_end(j);
     json_key(j, "compared_with_nothing");
     json_array(j);
     for (int i = 0; i < n->nignored; i++) json_text(j, n->ignored[i]);
     json_end(j);
-    key_text(j, "file", n->path);
+    json_key_text(j, "file", n->path);
     json_key(j, "totals");
     json_array(j);
     for (int i = 0; i < n->nrow; i++)
-        if (netcheck_opens_group(n, i) && !n->row[i].played) json_total(n, n->row[i].group, within, j);
-    json_total(n, NULL, within, j);
+        if (netcheck_opens_group(n, i) && !n->row[i].played) json_totals(n, n->row[i].group, within, j);
+    json_totals(n, NULL, within, j);
     json_end(j);
     bool any = false;
     for (int i = 0; i < n->nrow; i++) any = any || (n->row[i].counted && !n->row[i].played);
-    key_text(j, "verdict", !any ? "not judged" : netcheck_pass(n, within) ? "pass" : "FAIL");
+    json_key_text(j, "verdict", !any ? "not judged" : netcheck_pass(n, within) ? "pass" : "FAIL");
     json_end(j);
 }
 
@@ -314,21 +379,26 @@ void netcheck_print_stated(FILE *out)
     }
 }
 
+static bool has_message(const void *row) { return ((const struct netcheck_accuracy *)row)->message >= 0; }
+
+#define STATED(member) .offset = offsetof(struct netcheck_accuracy, member)
+
+static const struct column stated_column[] = {
+    {"cases", COLUMN_STRING, STATED(cases), .doc = "the class of cases in words"},
+    {"levels", COLUMN_STRING, STATED(levels), .doc = "for which it holds"},
+    {"mean", COLUMN_REAL, STATED(mean), .doc = "largest mean of |error| over many cases"},
+    {"message", COLUMN_REAL, STATED(message), WHEN(has_message), .doc = "largest |error| of one message's arrival"},
+    {"worst_high", COLUMN_REAL, STATED(high), .doc = "largest error of one case"},
+    {"worst_low", COLUMN_REAL, STATED(low), .doc = "least error of one case"},
+};
+static const struct column_table stated_columns = COLUMNS(stated_column);
+
 void netcheck_json_stated(FILE *out)
 {
     struct json j = json_make(out);
     const struct netcheck_accuracy *s;
     json_array(&j);
-    for (int i = 0; (s = netcheck_accuracies(i)); i++) {
-        json_object(&j);
-        key_text(&j, "cases", s->cases);
-        key_text(&j, "levels", s->levels);
-        key_real(&j, "mean", s->mean);
-        if (s->message >= 0) key_real(&j, "message", s->message);
-        key_real(&j, "worst_high", s->high);
-        key_real(&j, "worst_low", s->low);
-        json_end(&j);
-    }
+    for (int i = 0; (s = netcheck_accuracies(i)); i++) columns_json(&stated_columns, s, &j);
     json_end(&j);
     json_finish(&j);
 }

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "base/text.h"
+#include "measure/run_row.h"
 
 enum { LEAST_ROUNDS = 5, MOST_ROUNDS = 200 };
 static const double longest_run_s = 0.25, round_budget_s = 1.0, least_noise = 0.01;
@@ -163,7 +164,7 @@ void savings_print(FILE *out, const struct savings *all)
             "this computer", "the machine, predicted");
     for (int i = 0; i < all->n; i++) {
         const struct saving *s = &all->item[i];
-        fprintf(out, "  %-40s %-14s %-8s ", s->omission.what, s->at, s->omission.bound > 0 ? "bounded" : "exact");
+        fprintf(out, "  %-40s %-14s %-8s ", s->omission.what, s->at, omission_class(&s->omission));
         if (s->measured) {
             print_host(out, s);
             print_machine(out, s);
@@ -174,49 +175,51 @@ void savings_print(FILE *out, const struct savings *all)
     }
 }
 
-static void json_number(struct json *j, const char *key, double value)
+#define SAVING(member) .offset = offsetof(struct saving, member)
+
+static bool is_measured(const void *row) { return ((const struct saving *)row)->measured; }
+
+static void read_class(const struct column *c, const void *row, struct column_value *v)
 {
-    json_key(j, key);
-    json_real(j, value);
+    (void)c;
+    v->kind = VALUE_TEXT;
+    v->text = omission_class(&((const struct saving *)row)->omission);
 }
+
+static const struct column saving_column[] = {
+    {"at", COLUMN_CHARS, SAVING(at), .doc = "point of the scenario that was measured: \"n=P=128\""},
+    {"host_s", COLUMN_REAL, SAVING(host_s), .flags = COLUMN_NULL,
+     .doc = "of the run without it; NULL here and below: nothing brings it back"},
+    {"host_saved_s", COLUMN_REAL, SAVING(host_saved_s), .flags = COLUMN_NULL, .doc = "what leaving it out saves"},
+    {"host_noise_s", COLUMN_REAL, SAVING(noise_s), .flags = COLUMN_NULL,
+     .doc = "savings below it cannot be told from nothing"},
+    {"machine_ps", COLUMN_INT64, SAVING(machine_ps), .known = is_measured, .flags = COLUMN_NULL, .key = "machine_s",
+     .json_scale = 1e-12, .doc = "predicted time of the run without it"},
+    {"machine_saved_ps", COLUMN_INT64, SAVING(machine_saved_ps), .known = is_measured, .flags = COLUMN_NULL,
+     .key = "machine_saved_s", .json_scale = 1e-12, .doc = "what leaving it out saves of that"},
+    {"what", COLUMN_CHARS, SAVING(omission.what), .doc = "was left out"},
+    {"why", COLUMN_CHARS, SAVING(omission.why), .flags = COLUMN_NO_JSON, .doc = "why no result needs it"},
+    {"class", COLUMN_STRING, .value = read_class, .flags = COLUMN_NO_JSON, .doc = "exact or bounded"},
+    {"bound", COLUMN_REAL, SAVING(omission.bound), .absent = ABSENT_ZERO, .flags = COLUMN_NULL | COLUMN_NO_JSON,
+     .doc = "largest relative change of a result, of bounded ones"},
+};
+static const struct column_table saving_columns = COLUMNS(saving_column);
 
 void savings_json(struct json *j, const struct savings *all)
 {
     json_key(j, "savings");
-    json_array(j);
-    for (int i = 0; i < all->n; i++) {
-        const struct saving *s = &all->item[i];
-        json_object(j);
-        json_key(j, "at");
-        json_text(j, s->at);
-        json_number(j, "host_noise_s", s->noise_s);
-        json_number(j, "host_s", s->host_s);
-        json_number(j, "host_saved_s", s->host_saved_s);
-        json_number(j, "machine_s", s->measured ? (double)s->machine_ps * 1e-12 : NAN);
-        json_number(j, "machine_saved_s", s->measured ? (double)s->machine_saved_ps * 1e-12 : NAN);
-        json_key(j, "what");
-        json_text(j, s->omission.what);
-        json_end(j);
-    }
-    json_end(j);
+    columns_json_list(&saving_columns, all->item, all->n, sizeof *all->item, j);
 }
 
 bool savings_store(struct store *s, const struct savings *all, struct err *e)
 {
-    static const char *const name[] = {"scenario", "what", "ordinal", "why", "class", "bound", "at", "host_s",
-                                       "host_saved_s", "host_noise_s", "machine_ps", "machine_saved_ps"};
+    static const char *const name[] = {"scenario", "ordinal"};
     if (!store_begin(s, e)) return false;
     bool ok = store_note_build(s, e) && store_delete(s, "omission", "scenario", store_text(all->scenario), e);
     for (int i = 0; ok && i < all->n; i++) {
         const struct saving *x = &all->item[i];
-        const bool bounded = x->omission.bound > 0;
-        const struct store_value value[] = {
-            store_text(all->scenario), store_text(x->omission.what), store_int(i), store_text(x->omission.why),
-            store_text(bounded ? "bounded" : "exact"), bounded ? store_real(x->omission.bound) : store_null(),
-            store_text(x->at), store_real(x->host_s), store_real(x->host_saved_s), store_real(x->noise_s),
-            x->measured ? store_int(x->machine_ps) : store_null(),
-            x->measured ? store_int(x->machine_saved_ps) : store_null()};
-        ok = store_insert(s, "omission", 12, name, value, e);
+        const struct store_value value[] = {store_text(all->scenario), store_int(i)};
+        ok = store_insert_row(s, "omission", 2, name, value, &saving_columns, x, e);
     }
     if (ok) return store_commit(s, e);
     store_rollback(s);

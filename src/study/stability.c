@@ -10,12 +10,6 @@
 #include "base/text.h"
 #include "study/stability_scene.h"
 
-const char *stability_word(enum stability_status s)
-{
-    static const char *const word[] = {"ok", "degraded", "failed"};
-    return word[s];
-}
-
 /* Points of a scenario by what their models have: bodies as built, a base that is not fixed. */
 static void name_scene(const struct stability_scene *c, const struct model *m, char *name, int size)
 {
@@ -91,33 +85,42 @@ bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, 
 
 /* --- printing --------------------------------------------------------------------------------------------------- */
 
-static void print_number(FILE *out, double x)
-{
-    if (isfinite(x)) fprintf(out, "%9.1e", x);
-    else fprintf(out, "%9s", "-");
-}
+static const char *const status_word[] = {"ok", "degraded", "failed"};
+static const char *const cause_word[] = {"", "rounding", "algorithm-fails"};
 
-static void print_row(FILE *out, const struct stability_row *x)
-{
-    fprintf(out, "%-27s %-22s %-7s %-9s", x->subject, x->algorithm, x->precision, stability_word(x->status));
-    print_number(out, x->error);
-    print_number(out, x->residual);
-    print_number(out, x->condition);
-    print_number(out, x->growth);
-    if (x->refinements >= 0) fprintf(out, "%4d", x->refinements);
-    else fprintf(out, "%4s", "-");
-    print_number(out, x->energy_drift);
-    print_number(out, x->step_s);
-    fprintf(out, "  %s\n", x->reason);
-}
+#define ROW(member) .offset = offsetof(struct stability_row, member)
+/* A number that may be missing, nine places wide under `heading`. */
+#define NUMBER(name, heading, member, ...)                                                                             \
+    {name, COLUMN_REAL, ROW(member), .flags = COLUMN_NULL, .title = heading, .width = 9, .style = 'e', .digits = 1,    \
+     __VA_ARGS__}
+
+static const struct column stability_column[] = {
+    {"subject", COLUMN_CHARS, ROW(subject), .key = "case", .title = "case", .width = -27, .doc = "the case"},
+    {"algorithm", COLUMN_CHARS, ROW(algorithm), .title = "algorithm", .before = " ", .width = -22,
+     .doc = "which was asked"},
+    {"precision", COLUMN_CHARS, ROW(precision), .title = "prec", .before = " ", .width = -7, .doc = "of its numbers"},
+    {"status", COLUMN_WORD, ROW(status), WORDS(status_word), .title = "status", .before = " ", .width = -9,
+     .doc = "in double precision ok to 1e-8, degraded to 1e-2; in single 1e-3 and 1e-1"},
+    NUMBER("relative_error", "error", error, .key = "error", .doc = "NULL: no number"),
+    NUMBER("residual", "residual", residual,
+           .doc = "of the equation of motion over the largest joint force; with loops of the constraints"),
+    NUMBER("condition", "cond", condition, .doc = "of the case: change of the answer over that of the inputs"),
+    NUMBER("growth", "growth", growth, .doc = "of the reduction: largest diagonal element over its last pivot"),
+    {"refinements", COLUMN_INT, ROW(refinements), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE, .title = "ref",
+     .width = 4, .doc = "corrections that were applied, inner and outer"},
+    NUMBER("energy_drift", "energy", energy_drift, .doc = "of motions, relative; of accelerations: power of the error"),
+    NUMBER("step_s", "step", step_s, .doc = "largest stable or mean step, of integrators"),
+    {"cause", COLUMN_WORD, ROW(cause), WORDS(cause_word), .flags = COLUMN_NO_SQL, .doc = "why it is not ok"},
+    {"reason", COLUMN_CHARS, ROW(reason), .title = "", .before = "  ", .doc = "the same in words, and what helps"},
+};
+const struct column_table stability_columns = COLUMNS(stability_column);
 
 void stability_print(FILE *out, const struct stability_report *r)
 {
     int count[3] = {0}, by_algorithm = 0;
-    fprintf(out, "%-27s %-22s %-7s %-9s%9s%9s%9s%9s%4s%9s%9s\n", "case", "algorithm", "prec", "status", "error",
-            "residual", "cond", "growth", "ref", "energy", "step");
+    columns_title(&stability_columns, out);
     for (int i = 0; i < r->nrow; i++) {
-        print_row(out, &r->row[i]);
+        columns_print(&stability_columns, &r->row[i], out);
         count[r->row[i].status]++;
         by_algorithm += r->row[i].cause == CAUSE_ALGORITHM;
     }
@@ -125,45 +128,13 @@ void stability_print(FILE *out, const struct stability_report *r)
             count[2], r->nrow, by_algorithm);
 }
 
-static void json_number(struct json *j, const char *key, double value)
-{
-    json_key(j, key);
-    json_real(j, value);
-}
-
-static void json_pair(struct json *j, const char *key, const char *value)
-{
-    json_key(j, key);
-    json_text(j, value);
-}
-
 void stability_print_json(FILE *out, const struct stability_report *r)
 {
-    static const char *const cause[] = {"", "rounding", "algorithm-fails"};
     struct json j = json_make(out);
     json_object(&j);
     json_key(&j, "rows");
-    json_array(&j);
-    for (int i = 0; i < r->nrow; i++) {
-        const struct stability_row *x = &r->row[i];
-        json_object(&j);
-        json_pair(&j, "algorithm", x->algorithm);
-        json_pair(&j, "case", x->subject);
-        json_pair(&j, "cause", cause[x->cause]);
-        json_number(&j, "condition", x->condition);
-        json_number(&j, "energy_drift", x->energy_drift);
-        json_number(&j, "error", x->error);
-        json_number(&j, "growth", x->growth);
-        json_pair(&j, "precision", x->precision);
-        json_pair(&j, "reason", x->reason);
-        json_number(&j, "refinements", x->refinements >= 0 ? (double)x->refinements : (double)NAN);
-        json_number(&j, "residual", x->residual);
-        json_pair(&j, "status", stability_word(x->status));
-        json_number(&j, "step_s", x->step_s);
-        json_end(&j);
-    }
-    json_end(&j);
-    json_pair(&j, "suite", r->suite);
+    columns_json_list(&stability_columns, r->row, r->nrow, sizeof *r->row, &j);
+    json_key_text(&j, "suite", r->suite);
     json_end(&j);
     json_finish(&j);
 }

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "base/err.h"
+#include "measure/column.h"
 #include "spec/run_spec.h"
 
 enum stability_status { STABILITY_OK, STABILITY_DEGRADED, STABILITY_FAILED };
@@ -56,7 +57,7 @@ bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, 
 void stability_print(FILE *out, const struct stability_report *r);
 void stability_print_json(FILE *out, const struct stability_report *r);
 
-/* stability_word: "ok", "degraded", "failed". */
-const char *stability_word(enum stability_status s);
+/* stability_columns: of struct stability_row, as the database has them, and as they are printed. */
+extern const struct column_table stability_columns;
 
 #endif

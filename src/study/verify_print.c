@@ -4,13 +4,83 @@
 #include <string.h>
 
 #include "base/json.h"
+#include "measure/column.h"
 #include "study/verify.h"
 
-const char *verify_verdict_word(enum verify_verdict v)
+static const char *const verdict_word[] = {"pass", "rounding", "algorithm-fails", "fail", "not-applicable"};
+
+const char *verify_verdict_word(enum verify_verdict v) { return verdict_word[v]; }
+
+#define ROW(member) .offset = offsetof(struct verify_row, member)
+
+static bool applies(const void *row) { return ((const struct verify_row *)row)->verdict != VERIFY_NOT_APPLICABLE; }
+
+static void read_ranks(const struct column *c, const void *row, struct column_value *v)
 {
-    static const char *const word[] = {"pass", "rounding", "algorithm-fails", "fail", "not-applicable"};
-    return word[v];
+    const struct verify_row *x = row;
+    (void)c;
+    snprintf(v->buffer, sizeof v->buffer, "%s%s", x->ranks[0] ? "P=" : "", x->ranks);
+    v->kind = VALUE_TEXT;
+    v->text = v->buffer;
 }
+
+static void read_verdict(const struct column *c, const void *row, struct column_value *v)
+{
+    const enum verify_verdict verdict = ((const struct verify_row *)row)->verdict;
+    v->kind = VALUE_TEXT;
+    v->text = verdict == VERIFY_FAIL ? "FAIL" : c->word[verdict];
+}
+
+static const struct column row_column[] = {
+    {"algorithm", COLUMN_CHARS, ROW(algorithm), .title = "algorithm", .before = "  ", .width = -40,
+     .doc = "under test"},
+    {"quantity", COLUMN_CHARS, ROW(quantity), .title = "quantity", .before = " ", .width = -16,
+     .doc = "the field of the reference"},
+    {"parallel", COLUMN_BOOL, ROW(parallel), .doc = "whether it runs on several ranks"},
+    {"ranks", COLUMN_CHARS, ROW(ranks), .doc = "numbers of ranks that were tried"},
+    {"ranks_shown", COLUMN_STRING, .value = read_ranks, .flags = COLUMN_NO_JSON, .title = "ranks", .before = " ",
+     .width = -20, .doc = "the same for people"},
+    {"worst_rank_count", COLUMN_INT, ROW(worst_rank), .doc = "with how many of them the error was largest"},
+    {"error", COLUMN_REAL, ROW(error), .known = applies, .title = "error", .before = " ", .width = 8, .style = 'e',
+     .digits = 1, .doc = "by the numbers' own scales"},
+    {"error_of_largest", COLUMN_REAL, ROW(plain), .known = applies, .doc = "over the largest number of the reference"},
+    {"tolerance", COLUMN_REAL, ROW(tolerance), .known = applies, .title = "at most", .before = " ", .width = 8,
+     .style = 'e', .digits = 1, .doc = "largest error that passes"},
+    {"verdict", COLUMN_WORD, ROW(verdict), WORDS(verdict_word), .doc = "what the comparison says"},
+    {"verdict_shown", COLUMN_WORD, .value = read_verdict, WORDS(verdict_word), .flags = COLUMN_NO_JSON,
+     .title = "verdict", .before = "  ", .doc = "the same for people"},
+    {"note", COLUMN_CHARS, ROW(note), .doc = "why"},
+    {"remedy", COLUMN_CHARS, ROW(remedy), .doc = "what answers this quantity of this case"},
+};
+static const struct column_table row_columns = COLUMNS(row_column);
+
+#define CASE(member) .offset = offsetof(struct verify_report, member)
+
+static void write_rows(const struct column *c, const void *row, struct json *j)
+{
+    const struct verify_report *r = row;
+    (void)c;
+    columns_json_list(&row_columns, r->row, r->nrow, sizeof *r->row, j);
+}
+
+static const struct column case_column[] = {
+    {"bodies", COLUMN_INT, CASE(nbody), .doc = "of the model"},
+    {"degrees_of_freedom", COLUMN_INT, CASE(nu), .doc = "of the model"},
+    {"file", COLUMN_STRING, CASE(path), .doc = "with the reference"},
+    {"group", COLUMN_STRING, CASE(group), .doc = "what it is counted with"},
+    {"input_rounding_qdd", COLUMN_REAL, CASE(floor_fd), .doc = "change of accelerations when inputs are rounded"},
+    {"input_rounding_tau", COLUMN_REAL, CASE(floor_id), .doc = "change of joint forces when inputs are rounded"},
+    {"loop_constraints", COLUMN_INT, CASE(nrow_loop), .doc = "of the model"},
+    {"name", COLUMN_STRING, CASE(name), .doc = "of the case"},
+    {"passed", COLUMN_BOOL, CASE(passed), .doc = "whether no row fails"},
+    {"peer_qdd", COLUMN_REAL, CASE(peer_fd), .doc = "error of the best library's accelerations"},
+    {"peer_qdd_name", COLUMN_STRING, CASE(peer_fd_name), .doc = "which library"},
+    {"peer_tau", COLUMN_REAL, CASE(peer_id), .doc = "error of the best library's joint forces"},
+    {"peer_tau_name", COLUMN_STRING, CASE(peer_id_name), .doc = "which library"},
+    {"rows", COLUMN_STRING, .json = write_rows, .doc = "one for each algorithm and quantity"},
+    {"text", COLUMN_CHARS, CASE(text), .doc = "why it did not pass"},
+};
+static const struct column_table case_columns = COLUMNS(case_column);
 
 static void print_heading(FILE *out, const struct verify_report *r)
 {
@@ -24,24 +94,14 @@ static void print_heading(FILE *out, const struct verify_report *r)
 
 static void print_row(FILE *out, const struct verify_row *row)
 {
-    char ranks[48] = "";
-    if (row->ranks[0]) snprintf(ranks, sizeof ranks, "P=%s", row->ranks);
-    if (row->verdict == VERIFY_NOT_APPLICABLE) {
-        fprintf(out, "  %-40s %-16s %-20s %8s %8s  not-applicable: %s\n", row->algorithm, row->quantity, ranks, "-",
-                "-", row->note);
-        return;
-    }
-    fprintf(out, "  %-40s %-16s %-20s %8.1e %8.1e  %s%s%s%s%s\n", row->algorithm, row->quantity, ranks, row->error,
-            row->tolerance, row->verdict == VERIFY_FAIL ? "FAIL" : verify_verdict_word(row->verdict),
-            row->note[0] ? ": " : "", row->note, row->remedy[0] ? "; use " : "", row->remedy);
+    columns_cells(&row_columns, row, out);
+    fprintf(out, "%s%s%s%s\n", row->note[0] ? ": " : "", row->note, row->remedy[0] ? "; use " : "", row->remedy);
 }
 
 void verify_print(FILE *out, const struct verify_report *r, bool brief)
 {
     print_heading(out, r);
-    if (!brief)
-        fprintf(out, "  %-40s %-16s %-20s %8s %8s  %s\n", "algorithm", "quantity", "ranks", "error", "at most",
-                "verdict");
+    if (!brief) columns_title(&row_columns, out);
     for (int i = 0; i < r->nrow; i++)
         if (!brief || (r->row[i].verdict != VERIFY_PASS && r->row[i].verdict != VERIFY_NOT_APPLICABLE))
             print_row(out, &r->row[i]);
@@ -62,11 +122,11 @@ void verify_print_summary(FILE *out, const struct verify_report *r, int n)
 }
 
 /* A column of the matrix: rows whose algorithm begins with `algorithm`, in the quantity. */
-struct column {
+struct matrix_column {
     const char *title, *algorithm, *quantity;
 };
 
-static const struct column column_table[] = {
+static const struct matrix_column column_table[] = {
     {"RNEA", "rnea", "tau_id"},
     {"parallel", "parallel inverse", "tau_id"},
     {"ABA", "aba", "qdd_fd"},
@@ -82,7 +142,7 @@ static const struct column column_table[] = {
 enum { COLUMNS = sizeof column_table / sizeof *column_table };
 
 /* The largest error in the column, "-" when nothing there applies. */
-static void print_cell(FILE *out, const struct verify_report *r, const struct column *column)
+static void print_cell(FILE *out, const struct verify_report *r, const struct matrix_column *column)
 {
     double largest = -1;
     for (int i = 0; i < r->nrow; i++) {
@@ -115,69 +175,6 @@ void verify_print_matrix(FILE *out, const struct verify_report *r, int n)
     }
 }
 
-static void key_text(struct json *j, const char *key, const char *s)
-{
-    json_key(j, key);
-    json_text(j, s);
-}
-
-static void key_real(struct json *j, const char *key, double x)
-{
-    json_key(j, key);
-    json_real(j, x);
-}
-
-static void key_int(struct json *j, const char *key, int x)
-{
-    json_key(j, key);
-    json_int(j, x);
-}
-
-/* Keys in alphabetical order, here and below. */
-static void json_row(struct json *j, const struct verify_row *row)
-{
-    bool applies = row->verdict != VERIFY_NOT_APPLICABLE;
-    json_object(j);
-    key_text(j, "algorithm", row->algorithm);
-    key_real(j, "error", applies ? row->error : NAN);
-    key_real(j, "error_of_largest", applies ? row->plain : NAN);
-    key_text(j, "note", row->note);
-    json_key(j, "parallel");
-    json_bool(j, row->parallel);
-    key_text(j, "quantity", row->quantity);
-    key_text(j, "ranks", row->ranks);
-    key_text(j, "remedy", row->remedy);
-    key_real(j, "tolerance", applies ? row->tolerance : NAN);
-    key_text(j, "verdict", verify_verdict_word(row->verdict));
-    key_int(j, "worst_rank_count", row->worst_rank);
-    json_end(j);
-}
-
-static void json_case(struct json *j, const struct verify_report *r)
-{
-    json_object(j);
-    key_int(j, "bodies", r->nbody);
-    key_int(j, "degrees_of_freedom", r->nu);
-    key_text(j, "file", r->path);
-    key_text(j, "group", r->group);
-    key_real(j, "input_rounding_qdd", r->floor_fd);
-    key_real(j, "input_rounding_tau", r->floor_id);
-    key_int(j, "loop_constraints", r->nrow_loop);
-    key_text(j, "name", r->name);
-    json_key(j, "passed");
-    json_bool(j, r->passed);
-    key_real(j, "peer_qdd", r->peer_fd);
-    key_text(j, "peer_qdd_name", r->peer_fd_name);
-    key_real(j, "peer_tau", r->peer_id);
-    key_text(j, "peer_tau_name", r->peer_id_name);
-    json_key(j, "rows");
-    json_array(j);
-    for (int i = 0; i < r->nrow; i++) json_row(j, &r->row[i]);
-    json_end(j);
-    key_text(j, "text", r->text);
-    json_end(j);
-}
-
 void verify_print_json(FILE *out, const struct verify_report *r, int n)
 {
     struct json j = json_make(out);
@@ -185,11 +182,9 @@ void verify_print_json(FILE *out, const struct verify_report *r, int n)
     for (int i = 0; i < n; i++) failed += !r[i].passed;
     json_object(&j);
     json_key(&j, "cases");
-    json_array(&j);
-    for (int i = 0; i < n; i++) json_case(&j, &r[i]);
-    json_end(&j);
-    key_int(&j, "failed", failed);
-    key_int(&j, "total", n);
+    columns_json_list(&case_columns, r, n, sizeof *r, &j);
+    json_key_int(&j, "failed", failed);
+    json_key_int(&j, "total", n);
     json_end(&j);
     json_finish(&j);
 }
