@@ -28,7 +28,24 @@ static void say_order(const struct common *c, int at, struct err *e)
     text_free(&t);
 }
 
+/* How the database was opened, where there is something to say. */
+static struct store *with_remark(const struct common *c, struct store *s)
+{
+    if (s != NULL && store_remark(s) != NULL && !c->quiet) fprintf(stderr, "mimdsim: %s\n", store_remark(s));
+    return s;
+}
+
+struct store *arguments_store(const struct common *c, const char *path, struct err *e)
+{
+    return with_remark(c, store_open(path, STORE_WRITE, e));
+}
+
 struct store *arguments_database(const struct common *c, const char *otherwise, struct err *e)
+{
+    return with_remark(c, arguments_look(c, otherwise, e));
+}
+
+struct store *arguments_look(const struct common *c, const char *otherwise, struct err *e)
 {
     const char *path = c->narg > 0 ? c->arg[0] : otherwise;
     if (*path == '\0') return err_set(e, ERR_USAGE, "'' is not the name of a database"), NULL;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/flag.h"
 #include "app/keep.h"
 #include "app/verb.h"
@@ -35,7 +36,7 @@ static bool read_within(const char *text, double *within, struct err *e)
 
 static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct err *e)
 {
-    struct store *s = store_open(c->database, STORE_WRITE, e);
+    struct store *s = arguments_store(c, c->database, e);
     if (!s) return false;
     struct text figure = {0};
     text_add(&figure, "accuracy-%s", r->scenario);

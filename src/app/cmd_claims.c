@@ -36,11 +36,11 @@ int cmd_claims(int argc, char **argv)
     err_clear(&e);
     struct claim_rules rules = {0};
     /* a database that is not there is not made */
-    struct store *s = arguments_database(&c, "paper.db", &e);
+    struct store *s = arguments_look(&c, "paper.db", &e);
     bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
     rules.what_if = what_if;
     store_close(s);
-    s = ok ? store_open(path, STORE_WRITE, &e) : NULL;
+    s = ok ? arguments_store(&c, path, &e) : NULL;
     ok = ok && s && claims_decide(&rules, s, &e) &&
          (explain ? tell_explanations(&c, &rules, s, &e) : claims_print(s, c.json, stdout, &e));
     store_close(s);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/flag.h"
 #include "app/keep.h"
 #include "app/verb.h"
@@ -212,7 +213,7 @@ static void print_json(const struct plan *p, const struct run_estimate *r, const
 static bool keep_and_draw(const struct common *c, const struct savings *all, struct err *e)
 {
     struct text figure = {0};
-    struct store *s = store_open(c->database, STORE_WRITE, e);
+    struct store *s = arguments_store(c, c->database, e);
     text_add(&figure, "omissions-%s", all->scenario);
     bool ok = s && savings_store(s, all, e);
     ok = ok && (all->n == 0 || keep_draw(c, s, figure.s, e));

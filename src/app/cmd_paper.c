@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/explain_claims.h"
 #include "app/flag.h"
 #include "app/levels.h"
@@ -174,7 +175,7 @@ static bool write_documents(struct paper *p, double began)
 static bool answer(struct paper *p, double began)
 {
     bool whole = p->common->narg == 0;
-    p->store = store_open(p->database, STORE_WRITE, p->e);
+    p->store = arguments_store(p->common, p->database, p->e);
     if (!p->store || !add_plans(p) || !run_plans(p)) return false;
     if (whole && !judge(p)) return false;
     if (whole && !p->paper_only && !scenes_measure(p->common, p->store, p->e)) return false;

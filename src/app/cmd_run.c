@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/flag.h"
 #include "app/levels.h"
 #include "app/run_table.h"
@@ -82,7 +83,7 @@ static bool answer(const struct common *c, const struct plan *p, struct keep *k,
     if (!c->quiet) say_unused(p);
     /* A robot that cannot be read is told before a database is made. */
     if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
-    k->store = store_open(c->database, STORE_WRITE, e);
+    k->store = arguments_store(c, c->database, e);
     if (!k->store) return false;
     bool *skip = stored_already(k->store, p, c->force);
     bool ok = levels_settle(k->store, p->run, p->nrun, skip, c->quiet, e) &&

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/keep.h"
 #include "app/verb.h"
 #include "base/text.h"
@@ -17,7 +18,7 @@ static const char doc[] =
 
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
 {
-    struct store *s = store_open(c->database, STORE_WRITE, e);
+    struct store *s = arguments_store(c, c->database, e);
     if (!s) return false;
     struct text figure = {0};
     text_add(&figure, strcmp(r->suite, "suite") == 0 ? "stability" : "stability-%s", r->suite);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/contention.h"
 #include "app/validation.h"
 #include "app/verb.h"
@@ -276,7 +277,7 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     bool ok = published_read(path.s, a, &p, &n, e) && known_machine(c->arg[0], p, n, a, e);
     text_free(&path);
     if (!ok) return false;
-    struct store *s = store_open(c->database, STORE_WRITE, e);
+    struct store *s = arguments_store(c, c->database, e);
     ok = s && store_begin(s, e) && go_through(c, p, n, s, a, &t, e) && store_commit(s, e);
     if (!ok && s) store_rollback(s);
     store_close(s);

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/check.h"
-#include "base/digest.h"
 #include "base/units.h"
 #include "plan/plan.h"
+#include "spec/identity.h"
 
 /* One row a parameter. `reach` is the largest u either way: a factor of ten, others' traffic up to 90 %, computations
  * longer by up to 100 % at random. The paper says nothing of any of them; its machines were shared with others. */
@@ -206,16 +206,12 @@ void explain_space_settings(const struct explain_space *s, const double *u, stru
 
 void explain_space_apply(const struct explain_space *s, const double *u, struct run_spec *run, struct arena *a)
 {
-    struct text config = {0};
     for (int i = 0; i < s->n; i++)
         for (int k = 0; u[i] != 0 && k < s->axis[i].nkey; k++) {
             double value = explain_space_value(s, u, i, k);
             memcpy((char *)&run->machine + s->axis[i].field[k]->offset, &value, sizeof value);
         }
-    fields_config(run, &config);
-    digest_sha256_hex(config.s, config.length, run->config_hash);
-    run->config_text = arena_text(a, config.s);
-    text_free(&config);
+    run_identify(run, a);
 }
 
 static bool within(const struct explain_axis *x, int k, double value)

@@ -1,7 +1,7 @@
 /* expand.c - from settings and axes to runs: each with its machine, its P and n, and its identity.
  *
  * A run starts as a copy of what holds for all runs on its machine, so a large sweep costs a copy and a few settings
- * a run; the canonical text of a struct that did not change since the run before is not printed again. */
+ * a run; the texts of a struct that did not change since the run before are not printed again (identity.h). */
 #include "plan/expand.h"
 
 #include <string.h>
@@ -12,6 +12,7 @@
 #include "plan/file_kind.h"
 #include "plan/machine_changes.h"
 #include "plan/machine_file.h"
+#include "spec/identity.h"
 
 enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
 
@@ -22,19 +23,13 @@ struct start {
     struct start *next;
 };
 
-/* Text of one table as printed last, and the bytes it was printed from. */
-struct printed {
-    void *bytes;
-    struct text text;
-};
-
 struct expansion {
     struct plan *plan;
     const struct scenario *scenario;
     struct err *err;
     struct start *starts;
     int point[SCENARIO_MAX_AXES]; /* where each axis stands */
-    struct printed *printed;      /* one per table */
+    struct identity *identity;    /* owned */
     struct machine_changes changes;
 };
 
@@ -161,9 +156,9 @@ static bool wanted(const struct scenario *s, const struct run_spec *run)
 }
 
 /* A model's file is part of a run by its content, wherever it lies. */
-static bool resolve_path(struct expansion *x, struct run_spec *run, struct text *identity)
+static bool resolve_path(struct expansion *x, struct run_spec *run)
 {
-    char path[2 * sizeof run->model.path], hex[65];
+    char path[2 * sizeof run->model.path];
     const struct model_spec *m = &run->model;
     struct text file = {0};
     bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
@@ -175,49 +170,13 @@ static bool resolve_path(struct expansion *x, struct run_spec *run, struct text 
     err_clear(&ignored);
     bool relative = m->path[0] != '/' && text_read_file(&file, path, &ignored);
     if (!relative && !text_read_file(&file, m->path, x->err)) return text_free(&file), false;
-    digest_sha256_hex(file.s, file.length, hex);
-    text_add(identity, "model.file = sha256 %s\n", hex);
+    digest_sha256_hex(file.s, file.length, run->model_file);
     text_free(&file);
     if (!relative) return true;
     if (strlen(path) >= sizeof run->model.path)
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path: '%.80s' is too long", path);
     text_copy(run->model.path, sizeof run->model.path, path);
     return true;
-}
-
-/* The canonical text: every table, those that did not change since the last run from memory. */
-static void print_config(struct expansion *x, const struct run_spec *run, struct text *out)
-{
-    int ntable;
-    const struct field_table *const *table = field_tables(&ntable);
-    for (int i = 0; i < ntable; i++) {
-        const void *bytes = (const char *)run + table[i]->offset;
-        struct printed *p = &x->printed[i];
-        if (i == 0 || p->text.s == NULL || memcmp(p->bytes, bytes, table[i]->size) != 0) {
-            p->text.length = 0;
-            fields_print(table[i], bytes, false, &p->text);
-            memcpy(p->bytes, bytes, table[i]->size);
-        }
-        text_add_bytes(out, p->text.s, p->text.length);
-    }
-}
-
-static bool identify(struct expansion *x, struct run_spec *run)
-{
-    struct text t = {0}, file = {0};
-    struct run_spec plain;
-    bool fine = resolve_path(x, run, &file);
-    if (fine) {
-        plain = *run;
-        if (file.length > 0) text_copy(plain.model.path, sizeof plain.model.path, "");
-        print_config(x, &plain, &t);
-        if (file.length > 0) text_add_bytes(&t, file.s, file.length);
-        digest_sha256_hex(t.s, t.length, run->config_hash);
-        run->config_text = arena_text(x->plan->arena, t.s);
-    }
-    text_free(&t);
-    text_free(&file);
-    return fine;
 }
 
 /* A point that cannot run keeps its place in the plan, with the reason: the others are not its business. */
@@ -256,7 +215,8 @@ static int make_point(struct expansion *x, struct run_spec *run)
     if (!resolve_sizes(x, run)) return -1;
     if (!wanted(s, run)) return 0;
     machine_changes_note(&x->changes, run);
-    if (!identify(x, run)) return -1;
+    if (!resolve_path(x, run)) return -1;
+    identity_set(x->identity, run, x->plan->arena);
     note_refusal(x, run);
     return 1;
 }
@@ -304,10 +264,9 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     if (n > MAX_RUNS)
         return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller", MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
-    x.printed = TAKE(p->arena, ntable, struct printed);
-    for (int i = 0; i < ntable; i++) x.printed[i].bytes = arena_take(p->arena, table[i]->size);
+    x.identity = identity_create(table, ntable);
     bool fine = expand_points(&x, n);
-    for (int i = 0; i < ntable; i++) text_free(&x.printed[i].text);
+    identity_destroy(x.identity);
     return fine;
 }
 

@@ -62,7 +62,7 @@ struct field_table {
     const struct field *field;
 };
 
-/* field_tables: the tables in the order of the canonical text: run, machine, model, kernel. *n pointers. */
+/* field_tables: the tables in the order of a run's configuration: run, machine, model, kernel. *n pointers. */
 const struct field_table *const *field_tables(int *n);
 
 /* field_find: row of `key` (without prefix) in `t`, or -1. */
@@ -89,7 +89,7 @@ void field_print(const struct field *f, const void *base, struct text *out);
  * for people only. */
 void fields_print(const struct field_table *t, const void *base, bool labels, struct text *out);
 
-/* fields_config: the canonical text of a run: all tables but the repetition number. Its SHA-256 identifies the run. */
+/* fields_config: all settings of a run, without labels and the repetition number. identity.h: what identifies it. */
 void fields_config(const struct run_spec *run, struct text *out);
 
 /* fields_document: the reference manual of all settings, in Markdown. */

@@ -43,8 +43,9 @@ struct run_spec {
     int nrank;               /* P */
     uint64_t seed;           /* of noise; the model has its own */
     int rep;                 /* repetition number, 0-based */
-    char config_hash[65];    /* SHA-256 of the canonical text of all the above but rep: see plan */
-    const char *config_text; /* the canonical text itself, borrowed from the plan's arena */
+    char model_file[65];     /* SHA-256 of the file at model.path, which is part of the identity; "": no file */
+    char config_hash[65];    /* SHA-256 of the settings above, but rep, that differ from their defaults: identity.h */
+    const char *config_text; /* all settings as "key = value" lines, borrowed from the plan's arena */
     const char *machine_changes; /* JSON object of the machine's settings that are not those of the shipped machine of
                                     its name, "{}": none; NULL: none is shipped, or nobody looked. Borrowed */
     const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */

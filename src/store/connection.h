@@ -6,6 +6,7 @@
 
 #include <sqlite3.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/err.h"
 
@@ -39,7 +40,8 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 5,              /* of schema.sql, in user_version */
+    STORE_VERSION = 6,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
+    STORE_OLDEST = 4,               /* the oldest version that is upgraded */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */
@@ -49,6 +51,7 @@ enum {
 struct store {
     sqlite3 *db; /* owned */
     char *path;  /* owned */
+    char *remark; /* owned, what is to be told about opening it, NULL: nothing */
     bool writable;
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */

@@ -91,10 +91,11 @@ static void read_config(const struct column *c, const void *row, struct column_v
 static bool machine_shipped(const void *row) { return spec_of(row)->machine_changes != NULL; }
 
 static const struct column run_config[] = {
-    {"config_text", COLUMN_STRING, .value = read_config, .doc = "all settings as text; SHA-256 of it is config_hash"},
+    {"config_text", COLUMN_STRING, .value = read_config, 
+     .doc = "all settings as text; config_hash is the SHA-256 of its lines that differ from the defaults, sorted"},
     {"machine_changes", COLUMN_STRING, SPEC(machine_changes), .flags = COLUMN_NULL,
      .doc = "JSON: settings that are not those of the shipped machine of this name; '{}': none; NULL: none is shipped"},
     {"machine_hash", COLUMN_STRING, SPEC(machine_hash), .known = machine_shipped, .flags = COLUMN_NULL,
-     .doc = "SHA-256 of that shipped machine, as it was when the run was made"},
+     .doc = "SHA-256 of that shipped machine when the run was made; 'not stored' in runs from before version 5"},
 };
 const struct column_table run_config_columns = COLUMNS(run_config);

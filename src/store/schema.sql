@@ -26,6 +26,14 @@ CREATE TABLE run (
 ) STRICT;
 CREATE INDEX run_by_point ON run (machine, kernel, n, P);
 
+-- Runs from a database of an older version that this program cannot describe any more: they keep their config_hash of
+-- then, so no run of today is taken for one of them.
+CREATE TABLE run_older (
+    run_id  INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,
+    version INTEGER NOT NULL,          -- of the database that it came from
+    reason  TEXT NOT NULL
+) STRICT;
+
 -- Every setting of every run; values are shared, so a sweep over anything can be pivoted.
 CREATE TABLE setting (
     id    INTEGER PRIMARY KEY,
@@ -318,9 +326,10 @@ FROM spread;
 -- latest run on that machine was made. Only runs on machines as shipped enter a claim, unless its file names a change.
 CREATE VIEW v_machine_state AS
 WITH newest AS (
-    SELECT machine, machine_hash FROM run WHERE id IN (SELECT max(id) FROM run WHERE machine_hash IS NOT NULL GROUP BY machine))
+    SELECT machine, machine_hash FROM run WHERE id IN (SELECT max(id) FROM run WHERE machine_changes IS NOT NULL GROUP BY machine))
 SELECT r.id AS run_id, r.machine, r.machine_changes,
-       CASE WHEN r.machine_changes IS NULL THEN 'own' WHEN r.machine_hash <> w.machine_hash THEN 'older'
+       CASE WHEN r.machine_changes IS NULL AND r.machine_hash IS NULL THEN 'own' WHEN r.machine_changes IS NULL
+            OR r.machine_hash <> w.machine_hash THEN 'older'
             WHEN r.machine_changes = '{}' THEN 'as shipped' ELSE 'changed' END AS state
 FROM run r LEFT JOIN newest w ON w.machine = r.machine;
 

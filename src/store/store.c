@@ -1,4 +1,4 @@
-/* store.c - opening, checking and closing the database, transactions, and what its errors mean to a user.
+/* store.c - opening, checking and closing the database, and transactions.
  *
  * Durability: a run takes milliseconds, so a commit must not wait for the disk. Journal mode WAL with synchronous =
  * NORMAL writes each commit to the log without a flush: after kill -9 the system still holds every committed run; a
@@ -21,58 +21,7 @@
 #include "store/connection.h"
 #include "store/rows.h"
 #include "store/schema.h"
-
-static const char *const statement_sql[] = {
-#define X(name, sql) sql,
-    STORE_STATEMENTS(X)
-#undef X
-};
-
-bool store_failed(struct store *s, struct err *e)
-{
-    int code = sqlite3_errcode(s->db), system = sqlite3_system_errno(s->db);
-    const char *path = s->path, *text = sqlite3_errmsg(s->db);
-    switch (code) {
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-        return err_set(e, ERR_BUSY, "database %s is locked by another program; try again when that has finished", path);
-    case SQLITE_FULL: return err_set(e, ERR_IO, "no space left on the disk of database %s", path);
-    case SQLITE_READONLY: return err_set(e, ERR_IO, "database %s is read-only", path);
-    case SQLITE_CANTOPEN:
-        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s", path,
-                       system ? strerror(system) : text);
-    case SQLITE_IOERR:
-        return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path, system ? strerror(system) : text);
-    case SQLITE_NOTADB: return err_set(e, ERR_DATA, "%s is not a database of mimdsim", path);
-    case SQLITE_CORRUPT: return err_set(e, ERR_DATA, "database %s is damaged: %s", path, text);
-    case SQLITE_NOMEM: return err_set(e, ERR_INTERNAL, "no memory for database %s", path);
-    default: return err_set(e, ERR_DATA, "database %s: %s", path, text);
-    }
-}
-
-bool store_exec(struct store *s, const char *sql, struct err *e)
-{
-    return sqlite3_exec(s->db, sql, NULL, NULL, NULL) == SQLITE_OK || store_failed(s, e);
-}
-
-sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)
-{
-    sqlite3_stmt **kept = &s->statement[which];
-    if (*kept != NULL) return *kept;
-    struct text sql = {0};
-    if (statement_sql[which] != NULL) text_add(&sql, "%s", statement_sql[which]);
-    else rows_insert(which, &sql);
-    if (sqlite3_prepare_v3(s->db, sql.s, -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) store_failed(s, e);
-    text_free(&sql);
-    return *kept;
-}
-
-bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e)
-{
-    bool ok = sqlite3_step(statement) == SQLITE_DONE || store_failed(s, e);
-    sqlite3_reset(statement);
-    return ok;
-}
+#include "store/upgrade.h"
 
 /* The integer that `sql` (a pragma or a count) returns. */
 static bool read_number(struct store *s, const char *sql, int64_t *out, struct err *e)
@@ -85,22 +34,22 @@ static bool read_number(struct store *s, const char *sql, int64_t *out, struct e
     return ok;
 }
 
-/* Whose database it is: *empty for one without tables. */
-static bool check_owner(struct store *s, bool *empty, struct err *e)
+/* Whose database it is, and of which version: *empty for one without tables. */
+static bool check_owner(struct store *s, bool *empty, int64_t *version, struct err *e)
 {
-    int64_t application = 0, version = 0, tables = 0;
+    int64_t application = 0, tables = 0;
     if (!read_number(s, "SELECT count(*) FROM sqlite_schema", &tables, e) ||
         !read_number(s, "PRAGMA application_id", &application, e) ||
-        !read_number(s, "PRAGMA user_version", &version, e))
+        !read_number(s, "PRAGMA user_version", version, e))
         return false;
     *empty = tables == 0 && application == 0;
     if (*empty) return true;
     if (application != STORE_APPLICATION)
         return err_set(e, ERR_DATA, "%s is a database of another program, not of mimdsim", s->path);
-    if (version != STORE_VERSION)
-        return err_set(e, ERR_DATA, "database %s has schema version %lld, this program knows version %d; %s", s->path,
-                       (long long)version, STORE_VERSION,
-                       version > STORE_VERSION ? "use a newer mimdsim" : "it cannot be read any more");
+    if (*version > STORE_VERSION || *version < STORE_OLDEST)
+        return err_set(e, ERR_DATA, "database %s has schema version %lld, this program knows versions %d to %d; %s",
+                       s->path, (long long)*version, STORE_OLDEST, STORE_VERSION,
+                       *version > STORE_VERSION ? "use a newer mimdsim" : "run its scenarios again");
     return true;
 }
 
@@ -112,7 +61,8 @@ static bool create_schema(struct store *s, struct err *e)
     text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION, STORE_VERSION);
     text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d), ('span_rows_limit', %d);",
              STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
-    bool empty = false, ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, e);
+    int64_t version;
+    bool empty = false, ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, &version, e);
     /* Another program may have made it while we waited for the lock. */
     if (ok && empty) ok = store_exec(s, t.s, e);
     if (ok) ok = store_exec(s, "COMMIT", e);
@@ -139,13 +89,25 @@ static bool set_journal(struct store *s, struct err *e)
                                : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
 }
 
+/* Upgrade by `way`, and keep what it has to tell. */
+static bool upgrade(struct store *s, int version, bool (*way)(struct store *, int, struct text *, struct err *),
+                    struct err *e)
+{
+    struct text told = {0};
+    const bool ok = way(s, version, &told, e);
+    s->remark = told.s;
+    return ok;
+}
+
 /* Everything between opening the file and the first statement of a writer. */
 static bool prepare_writer(struct store *s, struct err *e)
 {
     bool empty = false;
-    if (!check_owner(s, &empty, e)) return false;
+    int64_t version;
+    if (!check_owner(s, &empty, &version, e)) return false;
     if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
+    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_file, e)) return false;
     /* Tables that came after the first databases of this version. */
     if (!store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
@@ -155,7 +117,10 @@ static bool prepare_writer(struct store *s, struct err *e)
 static bool prepare_reader(struct store *s, struct err *e)
 {
     bool empty = false;
-    if (!check_owner(s, &empty, e) || !store_exec(s, "PRAGMA query_only = ON", e)) return false;
+    int64_t version;
+    if (!check_owner(s, &empty, &version, e)) return false;
+    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e)) return false;
+    if (!store_exec(s, "PRAGMA query_only = ON", e)) return false;
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
@@ -319,10 +284,24 @@ void store_close(struct store *s)
     if (s->in_transaction) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     CHECK(sqlite3_close(s->db) == SQLITE_OK);
     free(s->path);
+    free(s->remark);
     free(s);
 }
 
 const char *store_path(const struct store *s) { return s->path; }
+
+const char *store_remark(const struct store *s) { return s->remark; }
+
+bool store_upgrade(const char *path, struct text *told, struct err *e)
+{
+    bool exists;
+    struct store *s = check_path(path, STORE_READ, &exists, e) ? store_open(path, STORE_WRITE, e) : NULL;
+    if (s == NULL) return false;
+    if (s->remark != NULL) text_add(told, "%s", s->remark);
+    else text_add(told, "database %s is of version %d already", path, STORE_VERSION);
+    store_close(s);
+    return true;
+}
 
 bool store_begin(struct store *s, struct err *e)
 {

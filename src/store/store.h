@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/err.h"
+#include "base/text.h"
 #include "measure/column.h"
 #include "measure/run_result.h"
 #include "spec/run_spec.h"
@@ -21,9 +22,18 @@ enum store_mode {
                     are not kept */
 };
 
-/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. Returns NULL with ERR_NO_INPUT (read, not
- * there), ERR_DATA (not ours, or newer), ERR_BUSY (locked), ERR_CREATE or ERR_IO (read-only, disk full). */
+/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. One of an older version is upgraded: in
+ * its file with STORE_WRITE, the old one kept beside it; in a temporary copy with STORE_READ; store_remark tells it.
+ * Returns NULL with ERR_NO_INPUT (read, not there), ERR_DATA (not ours, newer, or too old), ERR_BUSY (locked),
+ * ERR_CREATE or ERR_IO (read-only, disk full). */
 struct store *store_open(const char *path, enum store_mode mode, struct err *e);
+
+/* store_remark: a sentence for the user about how the database was opened, NULL: nothing to say. */
+const char *store_remark(const struct store *s);
+
+/* store_upgrade: make the database `path`, which has to be there, one of this version. *told (owned by the caller) says
+ * what was done. Returns false as store_open. */
+bool store_upgrade(const char *path, struct text *told, struct err *e);
 
 /* store_close: accepts NULL. */
 void store_close(struct store *s);

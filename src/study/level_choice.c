@@ -4,23 +4,22 @@
 #include <string.h>
 
 #include "base/check.h"
-#include "base/digest.h"
 #include "base/text.h"
-#include "spec/field.h"
+#include "spec/identity.h"
 
 void level_family(const struct run_spec *spec, char hex[65])
 {
     struct run_spec x = *spec;
-    struct text t = {0};
+    struct arena *a = arena_create();
     memset(x.scenario, 0, sizeof x.scenario);
     x.nrank = x.model.nbody = 1;
     x.machine.network.level = LEVEL_LOGGP;
     x.machine.network.tolerance = 0;
     x.seed = x.model.seed = 0;
     x.record = (struct record_spec){0};
-    fields_config(&x, &t);
-    digest_sha256_hex(t.s, t.length, hex);
-    text_free(&t);
+    run_identify(&x, a);
+    memcpy(hex, x.config_hash, sizeof x.config_hash);
+    arena_destroy(a);
 }
 
 int level_cheapest(const struct level_error *error, int n, double tolerance)

@@ -1,8 +1,8 @@
 /* test_plan.c - scenarios become the runs they describe; what is wrong is refused with its place. */
 #include "scratch.h"
 
-#include "base/digest.h"
 #include "plan/yaml_tree.h"
+#include "spec/identity.h"
 
 enum { YAML_LARGE = YAML_MAX_BYTES + 2 };
 
@@ -34,15 +34,16 @@ static void the_speedup_scenario_has_its_points_in_order(void **state)
     assert_int_equal(p.nunused, 0);
     for (int i = 0; i < 28; i++) {
         const struct run_spec *r = &p.run[i];
-        char hex[65];
+        struct run_spec again = *r;
         assert_int_equal(r->nrank, n[i % 14]);
         assert_int_equal(r->model.nbody, n[i % 14]);
         assert_int_equal(r->machine.network.level, i < 14 ? LEVEL_LINK : LEVEL_LOGGP);
         assert_string_equal(r->machine.name, "t3e-300");
         assert_string_equal(r->kernel.name, "dynamics");
         assert_int_equal(r->model.generator, MODEL_SERIAL_CHAIN);
-        digest_sha256_hex(r->config_text, strlen(r->config_text), hex);
-        assert_string_equal(r->config_hash, hex);
+        run_identify(&again, p.arena);
+        assert_string_equal(r->config_hash, again.config_hash);
+        assert_string_equal(r->config_text, again.config_text);
         for (int j = 0; j < i; j++) assert_string_not_equal(r->config_hash, p.run[j].config_hash);
     }
     plan_free(&p);

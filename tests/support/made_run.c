@@ -8,15 +8,9 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "spec/field.h"
+#include "spec/identity.h"
 
-void made_identity(struct run_spec *spec, struct arena *a)
-{
-    struct text t = {0};
-    fields_config(spec, &t);
-    spec->config_text = arena_text(a, t.s);
-    digest_sha256_hex(t.s, t.length, spec->config_hash);
-    text_free(&t);
-}
+void made_identity(struct run_spec *spec, struct arena *a) { run_identify(spec, a); }
 
 struct run_spec made_spec(struct arena *a, const char *machine, int n, int nrank, int rep)
 {

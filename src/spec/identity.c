@@ -1,0 +1,215 @@
+/* identity.c - canonical texts of runs, their SHA-256, and runs from stored texts; see identity.h. */
+#include "spec/identity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/digest.h"
+
+static const char file_key[] = "model.file = sha256 ";
+
+/* One table: the lines of its defaults, and what was printed last from which bytes. */
+struct part {
+    struct text fallback, full, own;
+    void *bytes;
+    bool known;
+};
+
+struct identity {
+    const struct field_table *const *table;
+    int n;
+    struct part *part; /* (n) */
+};
+
+struct identity *identity_create(const struct field_table *const *table, int n)
+{
+    struct identity *x = calloc(1, sizeof *x);
+    struct arena *a = arena_create();
+    CHECK(x != NULL);
+    *x = (struct identity){.table = table, .n = n, .part = calloc((size_t)n, sizeof *x->part)};
+    CHECK(x->part != NULL);
+    for (int i = 0; i < n; i++) {
+        void *base = arena_take(a, table[i]->size);
+        field_defaults(table[i], base, a);
+        fields_print(table[i], base, false, &x->part[i].fallback);
+        x->part[i].bytes = malloc(table[i]->size);
+        CHECK(x->part[i].bytes != NULL);
+    }
+    arena_destroy(a);
+    return x;
+}
+
+void identity_destroy(struct identity *x)
+{
+    for (int i = 0; x != NULL && i < x->n; i++) {
+        text_free(&x->part[i].fallback);
+        text_free(&x->part[i].full);
+        text_free(&x->part[i].own);
+        free(x->part[i].bytes);
+    }
+    if (x != NULL) free(x->part);
+    free(x);
+}
+
+void identity_forget(struct identity *x)
+{
+    for (int i = 0; i < x->n; i++) x->part[i].known = false;
+}
+
+/* Behind the end of the line at `s`. */
+static const char *next_line(const char *s)
+{
+    s = strchrnul(s, '\n');
+    return *s != '\0' ? s + 1 : s;
+}
+
+/* The lines of `full` that are other ones in `fallback`: both name the same keys in the same order. */
+static void add_differences(const char *full, const char *fallback, struct text *own)
+{
+    for (const char *line = full, *other = fallback; *line != '\0';) {
+        const char *end = next_line(line), *other_end = next_line(other);
+        const size_t n = (size_t)(end - line);
+        if (n != (size_t)(other_end - other) || memcmp(line, other, n) != 0) text_add_bytes(own, line, n);
+        line = end;
+        other = other_end;
+    }
+}
+
+/* The texts of table i; the first table's struct is the whole run, which always changes. */
+static const struct part *print_part(struct identity *x, int i, const void *base)
+{
+    const struct field_table *t = x->table[i];
+    const void *bytes = (const char *)base + t->offset;
+    struct part *p = &x->part[i];
+    if (i > 0 && p->known && memcmp(p->bytes, bytes, t->size) == 0) return p;
+    p->full.length = p->own.length = 0;
+    fields_print(t, bytes, false, &p->full);
+    add_differences(p->full.s, p->fallback.s, &p->own);
+    memcpy(p->bytes, bytes, t->size);
+    p->known = true;
+    return p;
+}
+
+static int compare_lines(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Sort the lines of `text`: then neither the order of tables nor that of their rows is part of an identity.
+ */
+static void sort_lines(struct text *text)
+{
+    struct text sorted = {0};
+    int n = 0;
+    for (const char *s = text->s; s != NULL && *s != '\0'; s = next_line(s)) n++;
+    char **line = calloc((size_t)n + 1, sizeof *line);
+    CHECK(line != NULL);
+    n = 0;
+    /* Each line becomes a string of its own for the comparison. */
+    for (char *s = text->s, *end; s != NULL && *s != '\0'; s = end + 1) {
+        line[n++] = s;
+        end = strchr(s, '\n');
+        *end = '\0';
+    }
+    qsort(line, (size_t)n, sizeof *line, compare_lines);
+    for (int i = 0; i < n; i++) {
+        text_add_bytes(&sorted, line[i], strlen(line[i]));
+        text_add_bytes(&sorted, "\n", 1);
+    }
+    free(line);
+    text_free(text);
+    *text = sorted;
+}
+
+void identity_texts(struct identity *x, const void *base, const char *file, struct text *full,
+                    struct text *own)
+{
+    struct text lines = {0};
+    for (int i = 0; i < x->n; i++) {
+        const struct part *p = print_part(x, i, base);
+        text_add_bytes(full, p->full.s, p->full.length);
+        if (p->own.length > 0) text_add_bytes(&lines, p->own.s, p->own.length);
+    }
+    if (file[0] != '\0') {
+        text_add(full, "%s%s\n", file_key, file);
+        text_add(&lines, "%s%s\n", file_key, file);
+    }
+    sort_lines(&lines);
+    text_add_bytes(own, lines.s != NULL ? lines.s : "", lines.length);
+    text_free(&lines);
+}
+
+void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
+{
+    struct text full = {0}, own = {0};
+    struct run_spec plain = *run;
+    /* The content of the file is named: where it lies is no matter. */
+    if (run->model_file[0] != '\0') memset(plain.model.path, 0, sizeof plain.model.path);
+    identity_texts(x, &plain, run->model_file, &full, &own);
+    digest_sha256_hex(own.s, own.length, run->config_hash);
+    run->config_text = arena_text(a, full.s);
+    text_free(&full);
+    text_free(&own);
+}
+
+void run_identify(struct run_spec *run, struct arena *a)
+{
+    int n;
+    const struct field_table *const *table = field_tables(&n);
+    struct identity *x = identity_create(table, n);
+    identity_set(x, run, a);
+    identity_destroy(x);
+}
+
+/* --- back from a text
+ * --------------------------------------------------------------------------------------------- */
+
+/* The setting `key` gets the text `value`. */
+static bool take_setting(struct run_spec *run, const char *key, const char *value, struct arena *a, char *why,
+                         int size)
+{
+    const struct field_table *table;
+    const struct field *f = field_find_full(key, &table);
+    struct text shown = {0};
+    char clause[160] = "";
+    if (f == NULL) return snprintf(why, (size_t)size, "there is no setting '%.80s' any more", key), false;
+    /* What has its default already is not read: some defaults, such as an empty list, cannot be given. */
+    void *base = (char *)run + table->offset;
+    field_print(f, base, &shown);
+    bool fine = strcmp(shown.s != NULL ? shown.s : "", value) == 0 ||
+                field_set(f, base, value, a, clause, sizeof clause);
+    if (!fine) snprintf(why, (size_t)size, "%.60s = %.60s: %s", key, value, clause);
+    text_free(&shown);
+    return fine;
+}
+
+/* One line, without its end, whose bytes are ours to change. */
+static bool take_line(struct run_spec *run, char *line, struct arena *a, char *why, int size)
+{
+    char *equals = strstr(line, " = ");
+    if (strncmp(line, file_key, strlen(file_key)) == 0) {
+        text_copy(run->model_file, sizeof run->model_file, line + strlen(file_key));
+        return true;
+    }
+    if (equals == NULL) return snprintf(why, (size_t)size, "'%.80s' is no setting", line), false;
+    *equals = '\0';
+    return take_setting(run, line, equals + 3, a, why, size);
+}
+
+bool run_from_text(struct run_spec *run, const char *text, struct arena *a, char *why, int size)
+{
+    int n;
+    const struct field_table *const *table = field_tables(&n);
+    memset(run, 0, sizeof *run);
+    for (int i = 0; i < n; i++) field_defaults(table[i], (char *)run + table[i]->offset, a);
+    for (char *line = arena_text(a, text); *line != '\0';) {
+        char *end = strchrnul(line, '\n');
+        const bool last = *end == '\0';
+        *end = '\0';
+        if (line < end && !take_line(run, line, a, why, size)) return false;
+        line = last ? end : end + 1;
+    }
+    return true;
+}

@@ -1,0 +1,59 @@
+/* connection.c - statements of an open database, and what its errors mean to a user. */
+#include "store/connection.h"
+
+#include <string.h>
+
+#include "base/text.h"
+#include "store/rows.h"
+
+static const char *const statement_sql[] = {
+#define X(name, sql) sql,
+    STORE_STATEMENTS(X)
+#undef X
+};
+
+bool store_failed(struct store *s, struct err *e)
+{
+    int code = sqlite3_errcode(s->db), system = sqlite3_system_errno(s->db);
+    const char *path = s->path, *text = sqlite3_errmsg(s->db);
+    switch (code) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return err_set(e, ERR_BUSY, "database %s is locked by another program; try again when that has finished", path);
+    case SQLITE_FULL: return err_set(e, ERR_IO, "no space left on the disk of database %s", path);
+    case SQLITE_READONLY: return err_set(e, ERR_IO, "database %s is read-only", path);
+    case SQLITE_CANTOPEN:
+        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s", path,
+                       system ? strerror(system) : text);
+    case SQLITE_IOERR:
+        return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path, system ? strerror(system) : text);
+    case SQLITE_NOTADB: return err_set(e, ERR_DATA, "%s is not a database of mimdsim", path);
+    case SQLITE_CORRUPT: return err_set(e, ERR_DATA, "database %s is damaged: %s", path, text);
+    case SQLITE_NOMEM: return err_set(e, ERR_INTERNAL, "no memory for database %s", path);
+    default: return err_set(e, ERR_DATA, "database %s: %s", path, text);
+    }
+}
+
+bool store_exec(struct store *s, const char *sql, struct err *e)
+{
+    return sqlite3_exec(s->db, sql, NULL, NULL, NULL) == SQLITE_OK || store_failed(s, e);
+}
+
+sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)
+{
+    sqlite3_stmt **kept = &s->statement[which];
+    if (*kept != NULL) return *kept;
+    struct text sql = {0};
+    if (statement_sql[which] != NULL) text_add(&sql, "%s", statement_sql[which]);
+    else rows_insert(which, &sql);
+    if (sqlite3_prepare_v3(s->db, sql.s, -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) store_failed(s, e);
+    text_free(&sql);
+    return *kept;
+}
+
+bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e)
+{
+    bool ok = sqlite3_step(statement) == SQLITE_DONE || store_failed(s, e);
+    sqlite3_reset(statement);
+    return ok;
+}

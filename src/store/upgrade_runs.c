@@ -1,0 +1,139 @@
+/* upgrade_runs.c - stored configurations are read back into runs, which are identified as new ones are.
+ *
+ * Before version 6 a run that asked for level 'auto-tolerance' was identified by the question; since then by
+ * the level that it took, as any other run with that level. */
+#include "store/upgrade_runs.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "spec/identity.h"
+#include "spec/spec_fields.h"
+#include "store/binding.h"
+
+/* What is prepared once for all runs. */
+struct work {
+    struct store *s;
+    sqlite3_stmt *select, *update, *older, *forget, *setting, *link;
+    struct identity *identity;
+    int version;
+    int64_t *kept;
+};
+
+static bool prepare(struct store *s, sqlite3_stmt **out, const char *sql, struct err *e)
+{
+    return sqlite3_prepare_v2(s->db, sql, -1, out, NULL) == SQLITE_OK || store_failed(s, e);
+}
+
+static bool open_work(struct work *w, struct err *e)
+{
+    return prepare(w->s, &w->select, "SELECT id, config_text, level FROM run ORDER BY id", e) &&
+           prepare(w->s, &w->update, "UPDATE run SET config_hash = ?, config_text = ? WHERE id = ?", e) &&
+           prepare(w->s, &w->older, "INSERT INTO run_older VALUES (?, ?, ?)", e) &&
+           prepare(w->s, &w->forget,
+                   "DELETE FROM run_setting WHERE run_id = ?1 AND setting_id IN (SELECT id FROM setting "
+                   "WHERE key = ?2)",
+                   e) &&
+           prepare(w->s, &w->setting, "INSERT OR IGNORE INTO setting (key, value) VALUES (?1, ?2)", e) &&
+           prepare(w->s, &w->link,
+                   "INSERT INTO run_setting SELECT ?1, id FROM setting WHERE key = ?2 AND value = ?3", e);
+}
+
+static void close_work(struct work *w)
+{
+    sqlite3_stmt *const all[] = {w->select, w->update, w->older, w->forget, w->setting, w->link};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) sqlite3_finalize(all[i]);
+    identity_destroy(w->identity);
+}
+
+static bool note_older(struct work *w, int64_t run, const char *why, struct err *e)
+{
+    struct binding b = {w->older, 1};
+    bind_int(&b, run);
+    bind_int(&b, w->version);
+    bind_text(&b, why);
+    ++*w->kept;
+    return store_step(w->s, w->older, e);
+}
+
+/* The value of one setting of a stored run becomes `value`. */
+static bool change_setting(struct work *w, int64_t run, const char *key, const char *value, struct err *e)
+{
+    struct binding forget = {w->forget, 1}, setting = {w->setting, 1}, link = {w->link, 1};
+    bind_int(&forget, run);
+    bind_text(&forget, key);
+    bind_text(&setting, key);
+    bind_text(&setting, value);
+    bind_int(&link, run);
+    bind_text(&link, key);
+    bind_text(&link, value);
+    return store_step(w->s, w->forget, e) && store_step(w->s, w->setting, e) && store_step(w->s, w->link, e);
+}
+
+/* A run that asked for a tolerance is a run at the level that it took. */
+static bool settle_level(struct work *w, int64_t run, struct run_spec *spec, const char *level, struct err *e)
+{
+    static const char *const key[] = {"network.level", "network.tolerance"};
+    struct arena *a = arena_create();
+    bool ok = true;
+    for (int i = 0; i < 2 && ok; i++) {
+        const struct field *f = &machine_table.field[field_find(&machine_table, key[i])];
+        const char *value = i == 0 ? level : f->fallback;
+        char full[64], why[160];
+        snprintf(full, sizeof full, "machine.%s", key[i]);
+        ok = field_set(f, &spec->machine, value, a, why, (int)sizeof why) &&
+             change_setting(w, run, full, value, e);
+    }
+    arena_destroy(a);
+    return ok;
+}
+
+/* The identity of a run, in its row; that of another run when both are the same run now. */
+static bool update_run(struct work *w, int64_t run, const struct run_spec *spec, const char *text,
+                       struct err *e)
+{
+    struct binding b = {w->update, 1};
+    bind_text(&b, spec->config_hash);
+    bind_text(&b, text);
+    bind_int(&b, run);
+    const int code = sqlite3_step(w->update);
+    sqlite3_reset(w->update);
+    if (code == SQLITE_DONE) return true;
+    if (code != SQLITE_CONSTRAINT) return store_failed(w->s, e);
+    return note_older(w, run, "another stored run has the same settings", e);
+}
+
+static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
+{
+    const int64_t run = sqlite3_column_int64(w->select, 0);
+    const char *text = (const char *)sqlite3_column_text(w->select, 1);
+    const char *level = (const char *)sqlite3_column_text(w->select, 2);
+    struct run_spec spec;
+    char why[320];
+    if (!run_from_text(&spec, text, a, why, (int)sizeof why)) return note_older(w, run, why, e);
+    const bool asked =
+        spec.machine.network.level == LEVEL_AUTO_TOLERANCE && strcmp(level, "auto-tolerance") != 0;
+    if (asked && !settle_level(w, run, &spec, level, e)) return false;
+    identity_forget(w->identity); /* the arena is used anew for every run */
+    identity_set(w->identity, &spec, a);
+    /* What was stored stays as it is, but for the level: an older program may have known fewer settings. */
+    return update_run(w, run, &spec, asked ? spec.config_text : text, e);
+}
+
+bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
+{
+    int ntable;
+    const struct field_table *const *table = field_tables(&ntable);
+    struct work w = {.s = s, .identity = identity_create(table, ntable), .version = version, .kept = kept};
+    bool ok = open_work(&w, e);
+    while (ok && sqlite3_step(w.select) == SQLITE_ROW) {
+        struct arena *a = arena_create();
+        ok = upgrade_run(&w, a, e);
+        arena_destroy(a);
+    }
+    close_work(&w);
+    /* Whether a machine was the shipped one was not stored before version 5. */
+    if (ok && version < 5) ok = store_exec(s, "UPDATE run SET machine_hash = 'not stored'", e);
+    return ok;
+}
