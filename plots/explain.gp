@@ -48,7 +48,7 @@ do for [format in formats] {
         to (told(x_high) ? at_x(x_high) : columns - 0.5),(told(y_high) ? at_y(y_high) : rows - 0.5) \
         front fillstyle empty border linecolor rgb "#000000" linewidth 1.2 dashtype 2
     if (!told(x_low) && !told(y_low)) { unset object 1 }
-    set label 95 "dashed: published range     o unchanged     x solution" at screen 0.11,(26.0/high) left noenhanced font tiny textcolor rgb grey
+    set label 95 "dashed: published range     o unchanged     x solution     each cell shows the point in its middle" at screen 0.11,(26.0/high) left noenhanced font tiny textcolor rgb grey
     plot data using "i":"j":(0.5):(0.5):"margin" with boxxyerror linewidth 0 fillcolor palette, \
          data using (column("holds") == 1 ? column("i") : NaN):"j" with points pointtype 7 pointsize 0.35 linecolor rgb "#ffffff", \
          "+" using (at_x(x_nominal)):(at_y(y_nominal)) every ::0::0 with points pointtype 6 pointsize 1.4 linewidth 2 linecolor rgb "#000000", \

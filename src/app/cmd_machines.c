@@ -97,10 +97,14 @@ static void print_sustained(const struct shown *m)
 {
     struct sustained s = sustained_rate(m);
     const struct origin *published = value_of(m, "published.linpack_100");
-    printf("sustained rate of small dense code: %.4g Mflop/s, known within %.4g to %.4g; LINPACK 100 with it: %.4g, "
-           "%.4g to %.4g",
-           s.rate[1] / 1e6, s.rate[0] / 1e6, s.rate[2] / 1e6, s.linpack[1] / 1e6, s.linpack[0] / 1e6,
-           s.linpack[2] / 1e6);
+    bool bounded = s.rate[0] < s.rate[2];
+    printf("sustained rate of small dense code: %.4g Mflop/s, ", s.rate[1] / 1e6);
+    if (bounded)
+        printf("known within %.4g to %.4g; ", s.rate[0] / 1e6, s.rate[2] / 1e6);
+    else
+        printf("no bounds given; ");
+    printf("LINPACK 100 with it: %.4g", s.linpack[1] / 1e6);
+    if (bounded) printf(", %.4g to %.4g", s.linpack[0] / 1e6, s.linpack[2] / 1e6);
     if (published) printf(", published %s", published->value);
     putchar('\n');
 }

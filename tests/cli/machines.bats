@@ -196,6 +196,8 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     works mimdsim machines t3e-300
     stdout_says "sustained rate of small dense code: 55 Mflop/s, known within 35 to 100"
     [[ $output =~ node.flop_rate\ +55\ Mflop/s\ +35\ Mflop/s\ to\ 100\ Mflop/s ]]
+    works mimdsim machines ideal
+    stdout_says "sustained rate of small dense code: 1000 Mflop/s, no bounds given; LINPACK 100 with it: 1008"
     works mimdsim machines quad-ppro --json
     json_is '$.sustained_rate.small_dense.low' 30000000
     # LINPACK's own operations and calls cost more than the flops alone
