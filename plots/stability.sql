@@ -63,7 +63,7 @@ cases AS (
 SELECT motion, 0 AS heading, iif(motion, r, r + g) AS y, iif((SELECT count(DISTINCT subject) FROM mine) > 1,
        replace(subject, ', ', ': '), substr(subject, 1, instr(subject || ',', ',') - 1)) AS name, condition, growth, residual, energy,
        CASE WHEN NOT motion THEN '' WHEN implicit_evaluations IS NULL AND explicit_evaluations IS NULL THEN 'neither is ok'
-            WHEN implicit_evaluations IS NULL THEN 'no implicit is ok' WHEN explicit_evaluations IS NULL THEN 'no explicit is ok'
+            WHEN implicit_evaluations IS NULL THEN 'no implicit integrator is ok' WHEN explicit_evaluations IS NULL THEN 'no explicit integrator is ok'
             ELSE format('%.3g', explicit_evaluations / implicit_evaluations) END AS ratio
 FROM cases
 UNION ALL

@@ -219,7 +219,7 @@ int cmd_machines(int argc, char **argv)
     if (c.compare && c.narg != 2) {
         struct err e;
         err_clear(&e);
-        err_set(&e, ERR_USAGE, "--compare wants two machines, not %d", c.narg);
+        err_set(&e, ERR_USAGE, "--compare needs two machines, not %d", c.narg);
         return common_fail(&c, &e);
     }
     struct arena *a = arena_create();

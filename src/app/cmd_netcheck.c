@@ -35,7 +35,7 @@ static bool level_of(const char *word, enum network_level *level, struct err *e)
     }
     const char *near = text_nearest(word, name, LEVELS);
     return near ? err_set(e, ERR_USAGE, "there is no level '%s'; did you mean '%s'?", word, near)
-                : err_set(e, ERR_USAGE, "there is no level '%s'; there are: loggp, link, packet, flit, auto", word);
+                : err_set(e, ERR_USAGE, "there is no level '%s'; known: loggp, link, packet, flit, auto", word);
 }
 
 static void print_one(const struct netcheck *n, const struct common *c, double within, struct json *j)
@@ -75,7 +75,7 @@ static bool within_of(const char *word, double *within, struct err *e)
     double percent = strtod(word, &end);
     if (*end == '%') end++;
     if (end == word || *end || !(percent >= 0) || percent > 1e6)
-        return err_set(e, ERR_USAGE, "--within: '%s' is not a number of percent from 0 on", word);
+        return err_set(e, ERR_USAGE, "--within: '%s' is not a percentage of 0 or more", word);
     *within = percent / 100;
     return true;
 }

@@ -117,7 +117,7 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
     if (ok && left_out > 0)
-        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are left out, since viewers fail on more than %d\n",
+        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers fail on more than %d\n",
                 path, (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
     return ok;
 }
@@ -125,11 +125,11 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
 static bool draw_picture(struct shown *t)
 {
     if (t->status == RUN_DEADLOCK) {
-        fprintf(stderr, "mimdsim: no picture: a run that never ends has no time axis\n");
+        fprintf(stderr, "mimdsim: no picture: a run that does not end has no time axis\n");
         return true;
     }
     if (t->result.nspan > PICTURE_SPANS) {
-        fprintf(stderr, "mimdsim: no picture: %lld spans are more than the %d that can be told apart in one\n",
+        fprintf(stderr, "mimdsim: no picture: %lld spans are too many; the most is %d\n",
                 (long long)t->result.nspan, PICTURE_SPANS);
         return true;
     }

@@ -82,10 +82,10 @@ static void add_single(const struct explain_search *s, struct text *t)
 {
     if (changes(s, s->best.u) < 2) return;
     if (!s->single.any) {
-        text_add(t, " No parameter does it alone, within the space that was searched.");
+        text_add(t, " Within the search space no single parameter is sufficient.");
         return;
     }
-    text_add(t, " One parameter alone does it if ");
+    text_add(t, " One parameter is sufficient if ");
     add_changes(s, s->single.u, false, t);
     text_add(t, ".");
 }
@@ -97,8 +97,8 @@ static void add_holds(const struct explain_search *s, const char *variant, const
     add_total(s, t);
     text_add(t, "; it then has ");
     add_value(s, t);
-    if (c->asked && c->agrees) text_add(t, ", as the study's own %d runs at that point confirm", c->nrun);
-    else if (c->asked) text_add(t, ", but the study's own %d runs at that point say otherwise", c->nrun);
+    if (c->asked && c->agrees) text_add(t, ", which %d full runs at that point confirm", c->nrun);
+    else if (c->asked) text_add(t, ", but %d full runs at that point contradict this", c->nrun);
     text_add(t, ".");
     add_single(s, t);
 }
@@ -107,14 +107,14 @@ static void add_tried(const struct explain_search *s, struct text *t)
 {
     text_add(t, "%d points", s->goal.subject->npoint);
     if (s->goal.starts)
-        text_add(t, " (each parameter alone to the end of its range, and a simplex from each of several starts)");
+        text_add(t, " (each parameter alone to the ends of its range, and a simplex search from several starts)");
 }
 
 static void add_not_found(const struct explain_search *s, const char *variant, struct text *t)
 {
     text_add(t, "%s: no point was found at which it holds, among ", s->goal.subject->name);
     add_tried(s, t);
-    text_add(t, "; the search is no proof. The nearest, for '%s', has ", variant);
+    text_add(t, "; this search is not a proof. The nearest, for '%s', has ", variant);
     add_value(s, t);
     text_add(t, ", if ");
     add_changes(s, s->best.u, !s->best.grade.holds, t);
@@ -123,7 +123,7 @@ static void add_not_found(const struct explain_search *s, const char *variant, s
 
 static void add_never(const struct explain_search *s, const char *never, struct text *t)
 {
-    text_add(t, "%s cannot hold, wherever the parameters are: %s. ", s->goal.subject->name, never);
+    text_add(t, "%s cannot hold for any values of the parameters: %s. ", s->goal.subject->name, never);
     if (s->best.grade.holds)
         text_add(t, "But it holds, if "), add_changes(s, s->best.u, !s->best.grade.holds, t),
             text_add(t, ": the reason is wrong.");
@@ -202,8 +202,8 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
         add_total(s, &t);
         if (c.asked)
             text_add(&t,
-                     c.agrees ? ", as the study's own %d runs at that point confirm"
-                              : ", but the study's own %d runs at that point say otherwise",
+                     c.agrees ? ", which %d full runs at that point confirm"
+                              : ", but %d full runs at that point contradict this",
                      c.nrun);
     } else {
         text_add(&t, ", were not found to hold together at any of %d points; at the nearest, for '%s', %s fails with ",

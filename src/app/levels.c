@@ -97,7 +97,7 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
     const struct level_error *taken = &x->taken;
     x->taken = k.level[best];
     if (!quiet)
-        fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; up to %.3g %% may be)\n",
+        fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% permitted)\n",
                 run[which].kernel.name, run[which].machine.name, taken->level, taken->at, 100 * taken->error,
                 stored ? "stored" : "measured now", 100 * tolerance);
     return true;

@@ -23,7 +23,7 @@ void check_note_set(void (*describe)(void *context, char *buffer, int size), voi
 void check_memory(size_t bytes)
 {
     fprintf(stderr,
-            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` tells what a run needs\n",
+            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` shows how much a run needs\n",
             (double)bytes / (1 << 20));
     _exit(ERR_INTERNAL_STATUS); /* a worker's copy of the parent's output is not its own to flush */
 }

@@ -155,7 +155,7 @@ bool planar_scene(const struct model *m, const struct state *s, enum precision p
         for (int i = 0; i < 3; i++) turn[i] = s->base_acceleration[i];
         vec3_cross(out, turn, normal);
         planar = vec3_norm(out) <= tolerance * vec3_norm(turn);
-        if (!planar) err_set(e, ERR_CONFIG, "the scene is not planar: its base turns out of the plane");
+        if (!planar) err_set(e, ERR_CONFIG, "the scene is not planar: its base rotates out of the plane");
     }
     arena_destroy(scratch);
     return planar;

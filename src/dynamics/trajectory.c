@@ -85,7 +85,7 @@ static int stepper_find(const char *name, struct err *e)
     for (int i = 0; i < count; i++)
         if (strcmp(names[i], name) == 0) return i;
     const char *near = text_nearest(name, names, count);
-    err_set(e, ERR_USAGE, "no stepper '%s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
+    err_set(e, ERR_USAGE, "no integrator '%s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
             near ? "'?" : "");
     return -1;
 }
@@ -123,7 +123,8 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     if (report) *report = (struct trajectory_report){0};
     if (n == 0) return true; /* nothing can move */
     if (!(duration > 0) || !isfinite(duration))
-        return err_set(e, ERR_CHECK, "stepper '%s' cannot go on for a time of %g", options->stepper, duration);
+        return err_set(e, ERR_CHECK, "integrator '%s': the duration %g is not positive and "
+                                     "finite", options->stepper, duration);
     struct arena_mark mark = arena_mark(scratch);
     struct flow f = {.d = dynamics_take(m, scratch), .tau = s->tau, .shifted = TAKE(scratch, n, double),
                      .change = TAKE(scratch, n, double)};
@@ -146,9 +147,11 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
     arena_release(scratch, mark);
     if (steps >= 0 && finite) return true;
-    if (steps >= 0) return err_set(e, ERR_CHECK, "stepper '%s' came to what is no number", options->stepper);
+    if (steps >= 0) return err_set(e, ERR_CHECK, "integrator '%s' produced a value that is not a finite "
+                                                 "number", options->stepper);
     if (f.evaluations > f.most)
-        return err_set(e, ERR_CHECK, "stepper '%s' is not there after %ld evaluations", options->stepper, f.most);
-    return err_set(e, ERR_CHECK, "stepper '%s' %s", options->stepper,
+        return err_set(e, ERR_CHECK, "integrator '%s' did not reach the end time within %ld "
+                                     "evaluations", options->stepper, f.most);
+    return err_set(e, ERR_CHECK, "integrator '%s' %s", options->stepper,
                    options->fixed_steps > 0 ? "broke down in a fixed step" : "gave up: its step size vanished");
 }

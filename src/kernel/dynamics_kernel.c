@@ -34,7 +34,7 @@ static int64_t largest_message(const void *job_)
 static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     if (spec->nrank > model->nbody)
-        return err_set(e, ERR_CONFIG, "%d processors for %d bodies: each needs at least one", spec->nrank,
+        return err_set(e, ERR_CONFIG, "%d ranks for %d bodies: each rank needs at least one body", spec->nrank,
                        model->nbody);
     if (kernel_branches(spec, model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");

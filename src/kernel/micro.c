@@ -21,7 +21,7 @@ static size_t workspace_bytes(const void *job, int rank)
 static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     (void)model;
-    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d processors: a message needs two", spec->nrank);
+    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d ranks: a message needs at least two", spec->nrank);
     if (spec->kernel.message_bytes < 0)
         return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)spec->kernel.message_bytes);
     return true;
@@ -36,7 +36,7 @@ static bool accepts_barrier(const struct run_spec *spec, const struct model *mod
 static bool accepts_even(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     if (spec->nrank % 2)
-        return err_set(e, ERR_CONFIG, "bisection needs an even number of processors, not %d", spec->nrank);
+        return err_set(e, ERR_CONFIG, "bisection needs an even number of ranks, not %d", spec->nrank);
     return accepts(spec, model, e);
 }
 

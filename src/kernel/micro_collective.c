@@ -81,7 +81,7 @@ static bool accepts(const struct run_spec *spec, const struct model *model, stru
     const struct kernel_spec *k = &spec->kernel;
     if (k->message_bytes < 0) return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)k->message_bytes);
     if (k->root >= spec->nrank || k->root < -spec->nrank)
-        return err_set(e, ERR_CONFIG, "kernel.root is %d, but there are %d processors", k->root, spec->nrank);
+        return err_set(e, ERR_CONFIG, "kernel.root is %d, but there are %d ranks", k->root, spec->nrank);
     return micro_collective_algorithm(spec, e) != NULL;
 }
 

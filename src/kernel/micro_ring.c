@@ -29,7 +29,7 @@ static bool accepts(const struct run_spec *spec, const struct model *model, stru
     (void)model;
     if (spec->kernel.message_bytes < 0)
         return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)spec->kernel.message_bytes);
-    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d processors: a ring needs two", spec->nrank);
+    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d ranks: a ring needs at least two", spec->nrank);
     return spec->kernel.ring_ranks != 1 || err_set(e, ERR_CONFIG, "kernel.ring_ranks is 1: a ring needs two ranks");
 }
 
@@ -123,7 +123,7 @@ const struct kernel_type ring_kernel = {
 
 const struct kernel_type random_ring_kernel = {
     .name = "random-ring",
-    .title = "the same with the ranks in random order",
+    .title = "every rank sends to both its neighbours in a ring of random order",
     .rank = {1, stage_name, workspace_bytes, NULL, run},
     .accepts = accepts,
     .prepare = prepare_random,
@@ -133,4 +133,4 @@ const struct kernel_type random_ring_kernel = {
 const struct program_type ring_program =
     MICRO_PROGRAM(ring, "ring", "every rank sends to both its neighbours in a ring");
 const struct program_type random_ring_program =
-    MICRO_PROGRAM(random_ring, "random-ring", "the same with the ranks in random order");
+    MICRO_PROGRAM(random_ring, "random-ring", "every rank sends to both its neighbours in a ring of random order");

@@ -106,10 +106,10 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
     for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
     if (job->omit.fixed > 0)
         leave_out_add(l, KEEP_FIXED, bound, "fixed joints",
-                      "a body on a fixed joint is part of the one that carries it");
+                      "a body on a fixed joint is merged with the body that carries it");
     if (m->is_chain && m->nloop == 0)
         leave_out_add(l, kernel_fits_trees(k) ? KEEP_BRANCHES : 0, bound, "branch and loop phases",
-                      "an open chain has neither");
+                      "an open chain has no branches or loops");
     if (kernel->planar)
         leave_out_add(l, k->algebra == ALGEBRA_AUTO ? KEEP_SPATIAL : 0, bound, "out-of-plane components",
             "all joints move in one plane: three components of six");
@@ -117,7 +117,7 @@ static void list_model(const struct kernel_job *job, const struct kernel_type *k
         leave_out_add(l, KEEP_GENERAL, 0, "general joints in the serial references", "all joints are revolute");
     if (kernel->does_forward && !kernel->planar && job->spec->record.baselines == BASELINES_NEEDED)
         leave_out_add(l, KEEP_BASELINE, 0, "serial codes that cannot be fastest",
-                      "record.baselines asks for the needed ones");
+                      "record.baselines selects only the needed ones");
     if (kernel->does_forward && !kernel->planar && m->nu > BASELINE_MOST)
         leave_out_add(l, KEEP_BASELINE, 0, "mass-matrix baseline",
                       "more than 512 degrees of freedom: cubic, never fastest");

@@ -93,7 +93,7 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
 {
     const struct network_spec *w = &m->network;
     struct net *n = TAKE(a, 1, struct net);
-    if (!level_of(m)) err_set(e, ERR_CONFIG, "network level %d is not there", (int)w->level);
+    if (!level_of(m)) err_set(e, ERR_CONFIG, "there is no network level %d", (int)w->level);
     if (!level_of(m) || !sizes_fit(t, e)) return NULL;
     *n = (struct net){
         .type = level_of(m), .machine = m, .topology = t, .sim = s, .arena = a, .deliver = deliver, .context = context};
@@ -103,7 +103,8 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->tau = sim_from_seconds(w->hop_latency);
     n->credit = sim_from_seconds(w->credit_latency);
     if (ps_times(t->max_hops + 2, n->tau) > PS_LAST) {
-        err_set(e, ERR_CONFIG, "network.hop_latency: a way of %d routers takes longer than simulated time is, %.3g s",
+        err_set(e, ERR_CONFIG, "network.hop_latency: a route of %d routers takes longer than the largest "
+                               "simulated time, %.3g s",
                 t->max_hops + 1, PS_LAST / SIM_PS_PER_S);
         return NULL;
     }

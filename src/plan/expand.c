@@ -108,10 +108,10 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
     const struct setting *ranks = last_of(x, is_ranks), *ratio = last_of(x, is_ratio), *bodies = last_of(x, is_bodies);
     if (ranks == NULL)
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
-                          "ranks is missing; expected a number, a list, or 'n' for as many as bodies");
+                          "ranks is missing; expected a number, a list, or 'n' for one rank per body");
     if (ratio != NULL && bodies != NULL)
         return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line,
-                          "n_over_p says n already; leave out '%s' (line %d)", bodies->key, bodies->line);
+                          "n_over_p determines n already; remove '%s' (line %d)", bodies->key, bodies->line);
     if (ratio != NULL && ranks->kind == SETTING_RANKS_ARE_N)
         return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as numbers, not 'n'");
     if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
@@ -137,13 +137,14 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
                           "%d ranks, but machine.placement.list names %d processors", run->nrank, m->placement.nlist);
     if (run->nrank > n)
         return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
-                          "%d ranks, but machine '%s' has %lld processors; fewer ranks, or raise machine.topology.dims",
+                          "%d ranks, but machine '%s' has %lld processors; reduce ranks or enlarge "
+                          "machine.topology.dims",
                           run->nrank, m->name, (long long)n);
     if (run->model.generator == MODEL_SERIAL_CHAIN && kernel_spec_needs_model(&run->kernel) &&
         run->model.nbody < run->nrank)
         return err_set_at(
             x->err, ERR_CONFIG, ranks->file, ranks->line,
-            "%d processors for %d bodies: each needs at least one; `only: n >= ranks` leaves such points out",
+            "%d ranks for %d bodies: each rank needs at least one body; `only: n >= ranks` excludes such points",
             run->nrank, run->model.nbody);
     return true;
 }
@@ -252,7 +253,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         return false;
     }
     if (p->nrun > 0) return true;
-    return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "no run is left by 'only'");
+    return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "'only' excludes all runs");
 }
 
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)

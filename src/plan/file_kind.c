@@ -83,7 +83,8 @@ bool file_kind_refuse(const char *name, enum file_kind wanted, struct err *e)
     if (kind == FILE_MACHINE)
         text_add(&use, "`mimdsim machines %s` shows it, `mimdsim run SCENARIO --machine %s` uses it", name, name);
     if (kind == FILE_DATABASE)
-        text_add(&use, "`mimdsim plot %s` tells what can be drawn of it, `mimdsim run SCENARIO -o %s` adds to it", name,
+        text_add(&use, "`mimdsim plot %s` lists the figures that can be drawn from it, `mimdsim run "
+                       "SCENARIO -o %s` adds to it", name,
                  name);
     if (kind == FILE_ROBOT) text_add(&use, "a scenario names it by `model: {generator: urdf, path: %s}`", name);
     if (kind == FILE_CASES) text_add(&use, "`mimdsim verify %s` or `mimdsim netcheck %s` takes it", name, name);

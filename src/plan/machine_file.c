@@ -43,7 +43,7 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
                               key, n->key, published ? "class, source or validate" : "class or source");
         if (strcmp(n->key, "value") == 0) continue;
         if (n->kind != YAML_SCALAR)
-            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' has to be one value", key, n->key);
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' must be a single value", key, n->key);
         if (strcmp(n->key, "class") == 0) v->evidence = n->text;
         if (strcmp(n->key, "source") == 0) v->source = n->text;
         if (strcmp(n->key, "validate") == 0) v->validate = n->text;
@@ -223,8 +223,8 @@ static bool read_chain(struct machine_file *m, const char *path, const char **ch
 {
     for (int i = 0; i < depth; i++)
         if (strcmp(chain[i], path) == 0)
-            return err_set_at(e, ERR_DATA, chain[depth - 1], 0, "base: %s builds on itself", data_dir_stem(path, a));
-    if (depth == MAX_BASES) return err_set_at(e, ERR_DATA, path, 0, "more than %d files build on each other", depth);
+            return err_set_at(e, ERR_DATA, chain[depth - 1], 0, "base: %s is based on itself", data_dir_stem(path, a));
+    if (depth == MAX_BASES) return err_set_at(e, ERR_DATA, path, 0, "a chain of more than %d base files", depth);
     struct yaml_node *root = yaml_tree_read(path, a, e);
     if (root == NULL) return false;
     chain[depth] = path;

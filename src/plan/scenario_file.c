@@ -252,7 +252,7 @@ static bool set_axis(struct scenario *s, const char *key, const char *list, int 
     const char *path = s->path;
     if (root == NULL || root->child->kind != YAML_SEQUENCE)
         return err_set_at(e, ERR_DATA, "--set", 0,
-                          "%s: '%.80s' is not a list; several values are swept as %s=2,4,8", key, list,
+                          "%s: '%.80s' is not a list; write a sweep as %s=2,4,8", key, list,
                           key);
     for (struct yaml_node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
     root->child->line = 0;

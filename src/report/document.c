@@ -53,10 +53,10 @@ static bool contradictions(struct chapter *c)
 {
     page_heading(c->page, 2, "Where the model contradicts the paper");
     page_paragraph(c->page,
-                   "The paper prints no numbers beside its figures, its machines were shared with others, and its "
-                   "serial baseline is not fully defined. Each claim is therefore tested for every serial baseline, "
-                   "with structured and with dense operators; its own verdict is that of the variant nearest to the "
-                   "text. Judged: why that variant, with which tolerance.");
+                   "The paper gives no numbers for its figures, its machines were shared with other users, and its "
+                   "serial baseline is not fully specified. Each claim is therefore tested for every serial baseline, "
+                   "with structured and with dense operators. The variant closest to the text of the paper determines "
+                   "the verdict. \"Judged\" gives the reason for that variant, and the tolerance.");
     return store_select(
         c->d->store,
         "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
@@ -70,9 +70,9 @@ static bool estimates(struct chapter *c)
 {
     struct text path = {0}, sql = {0};
     text_add(&path, "%s/plots/estimates.sql", c->d->data_dir);
-    page_heading(c->page, 2, "First estimates, confirmed or refuted");
+    page_heading(c->page, 2, "Analytic estimates, confirmed or refuted");
     page_paragraph(c->page,
-                   "Before the simulator there was an analytic estimate of the claims. This is what became of it.");
+                   "The claims were estimated analytically before they were simulated. The table compares the two.");
     bool ok = text_read_file(&sql, path.s, c->e) && table(c, sql.s, "No claim has been judged.");
     text_free(&path);
     text_free(&sql);
@@ -86,9 +86,10 @@ static bool claims(struct chapter *c)
 {
     page_heading(c->page, 2, "The claims");
     page_paragraph(c->page,
-                   "Share: the part of the samples in which a claim holds. Each sample draws every machine parameter "
-                   "that has a published range anew, log-uniformly, and runs the simulator again, at fewer points "
-                   "than the study: a value over many points may lie outside of its range.");
+                   "Share: the fraction of the samples in which a claim holds. Each sample draws all "
+                   "machine parameters "
+                   "that have a published range from log-uniform distributions and repeats the simulation, at fewer "
+                   "points than the study. A value over many points may therefore lie outside its range.");
     return table(
         c,
         "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
@@ -117,7 +118,7 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
         " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
         " WHERE id = ?1 AND variant <> '' ORDER BY variant",
-        1, value, "No run is stored that could tell.", c->e);
+        1, value, "No run is stored for this claim.", c->e);
 }
 
 static bool variants(struct chapter *c)
@@ -172,8 +173,8 @@ static bool machines(struct chapter *c)
     if (!c->d->whole && c->d->nparameter == 0) return true;
     page_heading(c->page, 2, "The machines");
     page_paragraph(c->page,
-                   "Evidence: P published and read again, PR published but recalled, D derived, E estimated. A value "
-                   "with a range is one of the uncertain parameters.");
+                   "Evidence: P published and checked in the source, PR published but quoted from memory, D derived, E "
+                   "estimated. The uncertain parameters are those with a range.");
     const char *machine = "";
     for (int i = 0; i < c->d->nparameter; i++) {
         const struct document_parameter *p = &c->d->parameter[i];
@@ -194,8 +195,8 @@ static bool numerics(struct chapter *c)
 {
     page_heading(c->page, 2, "Accuracy of the numerics");
     page_paragraph(c->page,
-                   "The simulated processors compute real numbers; each run's answer is compared with that of a serial "
-                   "code. Relative errors, largest over the runs.");
+                   "The simulated processors compute actual numbers. The result of each run is compared with that of a "
+                   "serial code. The errors are relative, and the largest of all runs.");
     if (!table(
             c,
             "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, max(n) AS largest_n,"
@@ -205,8 +206,8 @@ static bool numerics(struct chapter *c)
             "No run is stored."))
         return false;
     page_paragraph(c->page,
-                   "Time is accounted for to the picosecond: computing, sending, receiving, waiting and contention of "
-                   "all ranks add up to P times the run time.");
+                   "All simulated time is accounted for, to the picosecond: computing, sending, receiving, waiting and "
+                   "contention of all ranks add up to P times the run time.");
     return table(c,
                  "SELECT count(*) AS runs, sum(difference_ps <> 0) AS runs_that_do_not_add_up,"
                  " max(abs(difference_ps)) AS largest_difference_ps FROM v_accounting",
@@ -216,7 +217,7 @@ static bool numerics(struct chapter *c)
 static bool left_out_of_runs(struct chapter *c)
 {
     return table(c,
-                 "SELECT 'runs that did not end well' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
+                 "SELECT 'failed runs' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
                  "'') AS which"
                  "  FROM run WHERE status <> 'ok'"
                  " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
@@ -233,7 +234,7 @@ static bool left_out_of_runs(struct chapter *c)
            table(c,
                  "SELECT what, why, class || iif(max(bound) IS NULL, '', format(' %.0e', max(bound))) AS class,"
                  " count(*) AS runs FROM run_omission GROUP BY what, why, class ORDER BY runs DESC, what",
-                 "No run says that it left something out.");
+                 "No run has omissions.");
 }
 
 static bool omissions(struct chapter *c)
@@ -243,7 +244,7 @@ static bool omissions(struct chapter *c)
         !findings_any(c->d->store, "SELECT 1 FROM omission LIMIT 1", &savings, c->e))
         return false;
     if (!c->d->whole && !runs && !savings) return true;
-    page_heading(c->page, 2, "What was left out");
+    page_heading(c->page, 2, "Omissions");
     if ((c->d->whole || runs) && !left_out_of_runs(c)) return false;
     return findings_savings(c->page, c->d->store, c->e);
 }
@@ -251,8 +252,8 @@ static bool omissions(struct chapter *c)
 static bool effort(struct chapter *c)
 {
     struct text t = {0};
-    page_heading(c->page, 2, "How long it took");
-    text_add(&t, "The command that wrote this report took %.1f s, runs that were stored before not counted.",
+    page_heading(c->page, 2, "Run time on this computer");
+    text_add(&t, "The command that wrote this report took %.1f s, without the runs that were stored before.",
              c->d->host_s);
     if (c->d->host_s > 0) page_paragraph(c->page, t.s);
     text_free(&t);

@@ -20,8 +20,9 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name, con
         struct text figure = {0};
         text_add(&figure, "explain-%s", value[0]);
         page_figure(p, figure.s,
-                    "Where the claim holds in the plane of the two parameters that matter most, the others as in the "
-                    "answer: each cell is a point that was simulated and judged.");
+                    "Where the claim holds in the plane of the two most important parameters, with the "
+                    "others as in the "
+                    "answer. Each cell is a simulated and judged point.");
         text_free(&figure);
     }
     text_free(&heading);
@@ -35,7 +36,7 @@ static const char sentences[] = "SELECT a.subject, group_concat(a.sentence, ' ')
                                 " ORDER BY a.subject = 'together', length(a.subject), a.subject";
 
 static const char table_sql[] =
-    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS \"looked for\", verdict, variant,"
+    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict, variant,"
     " iif(distance IS NULL, '', format('%.3g', exp(distance))) AS factor, settings, points,"
     " CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM explain_answer" IN_ORDER;
 
@@ -44,17 +45,19 @@ bool explanations_section(struct page *p, struct store *s, struct err *e)
     bool any;
     if (!findings_any(s, "SELECT 1 FROM explain_answer LIMIT 1", &any, e)) return false;
     if (!any) return true;
-    page_heading(p, 2, "What would make the paper true");
-    page_paragraph(p, "The paper does not state what its code sustained, what a call or a message cost it, how its "
-                      "serial code was written, or who else used the machine. For each claim that fails these are "
-                      "changed, and the smallest change is looked for under which it holds: small is a small sum of "
-                      "|ln(value / nominal)|, that is, a small product of all factors; other operators or another "
-                      "serial baseline count as a factor of 2 each. Every point is simulated and judged by the claim's "
-                      "own query. Factors go to ten either way, others' traffic to 90 %, spread of computations to "
-                      "100 %. A claim for which no point was found may hold at one that was not tried, unless a reason "
-                      "is given why it cannot.");
+    page_heading(p, 2, "Changes under which failed claims hold");
+    page_paragraph(p, "The paper does not state the flop rate of its code, the cost of a call or a message, "
+                      "how its serial "
+                      "code was written, or who else used the machine. For each failed claim these parameters are "
+                      "varied to find the smallest change under which the claim holds. The size of a change is the sum "
+                      "of |ln(value / nominal)|, that is, the product of all factors; other operators or another "
+                      "serial baseline count as a factor of 2 each. Every point is simulated and judged by "
+                      "the query of "
+                      "the claim. Factors range from 1/10 to 10, traffic of others up to 90 %, variation of computing "
+                      "times up to 100 %. If no point was found, the claim may still hold at a point that was not "
+                      "tried, unless a reason is given why it cannot.");
     return store_select(s, sentences, 0, NULL, tell_answer, p, e) &&
-           page_table(p, s, table_sql, 0, NULL, "Nothing was looked for.", e);
+           page_table(p, s, table_sql, 0, NULL, "No search was made.", e);
 }
 
 static bool print_answer(void *context, int ncolumn, const char *const *name, const char *const *value)

@@ -9,8 +9,9 @@
 #include "report/page.h"
 #include "store/store.h"
 
-/* explanations_section: section "What would make the paper true": a sentence and the map for each claim, and the table
- * of answers. Nothing is written when the database has none. Returns false with ERR_DATA or ERR_IO. */
+/* explanations_section: section "Changes under which failed claims hold": a sentence and the map for each
+ * claim, and the table of answers. Nothing is written when the database has none. Returns false with
+ * ERR_DATA or ERR_IO. */
 bool explanations_section(struct page *p, struct store *s, struct err *e);
 
 /* explanations_print: the sentences for people, or (json) an array with one object an answer: subject, goal, verdict,

@@ -49,14 +49,14 @@ static bool sentences(struct section *c, const char *sql, const char *param)
 
 static const char choice_sentences[] =
     "SELECT format('%s (%s, %s within %g): ', c.ladder, c.at, c.quantity, c.tolerance) ||"
-    " iif(c.method IS NULL, 'no rung is good enough.',"
+    " iif(c.method IS NULL, 'no method is within the tolerance.',"
     " format('cheapest is %s %s%s%s; %s.',"
     "  c.method || iif(c.rung = c.method, '', ', ' || c.rung),"
     "  iif(c.relative_error = 0, 'and exact', format('with an error of %.1e', c.relative_error)),"
-    "  iif(c.ladder = 'network' OR l.machine_ps IS NULL, '', format(', %.4g us of the machine', l.machine_ps / 1e6)),"
+    "  iif(c.ladder = 'network' OR l.machine_ps IS NULL, '', format(', %.4g us on the machine', l.machine_ps / 1e6)),"
     "  iif(c.ladder = 'integration', ' (' || l.text || ')', ''),"
-    "  iif(c.cost_ratio = 1, 'no rung with a time is finer',"
-    "   format('the finest costs %.3g times as much', c.cost_ratio))))"
+    "  iif(c.cost_ratio = 1, 'no more accurate method has a time',"
+    "   format('the most accurate costs %.3g times as much', c.cost_ratio))))"
     " FROM ladder_choice c LEFT JOIN ladder l ON l.scenario = c.scenario AND l.ladder = c.ladder AND l.at = c.at"
     "  AND l.method = c.method AND l.rung = c.rung AND l.quantity = c.quantity"
     " WHERE c.scenario = ?1 GROUP BY c.ladder, c.at, c.quantity, c.tolerance"
@@ -79,9 +79,9 @@ static bool tell_ladders(void *context, int ncolumn, const char *const *name, co
     bool ok = sentences(c, choice_sentences, value[0]);
     if (ok)
         page_figure(c->page, figure.s,
-                    "Error of every rung against its time on this computer and on the simulated machine; an exact "
-                    "answer stands on the line at the bottom.");
-    if (ok) page_paragraph(c->page, "Rungs that failed:");
+                    "Error against the run time on this computer and on the simulated machine; exact results are "
+                    "on the line at the bottom.");
+    if (ok) page_paragraph(c->page, "Failed:");
     ok = ok && table(c, failed_rungs, value[0], "None.");
     text_free(&figure);
     return ok;
@@ -94,16 +94,17 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
     if (!findings_any(s, "SELECT 1 FROM ladder LIMIT 1", &any, e)) return false;
     if (!any) return true;
     page_heading(p, 2, "Error against run time");
-    page_paragraph(p, "How wrong each cheaper way is: network levels against the finest, accelerations of every "
-                      "algorithm and precision against quad precision, motions against a tight reference. Cost is "
-                      "this computer's time for the network and the machine's predicted time for the others. Made by "
-                      "mimdsim accuracy.");
+    page_paragraph(p, "Errors of cheaper models and methods: network levels against the most detailed one, "
+                      "accelerations "
+                      "of every algorithm and precision against quad precision, motions against a reference with tight "
+                      "tolerance. The cost is the run time on this computer for network levels, and the predicted run "
+                      "time on the machine otherwise. Measured by mimdsim accuracy.");
     if (!table(&c,
-               "SELECT scenario, ladder, at, quantity, format('%g', tolerance) AS \"error allowed\","
-               " ifnull(method || iif(rung = method, '', ', ' || rung), 'none is good enough') AS cheapest,"
+               "SELECT scenario, ladder, at, quantity, format('%g', tolerance) AS \"tolerance\","
+               " ifnull(method || iif(rung = method, '', ', ' || rung), 'none within the tolerance') AS cheapest,"
                " CASE WHEN relative_error IS NULL THEN '' WHEN relative_error = 0 THEN 'exact' ELSE"
-               " format('%.1e', relative_error) END AS \"its error\","
-               " iif(cost_ratio IS NULL, '', format('%.3g', cost_ratio)) AS \"cost of the finest over its\""
+               " format('%.1e', relative_error) END AS \"error\","
+               " iif(cost_ratio IS NULL, '', format('%.3g', cost_ratio)) AS \"cost of the most accurate, relative\""
                " FROM ladder_choice ORDER BY scenario, CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2"
                " ELSE 3 END, tolerance",
                NULL, "No choice was made."))
@@ -112,7 +113,7 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
                "SELECT scenario, ladder, at, reference, sum(status = 'ok') AS ok, sum(status = 'degraded') AS degraded,"
                " sum(status = 'failed') AS failed FROM ladder WHERE quantity IN ('makespan', 'qdd', 'state')"
                " GROUP BY scenario, ladder, at, family ORDER BY scenario, min(ordinal)",
-               NULL, "No rung is stored."))
+               NULL, "No result is stored."))
         return false;
     return store_select(s, "SELECT DISTINCT scenario FROM ladder ORDER BY 1", 0, NULL, tell_ladders, &c, e) &&
            e->kind == ERR_NONE;
@@ -169,10 +170,10 @@ static const char stiff_motions[] =
     "  format('%.2e', max(iif(algorithm LIKE 'own %' AND NOT implicit, step_s, NULL))))"
     "  AS \"largest stable explicit step\", min(iif(implicit, NULL, evaluations)) AS \"explicit evaluations\","
     "  min(iif(implicit, evaluations, NULL)) AS \"implicit evaluations\","
-    "  CASE WHEN min(iif(implicit, evaluations, NULL)) IS NULL THEN 'no implicit is ok'"
-    "   WHEN min(iif(implicit, NULL, evaluations)) IS NULL THEN 'no explicit is ok' ELSE"
+    "  CASE WHEN min(iif(implicit, evaluations, NULL)) IS NULL THEN 'no implicit integrator is ok'"
+    "   WHEN min(iif(implicit, NULL, evaluations)) IS NULL THEN 'no explicit integrator is ok' ELSE"
     "   format('%.3g', min(iif(implicit, NULL, evaluations)) / min(iif(implicit, evaluations, NULL))) END"
-    "  AS \"explicit over implicit\", sum(status = 'failed') AS \"steppers failed\""
+    "  AS \"explicit over implicit\", sum(status = 'failed') AS \"failed integrators\""
     " FROM motion GROUP BY subject ORDER BY min(ordinal)";
 
 static bool tell_suite(void *context, int ncolumn, const char *const *name, const char *const *value)
@@ -186,11 +187,11 @@ static bool tell_suite(void *context, int ncolumn, const char *const *name, cons
     text_add(&figure, built_in ? "stability" : "stability-%s", value[0]);
     page_paragraph(c->page, value[2]);
     page_figure(c->page, figure.s,
-                "Cases against algorithms; in a cell the power of ten of the relative error. Of stiff motions: error, "
-                "step, evaluations (of one not run: those it would take) and energy drift.");
+                "Cases and algorithms; each cell gives the power of ten of the relative error. For stiff motions: "
+                "error, step, evaluations (if not run: the number needed) and energy drift.");
     bool ok = (!built_in || sentences(c, spd_sentence, value[0])) && table(c, by_algorithm, value[0], "No row.") &&
-              table(c, worst_cases, value[0], "Nothing failed and nothing degraded.") &&
-              table(c, stiff_motions, value[0], "None of these scenes has springs or dampers whose motion was tried.");
+              table(c, worst_cases, value[0], "No result failed or degraded.") &&
+              table(c, stiff_motions, value[0], "No motion of a scene with springs or dampers was simulated.");
     text_free(&figure);
     return ok;
 }
@@ -202,8 +203,9 @@ bool findings_stability(struct page *p, struct store *s, struct err *e)
     if (!findings_any(s, "SELECT 1 FROM stability LIMIT 1", &any, e)) return false;
     if (!any) return true;
     page_heading(p, 2, "Stability");
-    page_paragraph(p, "Stiff and extreme scenes by every algorithm and stepper, graded: of accelerations in double "
-                      "precision an error up to 1e-8 is ok and up to 1e-2 degraded, in float 1e-3 and 1e-1. Made by "
+    page_paragraph(p, "Stiff and extreme scenes with every algorithm and integrator. An error of "
+                      "accelerations up to 1e-8 "
+                      "is graded ok and up to 1e-2 degraded, in single precision up to 1e-3 and 1e-1. Measured by "
                       "mimdsim stability.");
     return store_select(s,
                         "SELECT suite, suite = 'suite', format('%d ok, %d degraded, %d failed of %d answers on %d "
@@ -217,14 +219,14 @@ bool findings_stability(struct page *p, struct store *s, struct err *e)
 
 static const char saving_rows[] =
     "SELECT what, why, class || iif(bound IS NULL, '', format(' %.0e', bound)) AS class, at,"
-    " CASE WHEN host_saved_s IS NULL THEN 'cannot be put back'"
+    " CASE WHEN host_saved_s IS NULL THEN 'cannot be undone'"
     "  WHEN abs(host_saved_s) <= host_noise_s THEN format('less than the noise, %.2g ms', host_noise_s * 1e3)"
-    "  WHEN host_saved_s < 0 THEN format('nothing: put back it takes %.2g ms less', -host_saved_s * 1e3)"
+    "  WHEN host_saved_s < 0 THEN format('nothing: undone it takes %.2g ms less', -host_saved_s * 1e3)"
     "  ELSE format('%.3g ms of %.3g', host_saved_s * 1e3, (host_s + host_saved_s) * 1e3) END"
-    " AS \"this computer saves\","
+    " AS \"saved on this computer\","
     " CASE WHEN machine_saved_ps IS NULL THEN '' WHEN machine_saved_ps = 0 THEN 'nothing'"
     "  ELSE format('%.4g us of %.6g', machine_saved_ps / 1e6, (machine_ps + machine_saved_ps) / 1e6) END"
-    " AS \"the machine saves, predicted\" FROM omission WHERE scenario = ?1 ORDER BY ordinal";
+    " AS \"saved on the machine (predicted)\" FROM omission WHERE scenario = ?1 ORDER BY ordinal";
 
 static bool tell_savings(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -235,8 +237,8 @@ static bool tell_savings(void *context, int ncolumn, const char *const *name, co
     page_heading(c->page, 3, value[0]);
     text_add(&figure, "omissions-%s", value[0]);
     page_figure(c->page, figure.s,
-                "Time that each omission saves: that of the same run with the part put back, less that of the run "
-                "that leaves it out.");
+                "Time saved by each omission: the time of the same run with the omission undone, minus the time of "
+                "the run with the omission.");
     text_free(&figure);
     return table(c, saving_rows, value[0], "Nothing.");
 }

@@ -10,7 +10,7 @@
 /* findings_accuracy: section "Error against run time": the cheapest rung of each ladder, counts, and for each scenario
  * its figure and what failed. findings_stability: section "Stability": counts, each algorithm with its worst case, the
  * worst cases, steps of stiff motions, the figures. findings_savings: what omissions save, and the figures; for the
- * section "What was left out", whose heading the caller writes.
+ * section "Omissions", whose heading the caller writes.
  *
  *   Nothing is written when the database has no rows for it. Return false with ERR_DATA or ERR_IO. */
 bool findings_accuracy(struct page *p, struct store *s, struct err *e);

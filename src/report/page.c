@@ -296,7 +296,7 @@ void page_figure(struct page *p, const char *name, const char *caption)
     } else {
         page_paragraph(p, caption);
         page_paragraph(
-            p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its numbers are in the CSV "
+            p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its data are in the CSV "
                "file of the same name.");
     }
     text_free(&path);

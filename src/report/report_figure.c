@@ -87,7 +87,7 @@ static bool no_such_figure(const char *data_dir, const char *wanted, struct err 
     struct text all = {0};
     for (int i = 0; i < n; i++) text_add(&all, "%s%s", i ? ", " : "", name[i]);
     if (nearest != NULL) err_set(e, ERR_NO_INPUT, "there is no figure '%s'; did you mean '%s'?", wanted, nearest);
-    else err_set(e, ERR_NO_INPUT, "there is no figure '%s'; there are: %s", wanted, n > 0 ? all.s : "none");
+    else err_set(e, ERR_NO_INPUT, "there is no figure '%s'; known: %s", wanted, n > 0 ? all.s : "none");
     for (int i = 0; i < n; i++) free(name[i]);
     free(name);
     text_free(&all);

@@ -242,11 +242,11 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct err *why
     while (waitpid(w->pid, &status, 0) < 0 && errno == EINTR) {}
     w->pid = 0;
     if (WIFSIGNALED(status))
-        err_set(why, ERR_INTERNAL, "its worker process was ended by signal %d (%s)", WTERMSIG(status),
+        err_set(why, ERR_INTERNAL, "its worker process was killed by signal %d (%s)", WTERMSIG(status),
                 strsignal(WTERMSIG(status)));
     else
         err_set(why, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
-                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused it memory" : "");
+                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused more memory" : "");
     return start_worker(c, (int)(w - c->worker), e);
 }
 

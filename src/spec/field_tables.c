@@ -103,7 +103,7 @@ static void document_field(const struct field_table *t, const struct field *f, F
     for (int i = 0; f->choice != NULL && f->choice[i] != NULL; i++)
         fprintf(out, "%s %s", i > 0 ? "," : "", f->choice[i]);
     document_range(f, out);
-    if (f->fallback == NULL) fprintf(out, "; has to be given*\n");
+    if (f->fallback == NULL) fprintf(out, "; required*\n");
     else if (f->fallback[0] == '\0') fprintf(out, "*\n");
     else fprintf(out, "; default %s*\n", f->fallback);
 }

@@ -72,7 +72,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         return NULL;
     }
     if (!s->writable && !sqlite3_stmt_readonly(q)) {
-        err_set(e, ERR_IO, "database %s is only read here: a statement that changes it is not run", s->path);
+        err_set(e, ERR_IO, "database %s is opened for reading only: a statement that changes it is not run", s->path);
         sqlite3_finalize(q);
         return NULL;
     }

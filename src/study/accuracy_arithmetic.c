@@ -58,7 +58,7 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
         text_copy(r->text, sizeof r->text, "a pivot was not positive");
         return;
     }
-    if (report.fell_back) text_copy(r->text, sizeof r->text, "articulated bodies had to solve it");
+    if (report.fell_back) text_copy(r->text, sizeof r->text, "solved by articulated bodies instead");
     grade(r, trial_error(qdd, reference, l->model->nu));
     struct node_cost cost = node_cost_make(&l->spec.machine.node);
     if (precision != PRECISION_QUAD) r->machine_ps = node_cost_ps(&cost, &w);

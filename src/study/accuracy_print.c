@@ -84,20 +84,21 @@ static void print_choice(FILE *out, const struct accuracy_choice *c)
 {
     fprintf(out, "%s (%s%s%s within %.2g): ", c->ladder, c->at, c->at[0] ? ", " : "", c->quantity, c->tolerance);
     if (!c->finest) {
-        fprintf(out, "no rung has an answer\n");
+        fprintf(out, "no method has a result\n");
         return;
     }
     if (!c->rung) {
-        fprintf(out, "no rung is good enough; the finest, %s %s, has an error of %.1e\n", c->finest->method,
+        fprintf(out, "no method is within the tolerance; the most accurate, %s %s, has an error of "
+                     "%.1e\n", c->finest->method,
                 c->finest->rung, c->finest->error);
         return;
     }
     bool same = strcmp(c->rung->method, c->rung->rung) == 0;
     fprintf(out, "%s%s%s, error %.1e", c->rung->method, same ? "" : ", ", same ? "" : c->rung->rung, c->rung->error);
     if (c->rung->machine_ps >= 0 && strcmp(c->ladder, "network") != 0)
-        fprintf(out, ", %.3f us of the machine", (double)c->rung->machine_ps * 1e-6);
+        fprintf(out, ", %.3f us on the machine", (double)c->rung->machine_ps * 1e-6);
     same = strcmp(c->finest->method, c->finest->rung) == 0;
-    fprintf(out, "%s%s; the finest (%s%s%s) costs %.3g times as much\n",
+    fprintf(out, "%s%s; the most accurate (%s%s%s) costs %.3g times as much\n",
             strcmp(c->ladder, "integration") == 0 ? ", " : "",
             strcmp(c->ladder, "integration") == 0 ? c->rung->text : "", c->finest->method, same ? "" : ", ",
             same ? "" : c->finest->rung, c->cost_ratio);

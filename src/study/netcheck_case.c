@@ -101,7 +101,7 @@ static bool size_fits(const char *name, const struct topology_spec *s, struct er
     size_of(s, &node, &link);
     for (int d = 0; d < s->ndim; d++)
         if (s->dims[d] < 1 && !(s->family == TOPOLOGY_DRAGONFLY && d == 3))
-            return err_set(e, ERR_DATA, "topology '%s': %d is no size, expected 1 or more", name, s->dims[d]);
+            return err_set(e, ERR_DATA, "topology '%s': size %d; expected 1 or more", name, s->dims[d]);
     if (node <= NETCHECK_MOST_NODES && link <= NETCHECK_MOST_LINKS) return true;
     return err_set(e, ERR_DATA, "topology '%s' has %.4g nodes and %.4g links; expected at most %d and %d", name, node,
                    link, NETCHECK_MOST_NODES, NETCHECK_MOST_LINKS);
@@ -116,7 +116,7 @@ static bool unknown_family(const char *name, struct err *e)
     snprintf(start, sizeof start, "%.*s", (int)strcspn(name, "0123456789_"), name);
     const char *near = text_nearest(start, word, sizeof families / sizeof *families);
     if (near) return err_set(e, ERR_DATA, "unknown topology '%.64s'; did you mean '%s'?", name, near);
-    return err_set(e, ERR_UNAVAILABLE, "a topology '%.64s' is not among ours", name);
+    return err_set(e, ERR_UNAVAILABLE, "topology '%.64s' is not supported", name);
 }
 
 /* words in the names of networks whose routes depend on the load */
@@ -140,12 +140,12 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
     }
     if (!found) return unknown_family(name, e);
     if (adaptive_word(name))
-        return err_set(e, ERR_UNAVAILABLE, "adaptive routing ('%s') is not among ours", adaptive_word(name));
+        return err_set(e, ERR_UNAVAILABLE, "adaptive routing ('%s') is not supported", adaptive_word(name));
     bool grid = s->family == TOPOLOGY_TORUS || s->family == TOPOLOGY_MESH;
     s->ndim = (grid ? radices_in : numbers_in)(found, s->dims, MACHINE_MAX_DIMS);
     if (s->ndim == 0) s->ndim = (grid ? radices_in : numbers_in)(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
-    if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s' lacks its numbers", name);
+    if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s': its numbers are missing", name);
     if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0; /* what follows p, a and h is the number of nodes */
     if (!size_fits(name, s, e)) return false;
     if (strstr(name, "valiant")) s->routing = ROUTE_VALIANT;
@@ -242,7 +242,8 @@ static int rule_of(const char *text, struct err *e)
     if (near) err_set(e, ERR_DATA, "unknown pattern '%.64s'; did you mean '%s'?", text, near);
     else
         err_set(e, ERR_UNAVAILABLE,
-                "a pattern '%.64s' is not among ours: uniform, bitcomp, bitrev, transpose, shuffle, tornado, neighbor, "
+                "pattern '%.64s' is not supported; known: uniform, bitcomp, bitrev, transpose, shuffle, "
+                "tornado, neighbor, "
                 "shift, xor, bad_dragon",
                 text);
     return -1;
@@ -255,7 +256,7 @@ static bool digits_read(const char *text, const struct topology *t, const int *n
     bool given = n > 0, grid = t->spec->family == TOPOLOGY_TORUS || t->spec->family == TOPOLOGY_MESH;
     p->radix = given ? number[0] : t->spec->dims[0];
     p->ndim = n > 1 ? number[1] : t->spec->ndim;
-    if (!given && !grid) return err_set(e, ERR_DATA, "pattern '%.64s' lacks its radix", text);
+    if (!given && !grid) return err_set(e, ERR_DATA, "pattern '%.64s': its radix is missing", text);
     if (p->radix >= 2 && p->ndim >= 1 && p->ndim < 32 && pow(p->radix, p->ndim) == t->nnode) return true;
     return err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes", text, p->ndim,
                    p->radix, t->nnode);
@@ -271,7 +272,7 @@ static bool pattern_read(const char *text, const struct topology *t, struct patt
         return err_set(e, ERR_DATA, "pattern '%.64s' needs 2^n nodes, not %d", text, t->nnode);
     if (p->rule == TORNADO || p->rule == NEIGHBOUR) return digits_read(text, t, number, n, p, e);
     bool far = p->rule == SHIFT || p->rule == XOR;
-    if (far && n < 1) return err_set(e, ERR_DATA, "pattern '%.64s' lacks its distance", text);
+    if (far && n < 1) return err_set(e, ERR_DATA, "pattern '%.64s': its distance is missing", text);
     if (far && p->distance >= t->nnode)
         return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text, t->nnode);
     if (p->rule == BAD_DRAGONFLY) p->group = t->spec->dims[0] * t->spec->dims[1];

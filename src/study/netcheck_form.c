@@ -231,8 +231,8 @@ static bool alike(struct netcheck_reader *r, const struct node *map, const struc
     for (int i = 0; table[i].name; i++) {
         if (!((has ^ first->has) >> i & 1)) continue;
         return err_set_at(r->e, ERR_DATA, r->path, map->line,
-                          has >> i & 1 ? "'%s' is here, but is missing in cases before"
-                                       : "'%s' is missing, though cases before have it",
+                          has >> i & 1 ? "'%s' is given here, but is missing in earlier cases"
+                                       : "'%s' is missing, but earlier cases have it",
                           table[i].name);
     }
     return true;

@@ -353,7 +353,7 @@ static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buff
     long b = strtol(x->key, &end, 10);
     *buffer = (int)b;
     return (end != x->key && !*end && b >= 1 && b <= 1 << 20) ||
-           err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is no size of a buffer; expected flits, 1 to %d",
+           err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is not a buffer size; expected flits, 1 to %d",
                       x->key, 1 << 20);
 }
 

@@ -141,7 +141,7 @@ static void print_findings(const struct netcheck *n, double within, FILE *out)
                         network_level_name((enum network_level)l), v.failed, v.cases, v.why);
         }
     }
-    if (silent > 0) fprintf(out, "not judged: %d of %d cases, which no level answered\n", silent, n->nrow);
+    if (silent > 0) fprintf(out, "not judged: %d of %d cases, which no level can run\n", silent, n->nrow);
     for (int i = 0; i < n->nignored; i++) fprintf(out, "%s%s", i ? ", " : "compared with nothing: ", n->ignored[i]);
     if (n->nignored > 0) fprintf(out, "\n");
 }

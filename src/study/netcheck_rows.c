@@ -97,7 +97,7 @@ static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, con
         if (*tie < 0 && strcmp(routing, "dim_order") == 0) *tie = 1;
         return true;
     }
-    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not among ours", routing, topology);
+    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not supported", routing, topology);
 }
 
 bool netcheck_network(struct netcheck_reader *r, const struct node *c, const struct netcheck_setting *s,

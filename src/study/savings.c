@@ -146,7 +146,7 @@ static void print_host(FILE *out, const struct saving *s)
     else if (s->host_saved_s > 0)
         snprintf(text, sizeof text, "saves %.3f ms of %.3f, %.0f %%", s->host_saved_s * 1e3,
                  (s->host_s + s->host_saved_s) * 1e3, share);
-    else snprintf(text, sizeof text, "put back it takes %.3f ms less", -s->host_saved_s * 1e3);
+    else snprintf(text, sizeof text, "undone it takes %.3f ms less", -s->host_saved_s * 1e3);
     fprintf(out, "%-38s", text);
 }
 
@@ -160,7 +160,7 @@ static void print_machine(FILE *out, const struct saving *s)
 
 void savings_print(FILE *out, const struct savings *all)
 {
-    fprintf(out, "\nmeasured, each put back alone\n  %-40s %-14s %-8s %-38s  %s\n", "what", "at", "class",
+    fprintf(out, "\nmeasured, each undone alone\n  %-40s %-14s %-8s %-38s  %s\n", "what", "at", "class",
             "this computer", "the machine, predicted");
     for (int i = 0; i < all->n; i++) {
         const struct saving *s = &all->item[i];
@@ -169,7 +169,7 @@ void savings_print(FILE *out, const struct savings *all)
             print_host(out, s);
             print_machine(out, s);
         } else {
-            fprintf(out, "cannot be put back");
+            fprintf(out, "cannot be undone");
         }
         fprintf(out, "\n");
     }

@@ -124,7 +124,8 @@ void stability_print(FILE *out, const struct stability_report *r)
         count[r->row[i].status]++;
         by_algorithm += r->row[i].cause == CAUSE_ALGORITHM;
     }
-    fprintf(out, "\n%d ok, %d degraded, %d failed of %d; %d not by rounding: the algorithm fails\n", count[0], count[1],
+    fprintf(out, "\n%d ok, %d degraded, %d failed of %d; in %d cases the cause is the algorithm, not "
+                 "rounding\n", count[0], count[1],
             count[2], r->nrow, by_algorithm);
 }
 

@@ -112,7 +112,7 @@ static void serial_row(const struct judge *j, enum forward_method method, enum p
         return;
     }
     if (method == FORWARD_CFA_ROBUST) x->refinements = f.refined;
-    if (f.fell_back) text_copy(x->reason, sizeof x->reason, "articulated bodies had to solve it");
+    if (f.fell_back) text_copy(x->reason, sizeof x->reason, "solved by articulated bodies instead");
     finish_row(j, x, qdd, f.residual, precision == PRECISION_FLOAT);
 }
 

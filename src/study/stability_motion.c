@@ -119,8 +119,8 @@ static void own_row(struct stability_report *r, const char *subject, const struc
     double E = energy_of(m, reference, a), h = duration / steps;
     if (isfinite(error)) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
     double each_s = machine_time(m, s, rule, 2, h, a) - machine_time(m, s, rule, 1, h, a);
-    snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s of the machine%s%s", steps * each, steps * each_s,
-             error <= 0.01 ? "" : "; 1% takes more", x->step_s >= LONGEST ? "; longer steps not tried" : "");
+    snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s on the machine%s%s", steps * each, steps * each_s,
+             error <= 0.01 ? "" : "; 1% needs more", x->step_s >= LONGEST ? "; longer steps not tried" : "");
 }
 
 static void library_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
@@ -142,7 +142,7 @@ static void library_row(struct stability_report *r, const char *subject, const s
     x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
     double E = energy_of(m, reference, a);
     x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
-    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6, %.3g s of the machine", t.evaluations,
+    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6, %.3g s on the machine", t.evaluations,
              (double)t.evaluations * machine_time(m, s, STEP_SEMI_IMPLICIT, 0, 0, a));
 }
 
@@ -221,7 +221,7 @@ void stability_energy(struct stability_report *r, const char *subject, const str
     begin.fext = NULL;
     struct stability_row *x = row_add(r, subject, "motion rk4", "double");
     if (m->nbody > MOST_MOVED) {
-        snprintf(x->reason, sizeof x->reason, "not moved: an evaluation of %d bodies takes too long", m->nbody);
+        snprintf(x->reason, sizeof x->reason, "no motion: an evaluation of %d bodies takes too long", m->nbody);
         x->status = STABILITY_DEGRADED;
         return;
     }

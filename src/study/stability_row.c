@@ -30,5 +30,5 @@ void row_grade(struct stability_row *row, double error, bool single)
     double fine = single ? 1e-3 : 1e-8, poor = single ? 1e-1 : 1e-2;
     row->error = isfinite(error) ? error : NAN;
     row->status = error <= fine ? STABILITY_OK : error <= poor ? STABILITY_DEGRADED : STABILITY_FAILED;
-    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the answer is no number");
+    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the result is not a finite number");
 }

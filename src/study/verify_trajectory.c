@@ -191,7 +191,7 @@ bool verify_trajectory(struct verify_case *v, struct err *e)
     bool any = false;
     for (int k = 0; k < STEPPERS; k++) any = stepper_row(v, k) || any;
     if (!any) {
-        struct verify_row *row = verify_row_add(v, "any stepper", "states");
+        struct verify_row *row = verify_row_add(v, "any integrator", "states");
         row->error = INFINITY;
         row->verdict = VERIFY_FAIL;
     }

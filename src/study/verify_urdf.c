@@ -104,7 +104,8 @@ bool verify_urdf(struct verify_case *v, struct err *e)
     if (!c->urdf[0]) return true;
     snprintf(path, sizeof path, "%.*s%s", folder, c->path, c->urdf);
     if (access(path, R_OK) != 0)
-        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "the URDF file '%.200s' is not there; it must lie beside "
+        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "the URDF file '%.200s' does not exist; it "
+                                                              "must be in the folder of "
                           "this file", c->urdf);
     memcpy(o.gravity, c->gravity, sizeof o.gravity);
     struct model *m = urdf_read(path, &robot, v->arena, e) ? urdf_model(&robot, &o, v->arena, e) : NULL;

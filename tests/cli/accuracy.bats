@@ -34,9 +34,9 @@ scenario() {
     scenario
     works mimdsim accuracy small.yaml --quiet --set model.generator=polymer --set n=1 --set 'model.damping=1e15 N m s/rad' \
         --set 'model.torque=1e-300 N m'
-    stdout_says 'integration (state within 1e-06): no rung has an answer'
+    stdout_says 'integration (state within 1e-06): no method has a result'
     sql_is mimdsim.db "SELECT count(*), max(status), max(text) FROM ladder WHERE ladder = 'integration'" \
-        "1|failed|stepper 'rk8pd' came to what is no number"
+        "1|failed|integrator 'rk8pd' produced a value that is not a finite number"
     [ -s figures/accuracy-small.png ]
 }
 
@@ -200,7 +200,7 @@ scenario() {
     works mimdsim report
     stdout_says mimdsim.md
     [ -s mimdsim.html ]
-    for section in 'Error against run time' 'Stability' 'What was left out'; do grep -q "^## $section" mimdsim.md; done
+    for section in 'Error against run time' 'Stability' 'Omissions'; do grep -q "^## $section" mimdsim.md; done
     ! grep -q '^## The claims' mimdsim.md
     for figure in accuracy stability omissions; do
         [ -s "figures/$figure-small.png" ] && [ "$(wc -l <figures/$figure-small.csv)" -gt 2 ]

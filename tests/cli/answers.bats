@@ -139,8 +139,8 @@ END
     stdout_says "fig9           Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies per processor"
     grep '^[a-z]' <<<"$output" | LC_ALL=C sort -C -k 1,1
     works mimdsim plot --json
-    json_is '$[2].name' fig5
-    json_is '$[2].needs' 'mimdsim paper fig5'
+    json_is '$[3].name' fig5
+    json_is '$[3].needs' 'mimdsim paper fig5'
 }
 
 @test "a long run tells how far it is, on a terminal alone, and ends as it does unseen" {

@@ -261,5 +261,5 @@ refused() {
 @test "more ranks than bodies are refused with the line" {
     scenario
     sed -i 's/^ranks: n/ranks: [10, 12]/' small.yaml
-    refused 78 "small.yaml:6: 10 processors for 5 bodies: each needs at least one"
+    refused 78 "small.yaml:6: 10 ranks for 5 bodies: each rank needs at least one body"
 }

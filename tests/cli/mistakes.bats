@@ -64,7 +64,7 @@ END
 64 # an argument is missing # query some.db
 64 # --format: 'svg' is none of picture, text, chrome, paje, csv # timeline fig8 --format svg
 64 # expected key=value # run speedup-t3e --set n
-64 # --compare wants two machines, not 1 # machines --compare t3e-300
+64 # --compare needs two machines, not 1 # machines --compare t3e-300
 64 # there is no level 'lnik'; did you mean 'link'? # netcheck x.json --level lnik
 END
 }
@@ -81,7 +81,7 @@ END
 65 # unknown key 'machine.title' here: it cannot be set # run speedup-t3e --set machine.title=x
 65 # model.n: '4.5': not a whole number # run speedup-t3e --set n=4.5
 65 # model.n: 'x': not a whole number # run speedup-t3e --set n=4,x
-65 # n: '4,,8' is not a list; several values are swept as n=2,4,8 # run speedup-t3e --set n=4,,8
+65 # n: '4,,8' is not a list; write a sweep as n=2,4,8 # run speedup-t3e --set n=4,,8
 65 # ranks: '0': out of range; expected 1 to # run speedup-t3e --set ranks=0
 65 # 'lnik': expected one of loggp, link # run speedup-t3e --set level=lnik
 65 # plain.txt is not a database of mimdsim # run speedup-t3e -o plain.txt
@@ -110,7 +110,7 @@ END
 73 # folder is a folder, not a database # run speedup-t3e -o folder
 73 # nowhere/x.db # run speedup-t3e -o nowhere/x.db
 73 # plain.txt is not a folder # plot some.db fig6 --dir plain.txt
-74 # some.db is only read here # query some.db 'DELETE FROM run'
+74 # some.db is opened for reading only # query some.db 'DELETE FROM run'
 78 # 500 ranks, but machine 't3e-300' has 128 processors # run speedup-t3e --set n=500
 END
 }

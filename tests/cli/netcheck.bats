@@ -37,7 +37,7 @@ END
 'topology' must be a text#{"topology": 3, "pattern": "shift", "distance": 1, "flits": 1}
 unknown topology 'mehs4x4'; did you mean 'mesh'?#{"topology": "mehs4x4", "pattern": "shift", "distance": 1, "flits": 1}
 has 1.1e+12 nodes#{"topology": "hcube40", "pattern": "shift", "distance": 1, "flits": 1}
-0 is no size#{"topology": "mesh0x4", "pattern": "shift", "distance": 1, "flits": 1}
+size 0; expected 1 or more#{"topology": "mesh0x4", "pattern": "shift", "distance": 1, "flits": 1}
 unknown pattern 'spiral' of a step; expected shift, trunc or xor#{"topology": "mesh4x4", "pattern": "spiral", "distance": 1, "flits": 1}
 message 0 goes from node 0 to node 16; the network has nodes 0 to 15#{"topology": "mesh4x4", "trace": {"src": [0], "dst": [16], "flits": [1]}}
 'flits' of message 0 is 1e+300#{"topology": "mesh4x4", "trace": {"src": [0], "dst": [1], "flits": [1e300]}}
@@ -74,13 +74,13 @@ END
     stderr_says "x.json:1: 'booksim' is missing"
     echo "[{$hand, \"expected_vct\": [31], \"order_free\": false, \"booksim\": {\"16\": [31]}}, {$hand}]" >x.json
     fails_with 65 mimdsim netcheck x.json --quiet
-    stderr_says "the case has no answers, though cases before it have some"
+    stderr_says "the case has no results, but earlier cases have some"
     echo "[{$hand}, {$hand, \"expected_vct\": [31], \"booksim\": {\"16\": [31]}}]" >x.json
     fails_with 65 mimdsim netcheck x.json --quiet
-    stderr_says "the case has reference answers, though cases before it have none"
+    stderr_says "the case has reference results, but earlier cases have none"
     sed '0,/"nlat"/s/"nlat": [0-9.]*,//' "$NET/latency_load.json" >x.json
     fails_with 65 mimdsim netcheck x.json --quiet
-    stderr_says "'nlat' is here, but is missing in cases before"
+    stderr_says "'nlat' is given here, but is missing in earlier cases"
 }
 
 @test "an answer that is not the stated one is a failure with its case, in text and in JSON" {
@@ -97,7 +97,7 @@ END
     works mimdsim netcheck wrong.json --quiet --within 4 --level flit
     fails_with 1 mimdsim netcheck wrong.json --quiet --within 3% --level flit
     fails_with 64 mimdsim netcheck wrong.json --within none
-    stderr_says "--within: 'none' is not a number of percent from 0 on"
+    stderr_says "--within: 'none' is not a percentage of 0 or more"
 }
 
 @test "a reference that contradicts itself fails whatever the levels say" {
@@ -141,7 +141,7 @@ END
     stdout_says "xor(63)"
     echo "[{\"topology\": \"mesh8x8\", \"routing_function\": \"romm\", \"pattern\": \"uniform\", \"packet_flits\": 4, $point}]" >x.json
     fails_with 65 mimdsim netcheck x.json --quiet
-    stderr_says "none of its 1 cases can be answered; mesh8x8 uniform S=4 vc=1 B=16 load 0.1000: routing 'romm' on 'mesh8x8' is not among ours"
+    stderr_says "none of its cases (1) can be run; mesh8x8 uniform S=4 vc=1 B=16 load 0.1000: routing 'romm' on 'mesh8x8' is not supported"
 }
 
 @test "ties that the reference breaks by chance are broken by chance; its random routes are not ours" {
@@ -150,7 +150,7 @@ END
     json_is '$.totals[3].cases' 5
     json_is '$.cases[6].counted' 1
     json_is '$.cases[6].levels.flit.ran' 0
-    json_is '$.cases[6].levels.flit.why' "routing 'valiant' on 'torus4x4x4' is not among ours"
+    json_is '$.cases[6].levels.flit.why' "routing 'valiant' on 'torus4x4x4' is not supported"
     sed 's/dim_order"/min"/; s/"pipeline"/"tie": 0, "pipeline"/' "$NET/torus_ties.json" >x.json # always up
     fails_with 1 mimdsim netcheck x.json --quiet --level flit
 }

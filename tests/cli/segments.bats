@@ -37,7 +37,7 @@ EOF
     - {from: 100 B, send.overhead: 1 us}'
     works mimdsim check my.yaml
     stderr_says "a message of 99 B takes"
-    stderr_says "is the step meant?"
+    stderr_says "is this intended?"
     machine '    - {from: 0 B, send.overhead: 1 us}
     - {from: 100 B, send.overhead: 9 us}'
     works mimdsim check my.yaml

@@ -11,7 +11,7 @@ load helper
         stdout_says failed
         sql_is swept$jobs.db "SELECT group_concat(n || ' ' || status, ', ') FROM (SELECT * FROM run ORDER BY id)" '4 ok, 2048 failed, 8 ok'
         sql_is swept$jobs.db "SELECT text FROM run WHERE n = 2048" \
-            "--set: 2048 ranks, but machine 't3e-300' has 128 processors; fewer ranks, or raise machine.topology.dims"
+            "--set: 2048 ranks, but machine 't3e-300' has 128 processors; reduce ranks or enlarge machine.topology.dims"
         sql_is swept$jobs.db "SELECT count(*) FROM v_speedup WHERE P = 2048" 0
     done
     # what ran is not run again, what failed is tried again
@@ -46,7 +46,7 @@ worker_of() { pgrep -P "$1" | head -n 1; }
     done
     cat err
     [ "$status" -eq 1 ]
-    grep -q 'its worker process was ended by signal 9 (Killed)' err
+    grep -q 'its worker process was killed by signal 9 (Killed)' err
     grep -q 'mimdsim: 1 of 12 runs failed; each is stored with its reason, and tried again next time' err
     sql_is killed.db "SELECT count(*), sum(status = 'ok'), sum(status = 'failed' AND text LIKE '%signal 9%') FROM run" '12|11|1'
     works mimdsim run speedup-t3e --set machine.topology.dims='[32, 16, 16]' --set n=2048,4096,8192,2050,2052,2054 -j 2 -o killed.db --quiet

@@ -42,7 +42,7 @@ END
     stderr_says "number 1 of 'R' is 0.999999"
     changed 's/"format": /"urdf": "robot.urdf", "format": /'
     fails_with 65 mimdsim verify --serial x.json
-    stderr_says "the URDF file 'robot.urdf' is not there"
+    stderr_says "the URDF file 'robot.urdf' does not exist"
 }
 
 @test "a wrong answer ends with status 1, whatever the file says of roundings" {

@@ -318,7 +318,7 @@ static void wrong_machines_are_refused_with_line_and_reason(void **state)
         {SMALL "{value: 480 MB/s, class: P/}\n", "class 'P/'", 7, ERR_DATA},
         {SMALL "{value: 480 MB/s, min: 1}\n", "min '1': no unit", 7, ERR_DATA},
         {SMALL "{value: 480 MB/s, min: 1 GB/s}\n", "outside its own range", 7, ERR_DATA},
-        {SMALL "{value: 480 MB/s, max: [1]}\n", "'max' has to be one value", 7, ERR_DATA},
+        {SMALL "{value: 480 MB/s, max: [1]}\n", "'max' must be a single value", 7, ERR_DATA},
         {SMALL "{class: P}\n", "expected a value", 7, ERR_DATA},
         {SMALL "1 GB/s\n    bandwidht: 3\n", "unknown key 'bandwidht' in 'machine.network.link'", 8, ERR_DATA},
         {SMALL "1 GB/s\nnetwork.link.bandwidth: 1 GB/s\n", "duplicate key 'network.link.bandwidth'", 8, ERR_DATA},
@@ -356,7 +356,7 @@ static void machines_that_build_on_each_other_are_refused(void **state)
     const char *path = scratch_write(&scratch, "ring-b.yaml", "schema_version: 1\nbase: ring-a\n");
     err_clear(&e);
     assert_false(plan_machine(&m, path, NULL, arena, NULL, NULL, &e));
-    assert_non_null(strstr(e.text, "builds on itself"));
+    assert_non_null(strstr(e.text, "is based on itself"));
 }
 
 static void settings_of_a_machine_come_last(void **state)

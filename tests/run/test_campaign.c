@@ -176,7 +176,7 @@ static void a_worker_that_dies_costs_its_run_alone(void **unused)
             assert_int_equal(rows.n, p.nrun);
             assert_true(rows.failed >= 1 && rows.failed <= (dies == ALL ? workers : 1));
             assert_int_equal(rows.refusal, ERR_INTERNAL);
-            assert_non_null(strstr(rows.text, "its worker process was ended by signal 9"));
+            assert_non_null(strstr(rows.text, "its worker process was killed by signal 9"));
         }
     }
     plan_free(&p);
