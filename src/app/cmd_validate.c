@@ -42,7 +42,8 @@ static void print_row(const struct published *p, const struct outcome *o)
     printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text, published);
     if (o->measured) printf("%11.5g %-7s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
     else printf("%11s %-7s %9s", "-", p->unit, "");
-    printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict, *p->cause ? ": " : "", p->cause);
+    printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict, *p->cause ? ": " : "",
+           o->measured && *o->why ? o->why : p->cause);
 }
 
 /* Where ranks meet on the wires, what every level of the network makes of it. */

@@ -1,6 +1,7 @@
 /* published.c - machines/published.csv into records (published.h). */
 #include "app/published.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,11 +13,39 @@ enum { COLUMNS = 14, MOST_SETS = 8 };
 
 static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
 
+/* What a unit is a unit of. */
+enum dimension { TIME, SIZE, RATE, FLOPS };
 static const struct {
     const char *name;
     double scale;
-} units[] = {{"s", 1}, {"us", 1e-6}, {"ns", 1e-9}, {"B", 1}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"TB/s", 1e12},
-             {"Mflop/s", 1e6}, {"Gflop/s", 1e9}};
+    enum dimension of;
+} units[] = {{"s", 1, TIME},      {"us", 1e-6, TIME},   {"ns", 1e-9, TIME},       {"B", 1, SIZE},
+             {"MB/s", 1e6, RATE}, {"GB/s", 1e9, RATE},  {"TB/s", 1e12, RATE},     {"Mflop/s", 1e6, FLOPS},
+             {"Gflop/s", 1e9, FLOPS}};
+
+static enum dimension dimension_of(enum probe_quantity q)
+{
+    switch (q) {
+    case PROBE_N_HALF: return SIZE;
+    case PROBE_LINPACK:
+    case PROBE_INNER_PRODUCT: return FLOPS;
+    case PROBE_BANDWIDTH:
+    case PROBE_R_INF:
+    case PROBE_BISECTION:
+    case PROBE_GLOBAL:
+    case PROBE_EXCHANGE:
+    case PROBE_HALVES:
+    case PROBE_STREAM_COPY:
+    case PROBE_STREAM_SCALE:
+    case PROBE_STREAM_ADD:
+    case PROBE_STREAM_TRIAD:
+    case PROBE_MEMORY_COPY:
+    case PROBE_RING:
+    case PROBE_RANDOM_RING:
+    case PROBE_B_EFF: return RATE;
+    default: return TIME;
+    }
+}
 
 static char *copied(struct arena *a, const char *s, size_t n)
 {
@@ -56,10 +85,10 @@ static bool number(const char *s, double scale, double otherwise, double *value)
 {
     char *end;
     *value = *s ? strtod(s, &end) * scale : otherwise;
-    return !*s || *end == '\0';
+    return !*s || (*end == '\0' && isfinite(*value) && *value >= 0);
 }
 
-static void split_sets(struct published *p, const char *s, struct arena *a)
+static bool split_sets(struct published *p, const char *s, struct arena *a, struct err *e)
 {
     p->set = TAKE(a, MOST_SETS, const char *);
     while (*s && p->nset < MOST_SETS) {
@@ -71,6 +100,7 @@ static void split_sets(struct published *p, const char *s, struct arena *a)
         s += n;
         s += strspn(s, "; ");
     }
+    return !*s || err_set(e, ERR_DATA, "%s: more than %d settings", p->id, MOST_SETS);
 }
 
 static const char *const uses[] = {"yes", "no", "other"};
@@ -84,6 +114,57 @@ static bool read_use(struct published *p, const char *s, struct err *e)
         if (strcmp(s, uses[i]) == 0) return true;
     }
     return err_set(e, ERR_DATA, "calibrated: '%s'; expected yes, no or other", s);
+}
+
+static bool read_unit(struct published *p, struct err *e)
+{
+    const char *name[sizeof units / sizeof *units];
+    const int n = sizeof units / sizeof *units;
+    for (int i = 0; i < n; i++) {
+        name[i] = units[i].name;
+        if (strcmp(p->unit, name[i]) != 0) continue;
+        p->scale = units[i].scale;
+        return units[i].of == dimension_of(p->quantity) ||
+               err_set(e, ERR_DATA, "%s: '%s' is no unit of %s", p->id, p->unit, probe_name(p->quantity));
+    }
+    const char *near = text_nearest(p->unit, name, n);
+    return err_set(e, ERR_DATA, "unknown unit '%s'%s%s%s", p->unit, near ? "; did you mean '" : "", near ? near : "",
+                   near ? "'?" : "");
+}
+
+static bool read_quantity(struct published *p, const char *s, struct err *e)
+{
+    const char *name[PROBE_QUANTITIES];
+    for (int i = 0; i < PROBE_QUANTITIES; i++) name[i] = probe_name((enum probe_quantity)i);
+    p->quantity = probe_find(s);
+    if (p->quantity != PROBE_QUANTITIES) return true;
+    const char *near = text_nearest(s, name, PROBE_QUANTITIES);
+    return err_set(e, ERR_DATA, "no quantity is called '%s'%s%s%s", s, near ? "; did you mean '" : "", near ? near : "",
+                   near ? "'?" : "");
+}
+
+/* What every row has: a name, a known class of evidence, a source, a value that lies in its own range. */
+static bool check_row(const struct published *p, struct err *e)
+{
+    static const char *const class[] = {"P", "PR", "D", "E"};
+    bool known = false;
+    for (int i = 0; i < 4; i++) known = known || strcmp(p->evidence, class[i]) == 0;
+    if (!*p->id || !*p->machine) return err_set(e, ERR_DATA, "a row without id or machine");
+    if (!known) return err_set(e, ERR_DATA, "%s: class '%s'; expected P, PR, D or E", p->id, p->evidence);
+    if (!*p->source) return err_set(e, ERR_DATA, "%s: no source is given", p->id);
+    if (p->value <= 0) return err_set(e, ERR_DATA, "%s: the value is not above 0", p->id);
+    return (p->low <= p->value && p->value <= p->high) ||
+           err_set(e, ERR_DATA, "%s: the value %g is not within its range, %g to %g", p->id, p->value / p->scale,
+                   p->low / p->scale, p->high / p->scale);
+}
+
+/* "+40 %: reason": the error that the reason explains. */
+static void read_missed(struct published *p)
+{
+    char *end;
+    const double percent = strtod(p->cause, &end);
+    const bool named = (*p->cause == '+' || *p->cause == '-') && strncmp(end, " %: ", 4) == 0 && percent > -100;
+    p->missed = named && isfinite(percent) ? percent / 100 : NAN;
 }
 
 /* A point that cannot be tested says why. */
@@ -115,11 +196,7 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
                             .evidence = cell[8],
                             .source = cell[12],
                             .cause = cell[13]};
-    p->quantity = probe_find(cell[2]);
-    if (p->quantity == PROBE_QUANTITIES) return err_set(e, ERR_DATA, "no quantity is called '%s'", cell[2]);
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strcmp(cell[7], units[i].name) == 0) p->scale = units[i].scale;
-    if (p->scale == 0) return err_set(e, ERR_DATA, "unknown unit '%s'", cell[7]);
+    if (!read_quantity(p, cell[2], e) || !read_unit(p, e)) return false;
     if (!read_use(p, cell[9], e)) return false;
     if (!take_ranks(p, e)) return false;
     char at[32];
@@ -127,9 +204,16 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
     if (!*cell[4] || !number(at, 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
         !number(cell[5], p->scale, p->value, &p->low) || !number(cell[6], p->scale, p->value, &p->high) ||
         !number(cell[10], p->scale, 0, &p->add))
-        return err_set(e, ERR_DATA, "%s: not a number", cell[0]);
-    split_sets(p, cell[11], a);
-    return check_cause(p, e);
+        return err_set(e, ERR_DATA, "%s: not a number, or below 0", cell[0]);
+    read_missed(p);
+    return split_sets(p, cell[11], a, e) && check_row(p, e) && check_cause(p, e);
+}
+
+static bool is_new(const struct published *row, int n, struct err *e)
+{
+    for (int i = 0; i < n; i++)
+        if (strcmp(row[i].id, row[n].id) == 0) return err_set(e, ERR_DATA, "%s: a second row of this id", row[n].id);
+    return true;
 }
 
 static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n, struct err *e)
@@ -145,7 +229,7 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
         line++;
         bool ok = line == 1 ? strcmp(s, header) == 0 || err_set(e, ERR_DATA, "the header is not '%s'", header)
                             : split_row(s, cell) || err_set(e, ERR_DATA, "expected %d cells, or one less", COLUMNS);
-        if (ok && line > 1) ok = record(&row[(*n)++], cell, a, e);
+        if (ok && line > 1) ok = record(&row[*n], cell, a, e) && is_new(row, *n, e) && ++*n;
         if (ok) continue;
         text_copy(e->file, sizeof e->file, path);
         e->line = line;

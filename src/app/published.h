@@ -12,7 +12,7 @@
 enum published_use {
     USE_CALIBRATED, /* "yes": a number of the file was derived from it */
     USE_HELD,       /* "no": nothing was; it says how well the model predicts */
-    USE_OTHER       /* "other": measured on other software or another machine; shown, judged by nobody */
+    USE_OTHER       /* "other": measured on other software or another machine; its error is shown */
 };
 
 /* One figure. Texts lie in the arena. */
@@ -33,6 +33,7 @@ struct published {
     const char **set; /* (nset) "machine.key=value": the machine that was measured, where it is not the file's */
     const char *source;
     const char *cause; /* why the simulator misses it, or cannot be held against it; "": nothing is known */
+    double missed; /* relative error that the cause explains, which it begins with ("+40 %: ..."); NaN: it names none */
 };
 
 /* published_use_name: "yes", "no", "other". */

@@ -20,12 +20,26 @@ static double tolerance_of(const struct published *p)
     return recalled ? 0.2 : 0.1;
 }
 
-static void judge(const struct published *p, struct outcome *o)
+/* Whether the error is the one that the row's cause explains. A cause without one explains nothing that was measured.
+ */
+static bool cause_fits(const struct published *p, struct outcome *o)
+{
+    char error[32];
+    if (isfinite(p->missed) && fabs((1 + o->error) / (1 + p->missed) - 1) <= o->tolerance) return true;
+    snprintf(error, sizeof error, "%+.3g %%", 100 * p->missed);
+    snprintf(o->why, sizeof o->why, "the cause explains %s, not %+.3g %%", isfinite(p->missed) ? error : "no error",
+             100 * o->error);
+    return false;
+}
+
+void validation_judge(const struct published *p, struct outcome *o)
 {
     o->tolerance = tolerance_of(p);
     o->error = (o->value - p->value) / p->value;
     bool inside = p->low < p->high && o->value >= p->low && o->value <= p->high;
-    if (!o->measured || p->use == USE_OTHER) o->verdict = "not-testable";
+    if (!o->measured) o->verdict = "not-testable";
+    else if (*p->cause && !cause_fits(p, o)) o->verdict = "fail";
+    else if (p->use == USE_OTHER) o->verdict = "not-testable";
     else if (inside || fabs(o->error) <= o->tolerance) o->verdict = "pass";
     else o->verdict = *p->cause ? "explained" : "fail";
 }
@@ -70,7 +84,7 @@ bool validation_measure(const struct published *p, struct outcome *o, struct are
     o->measured = probe_measure(&m, p->quantity, p->at, p->ranks, &o->value, &why);
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
-    judge(p, o);
+    validation_judge(p, o);
     if (o->measured && probe_contends(p->quantity, p->at, p->ranks)) measure_levels(p, &m, o);
     return true;
 }

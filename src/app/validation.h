@@ -22,7 +22,7 @@ void validation_levels_json(const double level[LEVELS], double scale, struct jso
 struct outcome {
     bool measured;
     double value;            /* SI; NAN: not measured */
-    char why[256];           /* not measured: why the machine has no such quantity */
+    char why[256]; /* why the machine has no such quantity, or why the row's cause does not explain the error */
     double error, tolerance; /* relative */
     const char *verdict;     /* pass, fail, explained, not-testable */
     bool contended;          /* several ranks share the wires: */
@@ -34,10 +34,14 @@ struct outcome {
  * A figure used for calibration, and every rate of wires, has its tolerance: 5 % wires, reads and cuts, 10 % what was
  * published or derived, 20 % what was recalled or estimated. A figure that was held back may be off by
  * VALIDATION_UNEXPLAINED. Inside its published range every figure passes. What misses is `explained` where the row
- * names a cause, else `fail`; what the machine lacks, or what was measured on another, is `not-testable`.
+ * names a cause that begins with this error ("+40 %: ...", within the tolerance), else `fail`; what the machine lacks,
+ * or what was measured on another, is `not-testable`.
  *
  * Returns false with the error of plan_machine when the machine cannot be read or set up. */
 bool validation_measure(const struct published *p, struct outcome *o, struct arena *a, struct err *e);
+
+/* validation_judge: error, tolerance and verdict of an outcome whose value was measured, or was not. */
+void validation_judge(const struct published *p, struct outcome *o);
 
 /* One group of testable points. */
 struct validation_group {

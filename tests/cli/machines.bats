@@ -78,12 +78,12 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     MIMDSIM_DATA=$PWD/data fails_with 1 mimdsim validate t3e-300 --quiet
     stdout_says "1 fail, 0 explained"
     stdout_says "1 above 30 %, 1 of them without a cause"
-    sed -i '/^X1/s/$/,"a planted error"/' data/machines/published.csv
+    sed -i '/^X1/s/$/,"+40 %: a planted error"/' data/machines/published.csv
     MIMDSIM_DATA=$PWD/data works mimdsim validate t3e-300 --quiet
-    stdout_says "explained: a planted error"
+    stdout_says "explained: +40 %: a planted error"
     stdout_says "0 fail, 1 explained"
     stdout_says "1 above 30 %, 0 of them without a cause"
-    sql_is mimdsim.db "SELECT verdict, cause FROM check_point WHERE at LIKE '%X1'" 'explained|a planted error'
+    sql_is mimdsim.db "SELECT verdict, cause FROM check_point WHERE at LIKE '%X1'" 'explained|+40 %: a planted error'
     MIMDSIM_DATA=$PWD/data works mimdsim validate t3e-300 --json --quiet
     json_is '$.summary.held.points' 2
     json_is '$.summary.held.above_30_percent' 1
@@ -111,12 +111,26 @@ NET=$MIMDSIM_SRCDIR/tests/data/net
     json_is '$.contention[1].levels.packet' ''
 }
 
+@test "a cause excuses the error that it names, no other one" {
+    mkdir -p data/machines
+    cp "$MIMDSIM_DATA"/machines/t3e-300.yaml data/machines/
+    for row in '40|11.4|, 1 explained' '40|1.14|the cause explains +40 %, not +1.3e+03 %' '0|11.4|no error, not +40.4 %'; do
+        IFS='|' read -r named value text <<<"$row"
+        cause="+$named %: planted"
+        [ "$named" != 0 ] || cause=planted
+        { head -1 "$MIMDSIM_DATA/machines/published.csv"
+          echo "X1,t3e-300,one-way,0,$value,,,us,P,no,,,\"held back\",\"$cause\""; } >data/machines/published.csv
+        MIMDSIM_DATA=$PWD/data run --separate-stderr mimdsim validate t3e-300 --quiet
+        stdout_says "$text"
+    done
+}
+
 @test "a wrong table of published figures is refused with its line" {
     mkdir -p data/machines
     { head -1 "$MIMDSIM_DATA/machines/published.csv"
       echo 'X1,t3e-300,one-wya,0,12,,,us,P,yes,,,"x"'; } >data/machines/published.csv
     MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
-    stderr_says "published.csv:2: no quantity is called 'one-wya'"
+    stderr_says "published.csv:2: no quantity is called 'one-wya'; did you mean 'one-way'?"
     { head -1 "$MIMDSIM_DATA/machines/published.csv"
       echo 'X1,t3e-300,allreduce,8@many,12,,,us,P,yes,,,"x"'; } >data/machines/published.csv
     MIMDSIM_DATA=$PWD/data fails_with 65 mimdsim validate all
