@@ -7,7 +7,9 @@
 
 static const char doc[] =
     "Run one SQL query on the database DB and print its rows.\n\n"
-    "Example: mimdsim query mimdsim.db 'SELECT n, P, baseline, speedup FROM v_speedup'\n\v"
+    "Example: mimdsim query mimdsim.db 'SELECT n, P, baseline, speedup FROM v_speedup'\n"
+    "         mimdsim query --schema\n\v"
+    "--schema: instead, print every table, view and column of the database with its type and meaning, as Markdown.\n\n"
     "--upgrade: make DB, which an older version of the program made, a database of this version first. The old one is "
     "kept beside it. SQL may then be left out. Verbs that only read an older database read a temporary upgraded copy; "
     "verbs that write to one upgrade it as --upgrade does.";
@@ -34,9 +36,16 @@ int cmd_query(int argc, char **argv)
 {
     struct common c;
     const bool upgrades = take_flag(&argc, argv, "--upgrade");
-    common_parse(&c, argc, argv, 0, upgrades ? "DB [SQL]" : "DB SQL\n--upgrade DB [SQL]", doc, upgrades ? 1 : 2, 2);
+    const bool schema = take_flag(&argc, argv, "--schema");
+    common_parse(&c, argc, argv, 0, upgrades ? "DB [SQL]" : "DB SQL\n--upgrade DB [SQL]\n--schema", doc,
+                 schema     ? 0
+                 : upgrades ? 1
+                            : 2,
+                 schema ? 0 : 2);
     struct err e;
     err_clear(&e);
+    if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE, "--schema stands alone: it writes Markdown");
+    if (schema) return e.kind == ERR_NONE && store_document(stdout, &e) ? 0 : common_fail(&c, &e);
     bool ok = !upgrades || upgrade(&c, &e);
     struct store *s = ok && c.narg == 2 ? arguments_database(&c, "", &e) : NULL;
     if (ok && c.narg == 2) ok = s && report_query(s, c.arg[1], 0, NULL, c.json, stdout, &e);

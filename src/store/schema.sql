@@ -1,27 +1,28 @@
 -- The database of mimdsim. Simulated times are integer picoseconds, sizes bytes; every column name ends in its unit.
 -- Tables are for programs, views (v_...) for people and figures. Non-finite numbers are NULL.
 
+-- Limits, and what studies note of themselves.
 CREATE TABLE meta (
-    key   TEXT PRIMARY KEY,
-    value TEXT
+    key   TEXT PRIMARY KEY,            -- rank_rows_limit, link_rows_limit, span_rows_limit, notes of studies
+    value TEXT                         -- as text
 ) STRICT, WITHOUT ROWID;
 
 -- The programs that wrote rows here.
 CREATE TABLE build (
-    id       INTEGER PRIMARY KEY,
-    version  TEXT NOT NULL,
-    git      TEXT NOT NULL,
-    compiler TEXT NOT NULL,
-    flags    TEXT NOT NULL,
+    id       INTEGER PRIMARY KEY,      -- number of the row
+    version  TEXT NOT NULL,            -- of mimdsim
+    git      TEXT NOT NULL,            -- commit of its sources, or a hash of them
+    compiler TEXT NOT NULL,            -- with its version
+    flags    TEXT NOT NULL,            -- of the compiler
     UNIQUE (version, git, compiler, flags)
 ) STRICT;
 
 -- One row per run. Its identity, by which a campaign resumes, is (config_hash, seed, rep).
 CREATE TABLE run (
-    id               INTEGER PRIMARY KEY,
+    id               INTEGER PRIMARY KEY,  -- number of the row
 @run@
-    build_id         INTEGER NOT NULL REFERENCES build (id),
-    created_utc      TEXT NOT NULL,
+    build_id         INTEGER NOT NULL REFERENCES build (id),  -- the program that made it
+    created_utc      TEXT NOT NULL,    -- when, UTC
     UNIQUE (config_hash, seed, rep)
 ) STRICT;
 CREATE INDEX run_by_point ON run (machine, kernel, n, P);
@@ -29,53 +30,54 @@ CREATE INDEX run_by_point ON run (machine, kernel, n, P);
 -- Runs from a database of an older version that this program cannot describe any more: they keep their config_hash of
 -- then, so no run of today is taken for one of them.
 CREATE TABLE run_older (
-    run_id  INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,
+    run_id  INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE, -- the run
     version INTEGER NOT NULL,          -- of the database that it came from
-    reason  TEXT NOT NULL
+    reason  TEXT NOT NULL              -- what of it is not known any more
 ) STRICT;
 
 -- Every setting of every run; values are shared, so a sweep over anything can be pivoted.
 CREATE TABLE setting (
-    id    INTEGER PRIMARY KEY,
-    key   TEXT NOT NULL,
-    value TEXT NOT NULL,
+    id    INTEGER PRIMARY KEY,         -- number of the row
+    key   TEXT NOT NULL,               -- full name of the setting
+    value TEXT NOT NULL,               -- as text, with its unit
     UNIQUE (key, value)
 ) STRICT;
+-- Which run has which settings.
 CREATE TABLE run_setting (
-    run_id     INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    setting_id INTEGER NOT NULL REFERENCES setting (id),
+    run_id     INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    setting_id INTEGER NOT NULL REFERENCES setting (id),  -- one of its settings
     PRIMARY KEY (run_id, setting_id)
 ) STRICT, WITHOUT ROWID;
 
 -- Where the time of each stage went, over all ranks of the run. total = compute + send + recv + wait + contention.
 CREATE TABLE stage (
-    run_id            INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    stage             INTEGER NOT NULL,
+    run_id            INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    stage             INTEGER NOT NULL,  -- number of the stage, from 0
 @stage@
     PRIMARY KEY (run_id, stage)
 ) STRICT, WITHOUT ROWID;
 
 -- The same per rank, for runs of at most meta.rank_rows_limit ranks. A rank that did nothing in a stage has no row.
 CREATE TABLE rank_stage (
-    run_id        INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    rank          INTEGER NOT NULL,
-    stage         INTEGER NOT NULL,
+    run_id        INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    rank          INTEGER NOT NULL,    -- number of the rank, from 0
+    stage         INTEGER NOT NULL,    -- number of the stage, from 0
 @rank_stage@
     PRIMARY KEY (run_id, rank, stage)
 ) STRICT, WITHOUT ROWID;
 
 -- Serial codes that the speedup is measured against: predicted time on one processor of the same machine.
 CREATE TABLE baseline (
-    run_id       INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    ordinal      INTEGER NOT NULL,
+    run_id       INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    ordinal      INTEGER NOT NULL,     -- order of the serial codes
 @baseline@
     PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
 -- Numbers of a run checked against independent references.
 CREATE TABLE error_check (
-    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    ordinal        INTEGER NOT NULL,
+    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    ordinal        INTEGER NOT NULL,   -- order of the checks
 @error_check@
     CHECK (passed IN (0, 1)),
     PRIMARY KEY (run_id, ordinal)
@@ -83,46 +85,47 @@ CREATE TABLE error_check (
 
 -- Recorded loads of links; of very many only the meta.link_rows_limit busiest.
 CREATE TABLE link_load (
-    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    link        INTEGER NOT NULL,
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    link        INTEGER NOT NULL,      -- number of the link
 @link_load@
     PRIMARY KEY (run_id, link)
 ) STRICT, WITHOUT ROWID;
 
 -- The timeline of a small run, whole or not at all (meta.span_rows_limit); longer ones are files, in table trace.
 CREATE TABLE span (
-    run_id   INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    span     INTEGER NOT NULL,
+    run_id   INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    span     INTEGER NOT NULL,         -- order of the spans
 @span@
     PRIMARY KEY (run_id, span)
 ) STRICT, WITHOUT ROWID;
 
+-- Timelines that were written as files.
 CREATE TABLE trace (
-    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
-    path           TEXT NOT NULL,
-    format         TEXT NOT NULL,
-    sha256         TEXT NOT NULL,
-    size_bytes     INTEGER NOT NULL,
-    spans          INTEGER NOT NULL,
-    spans_left_out INTEGER NOT NULL,
+    run_id         INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    path           TEXT NOT NULL,      -- of the file
+    format         TEXT NOT NULL,      -- text, chrome, paje or csv
+    sha256         TEXT NOT NULL,      -- of the file
+    size_bytes     INTEGER NOT NULL,   -- of the file
+    spans          INTEGER NOT NULL,   -- in the file
+    spans_left_out INTEGER NOT NULL,   -- that would have made it too large
     PRIMARY KEY (run_id, path)
 ) STRICT, WITHOUT ROWID;
 
 -- Comparison of a result with a value known from elsewhere: closed forms, stored cases, published figures.
 CREATE TABLE check_point (
-    id             INTEGER PRIMARY KEY,
-    suite          TEXT NOT NULL,
-    subject        TEXT NOT NULL,
-    quantity       TEXT NOT NULL,
+    id             INTEGER PRIMARY KEY,  -- number of the row
+    suite          TEXT NOT NULL,      -- machines, or what else was compared
+    subject        TEXT NOT NULL,      -- a machine, or what else was asked
+    quantity       TEXT NOT NULL,      -- what was compared
     at             TEXT NOT NULL,      -- where: "P=128", "4096 B"
-    unit           TEXT NOT NULL,
-    reference      REAL,
-    value          REAL,
-    relative_error REAL,
-    tolerance      REAL,
+    unit           TEXT NOT NULL,      -- of reference and value
+    reference      REAL,               -- what is known
+    value          REAL,               -- what the simulator finds; NULL: not measured
+    relative_error REAL,               -- of the value
+    tolerance      REAL,               -- largest error that passes
     class          TEXT NOT NULL,      -- evidence: exact, P, PR, D, E, blind
-    verdict        TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'explained', 'not-testable')),
-    source         TEXT NOT NULL,
+    verdict        TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'explained', 'not-testable')),  -- of the comparison
+    source         TEXT NOT NULL,      -- where the reference comes from
     cause          TEXT NOT NULL DEFAULT '', -- of an error that is explained, of a point that cannot be tested
     UNIQUE (suite, subject, quantity, at)
 ) STRICT;
@@ -130,115 +133,124 @@ CREATE TABLE check_point (
 -- The claims of the paper. One row per claim and variant (serial baseline, operators, machine); variant '' is the
 -- claim's own verdict. `share` is the fraction of samples of the uncertain parameters in which it holds.
 CREATE TABLE claim (
-    id         TEXT NOT NULL,
-    variant    TEXT NOT NULL,
-    statement  TEXT NOT NULL,
+    id         TEXT NOT NULL,          -- of the claim
+    variant    TEXT NOT NULL,          -- serial baseline, operators and machine; '': the claim's own verdict
+    statement  TEXT NOT NULL,          -- what the paper says
     test       TEXT NOT NULL,          -- formula over this database
-    unit       TEXT NOT NULL,
-    value      REAL,
-    threshold  REAL,
+    unit       TEXT NOT NULL,          -- of value and threshold
+    value      REAL,                   -- that the test finds
+    threshold  REAL,                   -- from which the claim holds
     value_low  REAL,                   -- range over the samples
-    value_high REAL,
-    samples    INTEGER NOT NULL DEFAULT 0,
-    share      REAL,
-    verdict    TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),
+    value_high REAL,                   -- range over the samples
+    samples    INTEGER NOT NULL DEFAULT 0,  -- that were drawn of the uncertain parameters
+    share      REAL,                   -- of the samples in which it holds
+    verdict    TEXT NOT NULL CHECK (verdict IN ('pass', 'fail', 'not-testable')),  -- of the test
     judged     TEXT NOT NULL DEFAULT '', -- of variant '': which row is judged, with which tolerance, and why
     testable   INTEGER,                -- of variant '': how many variants can be judged, and in how many it holds
-    holding    INTEGER,
-    note       TEXT NOT NULL DEFAULT '',
+    holding    INTEGER,                -- in how many of these variants it holds
+    note       TEXT NOT NULL DEFAULT '',  -- what was found, in words
     PRIMARY KEY (id, variant)
 ) STRICT, WITHOUT ROWID;
+-- What a claim says of each sample.
 CREATE TABLE claim_sample (
-    id      TEXT NOT NULL,
-    variant TEXT NOT NULL,
-    sample  INTEGER NOT NULL,
-    value   REAL,
-    holds   INTEGER CHECK (holds IN (0, 1)),
+    id      TEXT NOT NULL,             -- of the claim
+    variant TEXT NOT NULL,             -- as in table claim
+    sample  INTEGER NOT NULL,          -- number of the sample
+    value   REAL,                      -- that the test finds
+    holds   INTEGER CHECK (holds IN (0, 1)),  -- 1: the claim holds
     PRIMARY KEY (id, variant, sample)
 ) STRICT, WITHOUT ROWID;
 -- The machine parameters that were drawn for a sample, in SI units.
 CREATE TABLE sample_setting (
-    sample INTEGER NOT NULL,
-    key    TEXT NOT NULL,
-    value  REAL,
+    sample INTEGER NOT NULL,           -- number of the sample
+    key    TEXT NOT NULL,              -- full name of the parameter
+    value  REAL,                       -- that was drawn
     PRIMARY KEY (sample, key)
 ) STRICT, WITHOUT ROWID;
 
 -- Error against run time: one row per rung of a ladder (network, arithmetic, integration), failed ones too.
 CREATE TABLE ladder (
-    scenario       TEXT NOT NULL,
-    ladder         TEXT NOT NULL,
+    scenario       TEXT NOT NULL,      -- that was climbed
+    ladder         TEXT NOT NULL,      -- network, arithmetic or integration
     at             TEXT NOT NULL,      -- point of the scenario: "n=P=128"
     family         TEXT NOT NULL,      -- SHA-256 of the settings without sizes, level and seeds: what it holds for
     method         TEXT NOT NULL,      -- a curve
     rung           TEXT NOT NULL,      -- a point on it: level, step size, tolerance
-    ordinal        INTEGER NOT NULL,
-    quantity       TEXT NOT NULL,
-    reference      TEXT NOT NULL,
+    ordinal        INTEGER NOT NULL,   -- order of the rungs
+    quantity       TEXT NOT NULL,      -- what was compared
+    reference      TEXT NOT NULL,      -- with what
     relative_error REAL,               -- NULL: failed, or not finite
-    host_s         REAL,
+    host_s         REAL,               -- time on this computer
     machine_ps     INTEGER,            -- predicted time on the machine
-    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),
-    text           TEXT NOT NULL DEFAULT '',
+    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),  -- whether the error is small, tolerable, or there is none
+    text           TEXT NOT NULL DEFAULT '',  -- why it failed; processors used
     PRIMARY KEY (scenario, ladder, family, at, method, rung, quantity)
 ) STRICT, WITHOUT ROWID;
+-- The cheapest rung of each ladder within a tolerance.
 CREATE TABLE ladder_choice (
-    scenario       TEXT NOT NULL,
-    ladder         TEXT NOT NULL,
-    at             TEXT NOT NULL,
-    quantity       TEXT NOT NULL,
-    tolerance      REAL NOT NULL,
+    scenario       TEXT NOT NULL,      -- that was climbed
+    ladder         TEXT NOT NULL,      -- network, arithmetic or integration
+    at             TEXT NOT NULL,      -- point of the scenario
+    quantity       TEXT NOT NULL,      -- what was compared
+    tolerance      REAL NOT NULL,      -- largest error asked for
     method         TEXT,               -- NULL: no rung is within the tolerance
-    rung           TEXT,
-    relative_error REAL,
+    rung           TEXT,               -- the cheapest within the tolerance
+    relative_error REAL,               -- of that rung
     cost_ratio     REAL,               -- of the finest rung's cost to this one's
     PRIMARY KEY (scenario, ladder, at, quantity, tolerance)
 ) STRICT, WITHOUT ROWID;
 
 -- Stiff and extreme cases against algorithms.
 CREATE TABLE stability (
-    suite          TEXT NOT NULL,
+    suite          TEXT NOT NULL,      -- 'suite', or the scenario
     subject        TEXT NOT NULL,      -- the case
-    algorithm      TEXT NOT NULL,
-    precision      TEXT NOT NULL,
-    ordinal        INTEGER NOT NULL,
-    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),
-    relative_error REAL,
-    residual       REAL,
-    condition      REAL,
-    growth         REAL,
-    refinements    INTEGER,
-    energy_drift   REAL,
+    algorithm      TEXT NOT NULL,      -- that was asked
+    precision      TEXT NOT NULL,      -- of its numbers
+    ordinal        INTEGER NOT NULL,   -- order of the rows
+    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),  -- in double precision ok to 1e-8, degraded to 1e-2; in single 1e-3 and 1e-1
+    relative_error REAL,               -- NULL: no number
+    residual       REAL,               -- of the equation of motion over the largest joint force; with loops of the constraints
+    condition      REAL,               -- of the case: change of the answer over that of the inputs
+    growth         REAL,               -- of the reduction: largest diagonal element over its last pivot
+    refinements    INTEGER,            -- corrections that were applied
+    energy_drift   REAL,               -- of motions, relative; of accelerations: power of the error
     step_s         REAL,               -- largest stable step, of integrators
-    reason         TEXT NOT NULL,
+    reason         TEXT NOT NULL,      -- why it is not ok, and what helps
     PRIMARY KEY (suite, subject, algorithm, precision)
 ) STRICT, WITHOUT ROWID;
 
 -- What was not computed because the scene of the run does not need it.
 CREATE TABLE run_omission (
-    run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,
+    run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
 @run_omission@
     PRIMARY KEY (run_id, what)
 ) STRICT, WITHOUT ROWID;
 
 -- The omissions of a scenario, and what they save.
 CREATE TABLE omission (
-    scenario         TEXT NOT NULL,
-    what             TEXT NOT NULL,
-    ordinal          INTEGER NOT NULL,
-    why              TEXT NOT NULL,
-    class            TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),
+    scenario         TEXT NOT NULL,    -- that was measured
+    what             TEXT NOT NULL,    -- was not computed
+    ordinal          INTEGER NOT NULL,  -- order of the omissions
+    why              TEXT NOT NULL,    -- why no result needs it
+    class            TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),  -- exact: the results are the same numbers; bounded: to within `bound`
     bound            REAL,             -- relative, of bounded ones
     at               TEXT NOT NULL,    -- point of the scenario that was measured: "n=P=128"
     host_s           REAL,             -- of the run without it; NULL here and below: nothing brings it back
-    host_saved_s     REAL,
+    host_saved_s     REAL,             -- what leaving it out saves
     host_noise_s     REAL,             -- savings below it cannot be told from nothing
-    machine_ps       INTEGER,
-    machine_saved_ps INTEGER,
+    machine_ps       INTEGER,          -- predicted time of the run without it
+    machine_saved_ps INTEGER,          -- what leaving it out saves of that
     PRIMARY KEY (scenario, what)
 ) STRICT, WITHOUT ROWID;
 
 -- Speedup against each serial baseline; degree of parallelism f by Amdahl, 1/S = (1 - f) + f/P.
+--   run_id: the run
+--   baseline_ordinal: order of the serial codes
+--   baseline: the serial code
+--   baseline_ps: its predicted time on one processor
+--   speedup: time of the serial code over that of the run
+--   efficiency: speedup over P
+--   parallel_fraction: f by Amdahl, NULL on one processor
 CREATE VIEW v_speedup AS
 SELECT r.id AS run_id, r.scenario, r.machine, r.topology, r.level, r.kernel, r.formulation, r.solver, r.part_solver,
        r.operators, r.precision, r.base, r.n, r.P, r.compute_noise_cv, r.background_load, r.seed, r.rep,
@@ -251,6 +263,13 @@ FROM run r JOIN baseline b ON b.run_id = r.id
 WHERE r.status = 'ok';
 
 -- Time per stage: largest over the ranks, and the means, which add up to the makespan over all stages.
+--   run_id: the run
+--   total_mean_ps: all parts, mean over the ranks
+--   compute_mean_ps: computing, mean over the ranks
+--   send_mean_ps: send overhead, mean over the ranks
+--   recv_mean_ps: receive overhead, mean over the ranks
+--   wait_mean_ps: waiting, mean over the ranks
+--   contention_mean_ps: further waiting for links, ports and servers, mean over the ranks
 CREATE VIEW v_stage AS
 SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, r.solver, r.operators, r.n, r.P,
        s.stage, s.name, s.total_max_ps,
@@ -265,6 +284,9 @@ FROM run r JOIN stage s ON s.run_id = r.id
 WHERE r.status = 'ok';
 
 -- The ten links of each run that were busy longest; a port of a node has no router at one end.
+--   run_id: the run
+--   place: 1 is the link that was busy longest
+--   busy_share: time in use over the makespan
 CREATE VIEW v_link_top AS
 SELECT run_id, scenario, machine, topology, level, kernel, n, P, place, link, from_router, to_router, node, messages,
        sent_bytes, busy_ps, busy_share, queue_ps
@@ -276,6 +298,10 @@ FROM (SELECT r.id AS run_id, r.scenario, r.machine, r.topology, r.level, r.kerne
 WHERE place <= 10;
 
 -- Proof that nothing is lost: over all ranks and stages the parts add up to P times the makespan, to the picosecond.
+--   run_id: the run
+--   expected_ps: P times the makespan
+--   found_ps: sum of all parts over ranks and stages
+--   difference_ps: found less expected; 0 is exact
 CREATE VIEW v_accounting AS
 SELECT r.id AS run_id, r.scenario, r.n, r.P, r.makespan_ps, r.P * r.makespan_ps AS expected_ps,
        sum(s.compute_sum_ps + s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps) AS found_ps,
@@ -286,12 +312,21 @@ FROM run r JOIN stage s ON s.run_id = r.id
 WHERE r.status IN ('ok', 'invalid')
 GROUP BY r.id;
 
+-- Checks of all runs, with what was run.
+--   run_id: the run
 CREATE VIEW v_errors AS
 SELECT r.id AS run_id, r.scenario, r.machine, r.kernel, r.formulation, r.solver, r.precision, r.n, r.P, r.status,
        e.quantity, e.reference, e.relative_error, e.tolerance, e.passed
 FROM run r JOIN error_check e ON e.run_id = r.id;
 
 -- The paper's indicators: run time over communication and synchronisation (R/C), and spread of the load.
+--   run_id: the run
+--   rc_ratio: time of all ranks over their communication and waiting
+--   compute_share: of the time of all ranks
+--   overhead_share: sending and receiving, of the time of all ranks
+--   wait_share: of the time of all ranks
+--   contention_share: of the time of all ranks
+--   load_spread: computing of the most less that of the least loaded rank, over the mean
 CREATE VIEW v_indicator AS
 SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, r.operators, r.n, r.P, r.makespan_ps,
        1.0 * r.P * r.makespan_ps
@@ -307,6 +342,13 @@ GROUP BY r.id;
 
 -- Repetitions of one configuration (noise, background traffic): mean, spread, and the half-width of the 95 % confidence
 -- interval of the mean by Student's t.
+--   run_id: the first of the runs
+--   repetitions: how many
+--   mean_ps: of their makespans
+--   min_ps: least makespan
+--   max_ps: largest makespan
+--   deviation_ps: standard deviation of the makespan
+--   confidence95_ps: half the width of the confidence interval of the mean
 CREATE VIEW v_repetition AS
 WITH spread AS (
     SELECT min(id) AS run_id, config_hash, scenario, machine, level, kernel, formulation, n, P, count(*) AS repetitions,
@@ -324,6 +366,8 @@ FROM spread;
 -- Whose machine a run was made on: 'as shipped'; 'changed', by --set, by its scenario or by a file of one's own with the
 -- same name; 'own', no machine of that name is shipped; 'older', the shipped file was another one when the database's
 -- latest run on that machine was made. Only runs on machines as shipped enter a claim, unless its file names a change.
+--   run_id: the run
+--   state: 'as shipped', 'changed', 'own' or 'older'
 CREATE VIEW v_machine_state AS
 WITH newest AS (
     SELECT machine, machine_hash FROM run WHERE id IN (SELECT max(id) FROM run WHERE machine_changes IS NOT NULL GROUP BY machine))
@@ -334,6 +378,7 @@ SELECT r.id AS run_id, r.machine, r.machine_changes,
 FROM run r LEFT JOIN newest w ON w.machine = r.machine;
 
 -- The runs that figures show: those on a machine as shipped; where a machine and kernel has none of these, all it has.
+--   run_id: a run that figures show
 CREATE VIEW v_shown AS
 WITH state AS (
     SELECT s.run_id, r.machine, r.kernel, s.state = 'as shipped' AS shipped
@@ -341,10 +386,13 @@ WITH state AS (
 most AS (SELECT machine, kernel, max(shipped) AS shipped FROM state GROUP BY machine, kernel)
 SELECT a.run_id FROM state a JOIN most b ON b.machine = a.machine AND b.kernel = a.kernel AND b.shipped = a.shipped;
 
+-- The settings of every run.
+--   run_id: the run
 CREATE VIEW v_setting AS
 SELECT rs.run_id, s.key, s.value FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
 
 -- The settings that differ between the runs of a scenario: what it sweeps.
+--   run_id: the run
 CREATE VIEW v_itervar AS
 WITH varied AS (
     SELECT r.scenario, s.key
@@ -354,12 +402,14 @@ SELECT rs.run_id, r.scenario, s.key, s.value
 FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
      JOIN varied v ON v.scenario = r.scenario AND v.key = s.key;
 
+-- The claims and their variants, as people read them.
 CREATE VIEW v_claims AS
 SELECT id, variant, statement, verdict, value, unit, threshold, value_low, value_high, share, samples, testable, holding,
        judged, note
 FROM claim;
 
 -- Who made a row, with what.
+--   run_id: the run
 CREATE VIEW v_provenance AS
 SELECT r.id AS run_id, r.scenario, r.config_hash, r.seed, r.rep, r.digest, r.status, r.created_utc, b.version, b.git,
        b.compiler, b.flags, r.host_s, r.host_total_s, r.host_peak_bytes, r.left_out
@@ -369,10 +419,10 @@ FROM run r JOIN build b ON b.id = r.build_id;
 -- were made by earlier programs; whoever opens one for writing adds them.
 -- One row a point of the space of unstated parameters.
 CREATE TABLE IF NOT EXISTS explain_point (
-    id        INTEGER PRIMARY KEY,
+    id        INTEGER PRIMARY KEY,     -- number of the row
     subject   TEXT NOT NULL,           -- claim, or 'together'
     key       TEXT NOT NULL,           -- fingerprint of operators and settings
-    operators TEXT NOT NULL,
+    operators TEXT NOT NULL,           -- how the matrices of a body are built and counted
     settings  TEXT NOT NULL,           -- what differs from the machine's file, as for --set; '' is the file itself
     distance  REAL NOT NULL,           -- sum of |ln(value / nominal)|
     published INTEGER NOT NULL,        -- 1: every change is within a published range
@@ -381,46 +431,51 @@ CREATE TABLE IF NOT EXISTS explain_point (
 ) STRICT;
 -- Every variant of the claim at that point, by the claim's own query.
 CREATE TABLE IF NOT EXISTS explain_judged (
-    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,
-    claim    TEXT NOT NULL,
-    variant  TEXT NOT NULL,
-    value    REAL,
+    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,  -- the point
+    claim    TEXT NOT NULL,            -- its id
+    variant  TEXT NOT NULL,            -- as in table claim
+    value    REAL,                     -- that the test finds
     margin   REAL,                     -- from holding (< 0) or from failing (> 0)
-    holds    INTEGER CHECK (holds IN (0, 1)),
+    holds    INTEGER CHECK (holds IN (0, 1)),  -- 1: the claim holds there
     PRIMARY KEY (point_id, claim, variant)
 ) STRICT, WITHOUT ROWID;
 -- The plane of the two parameters that matter most to a claim, the others as in its answer.
 CREATE TABLE IF NOT EXISTS explain_map (
-    subject  TEXT NOT NULL,
-    i        INTEGER NOT NULL,
-    j        INTEGER NOT NULL,
-    x_key    TEXT NOT NULL,
-    y_key    TEXT NOT NULL,
-    x_label  TEXT NOT NULL,
-    y_label  TEXT NOT NULL,
+    subject  TEXT NOT NULL,            -- the claim
+    i        INTEGER NOT NULL,         -- column of the map
+    j        INTEGER NOT NULL,         -- row of the map
+    x_key    TEXT NOT NULL,            -- parameter from left to right
+    y_key    TEXT NOT NULL,            -- parameter from bottom to top
+    x_label  TEXT NOT NULL,            -- the same for people
+    y_label  TEXT NOT NULL,            -- the same for people
     x        REAL NOT NULL,            -- value over nominal; of shares the share; so are all that follow
-    y        REAL NOT NULL,
-    x_low    REAL, x_high REAL,        -- published range, NULL: none
-    y_low    REAL, y_high REAL,
-    x_nominal REAL NOT NULL, y_nominal REAL NOT NULL,
-    x_answer REAL NOT NULL, y_answer REAL NOT NULL,
-    variant  TEXT NOT NULL,
-    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,
+    y        REAL NOT NULL,            -- likewise
+    x_low    REAL,        -- published range, NULL: none
+    x_high REAL,                       -- likewise
+    y_low    REAL,                     -- likewise
+    y_high REAL,                       -- likewise
+    x_nominal REAL NOT NULL,           -- the machine file's value
+    y_nominal REAL NOT NULL,           -- the machine file's value
+    x_answer REAL NOT NULL,            -- where the claim holds, or is nearest to it
+    y_answer REAL NOT NULL,            -- likewise
+    variant  TEXT NOT NULL,            -- as in table claim
+    point_id INTEGER NOT NULL REFERENCES explain_point (id) ON DELETE CASCADE,  -- the point that was judged
     PRIMARY KEY (subject, i, j)
 ) STRICT, WITHOUT ROWID;
+-- The smallest change under which a claim holds, as a sentence.
 CREATE TABLE IF NOT EXISTS explain_answer (
-    subject   TEXT NOT NULL,
+    subject   TEXT NOT NULL,           -- claim, or 'together'
     goal      TEXT NOT NULL,           -- 'own': the claim's own variant; 'any': any operators and serial baseline
-    verdict   TEXT NOT NULL CHECK (verdict IN ('holds', 'not found', 'never')),
-    variant   TEXT NOT NULL,
-    operators TEXT NOT NULL,
+    verdict   TEXT NOT NULL CHECK (verdict IN ('holds', 'not found', 'never')),  -- whether a change was found under which it holds
+    variant   TEXT NOT NULL,           -- that holds there
+    operators TEXT NOT NULL,           -- of that point
     settings  TEXT NOT NULL,           -- of the smallest change that was found, or of the point nearest to holding
     distance  REAL,                    -- each other choice counted as a factor of 2
-    value     REAL,
-    margin    REAL,
+    value     REAL,                    -- that the test finds there
+    margin    REAL,                    -- from holding (< 0) or from failing (> 0)
     points    INTEGER NOT NULL,        -- that were tried for the subject
     confirmed INTEGER,                 -- 1: the study's own runs at that point say so, too; NULL: nothing to confirm
     study     INTEGER,                 -- how many they are
-    sentence  TEXT NOT NULL,
+    sentence  TEXT NOT NULL,           -- the answer in words
     PRIMARY KEY (subject, goal)
 ) STRICT, WITHOUT ROWID;

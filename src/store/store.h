@@ -1,12 +1,14 @@
 /* store.h - the only room that knows SQLite: one row set per run, one transaction each, one writer.
  *
  * A run is identified by (config_hash, seed, rep); storing it again replaces it. Units are in the column names. The
- * schema is src/store/schema.sql; views (v_speedup, v_stage, ...) are for people and for plots/ *.sql. */
+ * schema is src/store/schema.sql with the columns of rows.h; views (v_speedup, v_stage, ...) are for people and for
+ * plots/ *.sql. docs/database.md describes all of it. */
 #ifndef STORE_STORE_H
 #define STORE_STORE_H
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/err.h"
 #include "base/text.h"
@@ -98,6 +100,10 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
 typedef bool store_value_fn(void *context, int ncolumn, const char *const *name, const struct store_value *value);
 bool store_query(struct store *s, const char *sql, int nparam, const char *const *param, store_value_fn *header,
                  store_value_fn *row, void *context, struct err *e);
+
+/* store_document: the manual of the database in Markdown: every table, view and column with its type in a line.
+ * Returns false as store_open. */
+bool store_document(FILE *out, struct err *e);
 
 /* store_path: the file name it was opened with. */
 const char *store_path(const struct store *s);

@@ -1,4 +1,4 @@
-# database.bats - the tables of the database: none of their columns is lost.
+# database.bats - the tables of the database: none of their columns is lost, and each is documented.
 load helper
 
 small_database() {
@@ -20,6 +20,16 @@ columns_of() {
         comm -23 - <(printf '%s\n' "$output" | sed 's/ *$//' | sort))
     [ -z "$missing" ] || { echo "not there: $missing"; return 1; }
     [ "$(wc -l <"$MIMDSIM_SRCDIR/tests/data/schema/version-5.txt")" -gt 400 ]
+}
+
+@test "docs/database.md is what query --schema writes, and says something of every column" {
+    works mimdsim query --schema
+    stderr_is_empty
+    diff -u "$MIMDSIM_SRCDIR/docs/database.md" <(printf '%s\n' "$output")
+    [ "$(grep -c '^| `' <<<"$output")" -gt 400 ]
+    ! grep '| - |$' <<<"$output"
+    fails_with 64 mimdsim query --schema mimdsim.db
+    fails_with 64 mimdsim query --schema --json
 }
 
 @test "all rows of a run are there: stages, ranks, baselines, checks, links, spans" {
