@@ -160,19 +160,19 @@ bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau,
 {
     dynamics_place(d, q);
     dynamics_velocities(d, u);
-    work_count_aba(d, w);
+    work_count_place(d, w);
+    work_count_velocities(d, w);
+    work_count_aba(d, true, w);
     return sweep(d, true, tau, ud);
 }
 
 bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w)
 {
-    work_count_aba(d, w);
+    work_count_aba(d, false, w);
     return sweep(d, false, tau, ud);
 }
 
 bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
-    if (!d->revolute) return aba_full(d, q, u, tau, ud, w);
-    work_count_aba(d, w);
-    return aba_revolute(d, q, u, tau, ud);
+    return d->revolute ? aba_revolute(d, q, u, tau, ud, w) : aba_full(d, q, u, tau, ud, w);
 }

@@ -21,6 +21,8 @@ struct motion {
     real v[3];
 };
 
+/* r = E Rz. */
+enum { TURN_FLOP = 18 };
 static inline void turn(real *restrict r, const real *restrict e, real s, real c)
 {
     for (int i = 0; i < 9; i += 3) {
@@ -30,7 +32,11 @@ static inline void turn(real *restrict r, const real *restrict e, real s, real c
     }
 }
 
-/* Velocity, bias acceleration, rigid inertia about the origin and velocity force of one body. */
+/* Velocity, bias acceleration and velocity force of one body. */
+enum {
+    START_FLOP = MAT3_VEC_FLOP + 2 + 1 + 2 * VEC3_CROSS_FLOP + MAT3_VEC_FLOP + 2 * VEC3_CROSS_FLOP + VEC3_SCALE_FLOP +
+                 SYM3_VEC_FLOP + VEC3_CROSS_FLOP + VEC3_CROSS_ADD_FLOP
+};
 static inline void start(const struct revolute *b, real u, const real *wp, real *w, struct link *l)
 {
     real t[3], g[3];
@@ -50,6 +56,7 @@ static inline void start(const struct revolute *b, real u, const real *wp, real 
 }
 
 /* The rigid body's inertia. */
+enum { RIGID_FLOP = 3 + 6 + 3 + 6 };
 static inline void rigid(const struct revolute *b, struct link *l)
 {
     const real *s = b->s, *S = b->second;
@@ -65,6 +72,7 @@ static inline void rigid(const struct revolute *b, struct link *l)
 
 /* Eliminate the joint: I - I H D^-1 H^T I in place (rows x, y only), p + I^a b + I H D^-1 e in n (x, y), f. At rest b
  * is zero. */
+enum { ELIMINATE_AT_REST_FLOP = 1 + 5 + 1 + 6 + 12 + 12 + 10, ELIMINATE_FLOP = ELIMINATE_AT_REST_FLOP + 5 * 10 };
 static inline bool eliminate(struct link *l, bool at_rest, real tau)
 {
     real *a = l->a, *b = l->b, *c = l->c, d = a[5];
@@ -94,6 +102,7 @@ static inline bool eliminate(struct link *l, bool at_rest, real tau)
 }
 
 /* Rotated blocks of the eliminated inertia, in parent axes: ra = r A r^T, rb = r B r^T, rc = r C r^T. */
+enum { ROTATE_FLOP = 18 + 18 + 27 + MAT3_MUL_FLOP + SYM3_ROTATE_FLOP };
 static inline void rotate(const struct link *l, real *restrict ra, real *restrict rb, real *restrict rc)
 {
     const real *r = l->r, *a = l->a, *b = l->b, *c = l->c;
@@ -112,6 +121,10 @@ static inline void rotate(const struct link *l, real *restrict ra, real *restric
 }
 
 /* Parent's inertia and force += those of the eliminated child, moved by (r, t). */
+enum {
+    HAND_DOWN_FLOP = ROTATE_FLOP + 36 + 3 * 7 + 3 * 9 + 9 + 6 + 2 * MAT3_VEC_FLOP + 2 * VEC3_ADD_FLOP +
+                     VEC3_CROSS_ADD_FLOP
+};
 static inline void hand_down(const struct revolute *body, const struct link *l, struct link *parent)
 {
     real ra[6], b[9], c[6], d[9], f[3], n[3];
@@ -144,6 +157,10 @@ static inline void hand_down(const struct revolute *body, const struct link *l, 
 }
 
 /* u' of one body and its acceleration from its parent's. */
+enum {
+    ACCELERATE_AT_REST_FLOP = VEC3_CROSS_ADD_FLOP + 2 * MAT3_VEC_FLOP + 10 + 1,
+    ACCELERATE_FLOP = ACCELERATE_AT_REST_FLOP + VEC3_ADD_FLOP + 2
+};
 static inline real accelerate(const struct revolute *body, const struct link *l, bool at_rest, const struct motion *p,
                               struct motion *m)
 {
@@ -196,7 +213,11 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     return true;
 }
 
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud)
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
+    const int body = TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
+    const int moving = d->at_rest ? ELIMINATE_AT_REST_FLOP + ACCELERATE_AT_REST_FLOP
+                                  : START_FLOP + ELIMINATE_FLOP + ACCELERATE_FLOP;
+    revolute_count(d, (struct revolute_cost){.body = body + moving, .child = HAND_DOWN_FLOP, .div = 1}, w);
     return d->at_rest ? sweep(d, true, q, u, tau, ud) : sweep(d, false, q, u, tau, ud);
 }

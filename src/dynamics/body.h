@@ -49,6 +49,7 @@ struct joint_cost {
     int h, h_transposed;              /* subspace_h, subspace_h_transposed */
     int w, w_transposed;              /* subspace_w, subspace_w_transposed */
     int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
+    struct work qdot, step;           /* body_qdot, body_step */
 };
 
 /* bodies_make: the constants of m's bodies (nbody): in double the model's own, made by model_finish; otherwise made in
@@ -83,7 +84,7 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
                real *bias);
 
 /* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3). BODY_GYRO_FLOP. */
-enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 48 };
+enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 42 };
 static inline void body_gyro(const struct body *b, const real *w, real *f)
 {
     /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs no digits. */
@@ -96,7 +97,7 @@ static inline void body_gyro(const struct body *b, const real *w, real *f)
     vec3_cross_add(f, b->s, f + 3);
 }
 
-/* body_force: f = I a (6) for the classical acceleration a; BODY_FORCE_FLOP counts this and adding f to P. */
+/* body_force: f = I a (6) for the classical acceleration a; BODY_FORCE_FLOP. */
 static inline void body_force(const struct body *b, const real *a, real *f)
 {
     real t[3];
@@ -116,8 +117,9 @@ static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, 
 void body_inertia_factors(const struct body *b, real *shift, real *about);
 
 /* body_load: the external wrench on body i in internal axes and order, from the user's [force; moment] in `fext`
- * (6); zero when fext is NULL. */
+ * (6); zero when fext is NULL. body_load_flops: what it executes with one. */
 void body_load(const struct body *b, const double *fext, real *f);
+static inline int body_load_flops(const struct body *b) { return b->turned ? BODY_LOAD_FLOP : 0; }
 
 /* body_spring: tau (d) += forces of the joint's spring and damper; nothing without has_spring. */
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);

@@ -28,6 +28,10 @@ struct cfa_run {
     struct work work;
 };
 
+/* What a body's velocity and load do, where there are such terms at all. */
+static bool has_velocities(const struct cfa_run *r) { return r->full && !r->d->at_rest; }
+static bool has_gyro(const struct cfa_run *r) { return r->full && (!r->d->at_rest || r->d->load); }
+
 /* y = accelerations of all bodies under r->f and r->lambda. */
 static void accelerations(struct cfa_run *r)
 {
@@ -35,27 +39,29 @@ static void accelerations(struct cfa_run *r)
     struct arena_mark mark = arena_mark(d->arena);
     real *net = TAKE(d->arena, size_product(6, d->nbody), real), t[6];
     for (int i = 0; i < d->nbody; i++) {
-        screw_add(net + 6 * i, r->f + 6 * i);
-        if (r->full) screw_sub(net + 6 * i, r->gyro + 6 * i);
+        screw_copy(net + 6 * i, r->f + 6 * i);
+        if (has_gyro(r)) screw_sub(net + 6 * i, r->gyro + 6 * i);
         if (d->body[i].parent < 0) continue;
         xform_force(t, &d->pose[i].x, r->f + 6 * i);
         screw_sub(net + 6 * d->body[i].parent, t);
+        r->work.flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
     }
-    loops_force(&r->loops, r->lambda, net);
+    loops_force(&r->loops, r->lambda, net, &r->work);
     for (int i = 0; i < d->nbody; i++) body_accelerate(&d->body[i], net + 6 * i, r->y + 6 * i);
     arena_release(d->arena, mark);
-    r->work.flop += (uint64_t)d->nbody * (12 + XFORM_FORCE_FLOP + SYM6_MUL_FLOP);
+    r->work.flop += (uint64_t)d->nbody * (BODY_ACCELERATE_FLOP + (has_gyro(r) ? SCREW_ADD_FLOP : 0));
 }
 
 /* Z_i = Y_i - X^T Y_p - b_i. */
-static void relative(const struct cfa_run *r, int i, real *z)
+static void relative( struct cfa_run *r, int i, real *z)
 {
     static const real still[6] = {0};
     struct dynamics *d = r->d;
     int parent = d->body[i].parent;
     xform_motion(z, &d->pose[i].x, parent >= 0 ? r->y + 6 * parent : r->full ? d->base : still);
     for (int k = 0; k < 6; k++) z[k] = r->y[6 * i + k] - z[k];
-    if (r->full) screw_sub(z, d->bias + 6 * i);
+    if (has_velocities(r)) screw_sub(z, d->bias + 6 * i);
+    r->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP + (has_velocities(r) ? SCREW_ADD_FLOP : 0);
 }
 
 /* z = W^T Z of all joints. */
@@ -66,8 +72,8 @@ static void violations(struct cfa_run *r)
         real z[6];
         relative(r, i, z);
         subspace_w_transposed(&d->pose[i].s, z, r->z + 6 * i);
+        r->work.flop += (uint64_t)body_cost(&d->body[i])->w_transposed;
     }
-    r->work.flop += (uint64_t)d->nbody * (XFORM_MOTION_FLOP + 12);
 }
 
 /* f += constraint forces that remove z. */
@@ -80,7 +86,7 @@ static void answer_joints(struct cfa_run *r)
     cfa_solve(d, &r->system, r->z, x, &r->work);
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] += x[k];
     arena_release(d->arena, mark);
-    r->work.flop += (uint64_t)d->nbody * 12;
+    r->work.flop += (uint64_t)d->nbody * SCREW_ADD_FLOP;
 }
 
 /* Responses to unit loop forces and S = A_ll - A_tl^T A^-1 A_tl; f, lambda, full are used and restored. */
@@ -101,15 +107,17 @@ static void border(struct cfa_run *r)
             answer_joints(r);
         }
         accelerations(r);
-        loops_residual(&r->loops, r->y, NULL, true, column);
+        loops_residual(&r->loops, r->y, NULL, true, column, &r->work);
         for (int i = 0; i < m; i++) r->s[i * m + k] = column[i];
     }
     for (int i = 0; i < m; i++)
-        for (int k = 0; k < i; k++) r->s[i * m + k] = r->s[k * m + i] = (r->s[i * m + k] + r->s[k * m + i]) / 2;
+        for (int k = 0; k < i; k++)
+            r->s[i * m + k] = r->s[k * m + i] = (real)0.5 * (r->s[i * m + k] + r->s[k * m + i]);
+    r->work.flop += (uint64_t)(m * (m - 1));
     r->f = f;
     r->lambda = lambda;
     r->full = full;
-    loops_reference(d, &r->loops, r->reference);
+    loops_reference(d, &r->loops, r->reference, &r->work);
 }
 
 /* lambda and f += what removes the loops' residual; `residual` (nrow) is destroyed. */
@@ -127,7 +135,7 @@ static void answer_loops(struct cfa_run *r, real *residual)
         for (int j = 0; j < size; j++) r->f[j] += residual[k] * r->response[(size_t)k * (size_t)size + (size_t)j];
     }
     arena_release(d->arena, mark);
-    r->work.flop += (uint64_t)(2 * m) * (uint64_t)size;
+    r->work.flop += (uint64_t)m * (uint64_t)(1 + 2 * size);
 }
 
 /* One pass of the method. `wanted`: (nrow) homogeneous runs: the residual to reach; NULL: the loops' own. */
@@ -142,8 +150,9 @@ static void pass(struct cfa_run *r, const real *wanted)
     struct arena_mark mark = arena_mark(d->arena);
     real *residual = TAKE(d->arena, m, real);
     accelerations(r);
-    loops_residual(&r->loops, r->y, r->full ? d->base : NULL, !r->full, residual);
+    loops_residual(&r->loops, r->y, r->full ? d->base : NULL, !r->full, residual, &r->work);
     for (int k = 0; k < m && wanted; k++) residual[k] -= wanted[k];
+    if (wanted) r->work.flop += (uint64_t)m;
     answer_loops(r, residual);
     arena_release(d->arena, mark);
 }
@@ -161,6 +170,7 @@ static void solve(struct cfa_run *r, const real *tau, const real *wanted, int in
         real z[6];
         relative(r, i, z);
         subspace_h_transposed(&d->pose[i].s, z, ud + d->body[i].u_at);
+        r->work.flop += (uint64_t)(body_cost(&d->body[i])->h + body_cost(&d->body[i])->h_transposed);
     }
 }
 
@@ -174,12 +184,13 @@ static void correction(struct cfa_run *r, const real *q, const real *u, const re
     real *rest = TAKE(d->arena, d->nu, real), *given = d->load;
     real *lack = TAKE(d->arena, m, real), *load = TAKE(d->arena, size, real);
     for (int k = 0; k < size; k++) load[k] = given ? given[k] : 0;
-    loops_force(&r->loops, lambda, load);
+    loops_force(&r->loops, lambda, load, &r->work);
     d->load = load;
     rnea_full(d, q, u, ud, rest, &r->work);
     d->load = given;
     for (int k = 0; k < d->nu; k++) rest[k] = tau[k] - rest[k];
-    loops_residual(&r->loops, d->a, d->base, false, lack);
+    r->work.flop += (uint64_t)d->nu;
+    loops_residual(&r->loops, d->a, d->base, false, lack, &r->work);
     for (int k = 0; k < m; k++) lack[k] = -lack[k];
     r->full = false;
     solve(r, rest, lack, inner, more);
@@ -203,6 +214,7 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
         }
         for (int k = 0; k < d->nu; k++) ud[k] += more[k];
         for (int k = 0; k < r->loops.nrow; k++) lambda[k] += r->lambda[k];
+        r->work.flop += (uint64_t)(d->nu + r->loops.nrow);
         report->correction = before = size;
         report->outer_done = step + 1;
         if (size <= (double)REAL_EPSILON) break;
@@ -242,7 +254,7 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     }
     if (direct || m > 0) velocity_terms(r, u);
     if (!cfa_factor(d, &r->system, &r->work)) return false;
-    loops_take(d, &r->loops);
+    loops_take(d, &r->loops, &r->work);
     r->lambda = TAKE(d->arena, m, real);
     if (m == 0) return true;
     r->response = TAKE(d->arena, size_product(m, size_product(6, n)), real);
@@ -259,7 +271,8 @@ static void solve_paper(struct cfa_run *r, const real *tau, int inner, real *ud)
     struct arena_mark mark = arena_mark(d->arena);
     real *lack = TAKE(d->arena, r->loops.nrow, real);
     for (int k = 0; k < d->nu; k++) r->bias[k] = tau[k] - r->bias[k];
-    loops_residual(&r->loops, d->a, d->base, false, lack);
+    r->work.flop += (uint64_t)d->nu;
+    loops_residual(&r->loops, d->a, d->base, false, lack, &r->work);
     for (int k = 0; k < r->loops.nrow; k++) lack[k] = -lack[k];
     r->full = false;
     solve(r, r->bias, lack, inner, ud);
@@ -277,6 +290,7 @@ static double residual_of(struct cfa_run *r)
         for (int k = 0; k < 6; k++)
             scale = real_fabs(r->y[6 * i + k]) > scale ? real_fabs(r->y[6 * i + k]) : scale;
     }
+    r->work.div += scale > 0;
     return scale > 0 ? (double)(worst / scale) : 0;
 }
 
@@ -292,7 +306,7 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
             solve(&r, tau, NULL, options->inner, ud);
         else
             solve_paper(&r, tau, options->inner, ud);
-        own.residual = residual_of(&r);
+        if (report) own.residual = residual_of(&r);
         own.inner_done = options->inner;
         real *sum = TAKE(d->arena, r.loops.nrow, real);
         for (int k = 0; k < r.loops.nrow; k++) sum[k] = r.lambda[k];

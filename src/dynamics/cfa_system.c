@@ -47,7 +47,7 @@ static void phi_times(const struct sym6 *phi, const real *xw, bool angular, real
 }
 
 /* g (packed) = W^T Phi W. */
-static void project(const struct subspace *s, const struct sym6 *phi, real *g)
+static void project(const struct subspace *s, const struct sym6 *phi, real *g, struct work *w)
 {
     real full[36], t[36];
     sym6_expand(full, phi);
@@ -60,6 +60,7 @@ static void project(const struct subspace *s, const struct sym6 *phi, real *g)
         for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * (s->d + j));
     for (int i = 0; i < s->c; i++)
         for (int j = 0; j <= i; j++) g[packed_index(i, j)] = screw_dot(s->col + 6 * (s->d + i), t + 6 * j);
+    w->flop += (uint64_t)(SCREW_DOT_FLOP * (6 * s->c + packed_size(s->c)));
 }
 
 /* phi -= y^T D^-1 y for y (c x 6). */
@@ -120,7 +121,7 @@ static bool eliminate(struct dynamics *d, int i, struct cfa_system *s, struct wo
     int c = pose->s.c, parent = d->body[i].parent;
     real u[36];
     if (c == 0) return true;
-    if (child_count(d, i) > 1) project(&pose->s, &s->phi[i], row->g);
+    if (child_count(d, i) > 1) project(&pose->s, &s->phi[i], row->g, w);
     if (parent < 0) return dense_factor(c, row->g, row->g, w);
     w->flop += (uint64_t)couple(pose, phi_of(d, s, parent), u, row->g);
     if (!dense_factor(c, row->g, row->g, w)) return false;
@@ -152,7 +153,7 @@ bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
         if (child_count(d, i) > 1)
             s->phi[i] = d->body[i].phi;
         else
-            project(&d->pose[i].s, &d->body[i].phi, s->row[i].g);
+            project(&d->pose[i].s, &d->body[i].phi, s->row[i].g, w);
     }
     for (int i = d->nbody - 1; i >= 0; i--)
         if (!eliminate(d, i, s, w)) return false;
@@ -167,18 +168,23 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
     const struct cfa_row *row = &s->row[i];
     int c = pose->s.c, parent = d->body[i].parent;
     bool alone = parent >= 0 && child_count(d, parent) == 1, carried = parent >= 0 && !alone;
+    const bool gathers = child_count(d, i) > 1;
     real t[6] = {0}, z[6];
     if (carried) xform_motion(t, &pose->x, beta + 6 * parent);
-    if (child_count(d, i) > 1) screw_sub(t, beta + 6 * i);
-    subspace_w_transposed(&pose->s, t, z);
-    for (int k = 0; k < c; k++) r[6 * i + k] += z[k];
+    if (gathers) screw_sub(t, beta + 6 * i);
+    if (carried || gathers) {
+        subspace_w_transposed(&pose->s, t, z);
+        for (int k = 0; k < c; k++) r[6 * i + k] += z[k];
+        w->flop += (uint64_t)(joint_cost_of(d->body[i].joint)->w_transposed + c);
+    }
     dense_forward(c, 1, row->g, r + 6 * i, w);
     for (int k = 0; k < c && parent >= 0; k++) {
         real scaled = r[6 * i + k] * row->g[packed_index(k, k)];
         real *to = alone ? r + 6 * parent : beta + 6 * parent;
         for (int j = 0; j < row->width; j++) to[j] += (alone ? scaled : -scaled) * row->y[row->width * k + j];
     }
-    w->flop += (uint64_t)(c * (1 + 2 * row->width) + (carried ? XFORM_MOTION_FLOP + c : 0));
+    if (parent >= 0) w->flop += (uint64_t)(c * (1 + 2 * row->width));
+    w->flop += (uint64_t)((carried ? XFORM_MOTION_FLOP : 0) + (gathers ? SCREW_ADD_FLOP : 0));
 }
 
 /* Towards the leaves: x_i = L^-T D^-1 (r_i + y g), g the parent's x or the joint force on it not yet spoken for. */

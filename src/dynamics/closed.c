@@ -21,14 +21,15 @@ static bool delassus(struct dynamics *d, const struct loops *l, real *ud, real *
     bool good = true;
     for (int k = 0; k < m && good; k++) {
         real *before = with_loads(d, NULL, load);
-        loops_column(l, k, load);
+        loops_column(l, k, load, w);
         good = aba_response(d, d->zero, ud, w);
         d->load = before;
-        loops_residual(l, d->a, NULL, true, r);
+        loops_residual(l, d->a, NULL, true, r, w);
         for (int i = 0; i < m; i++) s[i * m + k] = r[i];
     }
     for (int i = 0; i < m; i++)
-        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (s[i * m + k] + s[k * m + i]) / 2;
+        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (real)0.5 * (s[i * m + k] + s[k * m + i]);
+    w->flop += (uint64_t)(m * (m - 1));
     arena_release(d->arena, mark);
     return good;
 }
@@ -40,11 +41,12 @@ static bool correct(struct dynamics *d, const struct loops *l, const real *s, co
     int m = l->nrow;
     real *copy = TAKE(d->arena, size_product(m, m), real), *r = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
-    loops_residual(l, d->a, d->base, false, r);
+    loops_residual(l, d->a, d->base, false, r, w);
     for (int k = 0; k < m * m; k++) copy[k] = s[k];
     for (int k = 0; k < m; k++) r[k] = -r[k];
     *rank = least_norm_solve(m, reference, copy, r, room, w);
     for (int k = 0; k < m; k++) lambda[k] += r[k];
+    w->flop += (uint64_t)m;
     return true;
 }
 
@@ -66,24 +68,25 @@ bool closed_forward(struct dynamics *d, const real *q, const real *u, const real
     bool good = aba_full(d, q, u, tau, ud, &own);
     int rank = 0, m = d->model->nrow;
     real *given = d->load;
-    loops_take(d, &l);
+    loops_take(d, &l, &own);
     real *s = TAKE(d->arena, size_product(m, m), real);
     real *reference = TAKE(d->arena, m, real), *x = TAKE(d->arena, m, real);
     real *load = TAKE(d->arena, size_product(6, d->nbody), real), *first = TAKE(d->arena, d->nu, real);
     real *a = TAKE(d->arena, size_product(6, d->nbody), real);
     for (int k = 0; k < 6 * d->nbody; k++) a[k] = d->a[k];
     good = good && delassus(d, &l, first, s, &own);
-    loops_reference(d, &l, reference);
+    loops_reference(d, &l, reference, &own);
     for (int k = 0; k < 6 * d->nbody; k++) d->a[k] = a[k];
     for (int pass = 0; pass < 2 && good; pass++) { /* the second removes what rounding left */
         correct(d, &l, s, reference, x, &rank, &own);
         with_loads(d, given, load);
-        loops_force(&l, x, load);
+        loops_force(&l, x, load, &own);
         good = aba_full(d, q, u, tau, ud, &own);
         d->load = given;
     }
     if (good && report) {
-        loops_residual(&l, d->a, d->base, false, reference);
+        loops_residual(&l, d->a, d->base, false, reference, &own);
+        own.div++; /* of worst_of */
         *report = (struct cfa_report){.residual = worst_of(d, &l, reference), .rank = rank, .nrow = m};
     }
     for (int k = 0; k < m && lambda; k++) lambda[k] = x[k];

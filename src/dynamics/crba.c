@@ -46,11 +46,11 @@ static void fill_rows(const struct dynamics *d, int i, const struct inertia *com
 
 void crba(struct dynamics *d, const real *q, real *mass, struct work *w)
 {
-    work_count_crba(d, w);
     if (d->revolute) {
-        crba_revolute(d, q, mass);
+        crba_revolute(d, q, mass, w);
         return;
     }
+    work_count_crba(d, w);
     struct arena_mark mark = arena_mark(d->arena);
     struct inertia *c = TAKE(d->arena, d->nbody, struct inertia);
     dynamics_place(d, q);

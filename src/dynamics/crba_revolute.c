@@ -27,6 +27,7 @@ static struct axes axes_in(struct dynamics *d)
 }
 
 /* Transforms, axes, and each body's own inertia. */
+enum { TURN_FLOP = 18, OUTWARD_FLOP = TURN_FLOP + VEC3_CROSS_FLOP, OUTWARD_ROOT_FLOP = 3 };
 static void outward(struct dynamics *d, const real *q, struct axes *a)
 {
     real *sine = d->scratch + 45 * (size_t)a->n, *cosine = sine + a->n;
@@ -54,6 +55,7 @@ static void outward(struct dynamics *d, const real *q, struct axes *a)
 }
 
 /* F = I^c z in common axes about the common origin. */
+enum { FORCE_FLOP = 2 * MAT3_VEC_FLOP + VEC3_CROSS_ADD_FLOP };
 static void force_of(const struct axes *a, int i, real *n, real *f)
 {
     const struct inertia *in = &a->composite[i];
@@ -64,6 +66,7 @@ static void force_of(const struct axes *a, int i, real *n, real *f)
 }
 
 /* Row i of a chain up to the diagonal, in packed registers. */
+enum { PAIR_FLOP = 11 };
 static void chain_row(const struct axes *a, int i, const real *n, const real *f, real *restrict row)
 {
     const real *x = a->s[0], *y = a->s[1], *z = a->s[2], *u = a->s[3], *v = a->s[4], *w = a->s[5];
@@ -95,8 +98,21 @@ static void mirror(int n, real *mass)
     }
 }
 
-void crba_revolute(struct dynamics *d, const real *q, real *mass)
+/* What crba_revolute executes. */
+static void count(const struct dynamics *d, struct work *w)
 {
+    const int child = XFORM_COMPOSE_FLOP + FORCE_FLOP + INERTIA_MOVE_FLOP + INERTIA_ADD_FLOP;
+    if (!w) return;
+    revolute_count(d, (struct revolute_cost){.body = OUTWARD_FLOP, .child = child}, w);
+    for (int i = 0; i < d->nbody; i++) {
+        if (d->revolute[i].parent < 0) w->flop += OUTWARD_ROOT_FLOP;
+        for (int j = d->revolute[i].parent; j >= 0; j = d->revolute[j].parent) w->flop += PAIR_FLOP;
+    }
+}
+
+void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w)
+{
+    count(d, w);
     struct axes a = axes_in(d);
     size_t n = (size_t)a.n;
     bool chain = d->model->is_chain;

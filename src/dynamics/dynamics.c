@@ -34,10 +34,7 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a)
 
 void dynamics_load(struct dynamics *d, const struct state *s)
 {
-    for (int i = 0; i < 6; i++) {
-        d->base[i] = (real)s->base_acceleration[i];
-        if (i >= 3) d->base[i] -= (real)d->model->gravity[i - 3];
-    }
+    base_motion(d->model, s, d->base);
     if (!s->fext) {
         d->load = NULL;
         return;

@@ -2,6 +2,7 @@
 #include "dynamics/dynamics.h"
 #include "dynamics/dynamics_table.h"
 #include "dynamics/integrate.h"
+#include "dynamics/work_count.h"
 
 /* A model's numbers in this precision. */
 struct problem {
@@ -16,10 +17,11 @@ static real *to_real(struct arena *a, const double *x, int n)
     return y;
 }
 
-static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a)
+static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a, struct work *w)
 {
     struct problem p = {.d = dynamics_take(m, a)};
     dynamics_load(p.d, s);
+    work_count_load(p.d, w);
     p.q = to_real(a, s->q, m->nq);
     p.u = to_real(a, s->qd, m->nu);
     p.ud = to_real(a, s->qdd, m->nu);
@@ -35,7 +37,7 @@ static void to_double(double *y, const real *x, int n)
 static void inverse(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, w);
     real *out = TAKE(scratch, m->nu, real);
     p.d->at_rest = s->at_rest;
     rnea(p.d, p.q, p.u, p.ud, out, w);
@@ -61,12 +63,13 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
                     double *qdd, double *lambda, struct forward_report *report, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, w);
     struct cfa_report full = {0};
     real *ud = TAKE(scratch, m->nu, real), *force = TAKE(scratch, m->nrow, real);
     springs_add(p.d, p.q, p.u, p.tau);
+    work_count_springs(p.d, w);
     p.d->at_rest = s->at_rest;
-    bool good = solve(&p, method, ud, force, &full, w);
+    bool good = solve(&p, method, ud, force, report ? &full : NULL, w);
     if (good) to_double(qdd, ud, m->nu);
     if (good && lambda) to_double(lambda, force, m->nrow);
     const int refined = full.inner_done + full.outer_done;
@@ -79,7 +82,7 @@ static void mass_matrix(const struct model *m, const struct state *s, struct are
                         struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, w);
     real *out = TAKE(scratch, size_product(m->nu, m->nu), real);
     crba(p.d, p.q, out, w);
     to_double(mass, out, m->nu * m->nu);
@@ -90,7 +93,7 @@ static void mass_matrix(const struct model *m, const struct state *s, struct are
 static void wrenches(const struct model *m, const struct state *s, struct arena *scratch, double *wrench)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, NULL);
     real *tau = TAKE(scratch, m->nu, real);
     rnea_full(p.d, p.q, p.u, p.ud, tau, NULL);
     for (int i = 0; i < m->nbody; i++)
@@ -105,7 +108,7 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
 static void kinematics(const struct model *m, const struct state *s, struct arena *scratch, double *pose)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, NULL);
     struct body_motion *x = TAKE(scratch, m->nbody, struct body_motion);
     forward_kinematics(p.d, p.q, p.u, p.ud, x);
     for (int i = 0; i < m->nbody; i++) {
@@ -123,7 +126,7 @@ static void kinematics(const struct model *m, const struct state *s, struct aren
 static void totals(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, NULL);
     struct motion_totals x;
     motion_totals_of(p.d, p.q, p.u, &x);
     t->kinetic = (double)x.kinetic;
@@ -139,7 +142,7 @@ static bool advance(const struct model *m, struct state *s, enum step_rule rule,
                     struct arena *scratch, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, w);
     struct integrator it = integrator_make(p.d, rule, (real)h, p.q, p.u, p.tau);
     bool good = true;
     for (int k = 0; k < steps && good; k++) good = integrator_step(&it);
@@ -154,7 +157,7 @@ static void drift(const struct model *m, const struct state *s, struct arena *sc
                   double *velocity)
 {
     struct arena_mark mark = arena_mark(scratch);
-    struct problem p = problem_take(m, s, scratch);
+    struct problem p = problem_take(m, s, scratch, NULL);
     real *g = TAKE(scratch, m->nrow, real), *rho = TAKE(scratch, m->nrow, real);
     loop_drift(p.d, p.q, p.u, g, rho);
     *position = *velocity = 0;

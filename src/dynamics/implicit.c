@@ -15,6 +15,7 @@ struct resisting {
 };
 
 /* inertia -= u y^T for a product that is symmetric once all columns are subtracted. */
+enum { LOWER_FLOP = 42 };
 static void lower(struct sym6 *inertia, const real *u, const real *y)
 {
     static const signed char row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -27,10 +28,10 @@ static void lower(struct sym6 *inertia, const real *u, const real *y)
 
 /* Eliminate the joint of b; ia, pa: what its parent gets, body axes. */
 static bool eliminate(const struct subspace *s, const real *bias, const real *tau, const real *resistance,
-                      struct resisting *b, struct sym6 *ia, real *pa)
+                      struct resisting *b, struct sym6 *ia, real *pa, struct work *w)
 {
     real h[36], u[36], g[21], t[6];
-    struct work uncounted = {0};
+    struct work small = {0}; /* its calls are part of the body's one */
     *ia = b->inertia;
     screw_copy(pa, b->p);
     for (int k = 0; k < s->d; k++) {
@@ -40,20 +41,24 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
         g[packed_index(k, k)] += resistance[k];
         b->x[k] = tau[k] - screw_dot(h + 6 * k, b->p);
         screw_copy(b->y + 6 * k, u + 6 * k);
+        w->flop += (uint64_t)(SYM6_MUL_FLOP + SCREW_DOT_FLOP * (k + 1) + 1 + SCREW_DOT_FLOP + 1);
     }
-    if (s->d > 0 && !dense_factor(s->d, g, g, &uncounted)) return false;
-    if (s->d > 0) dense_solve(s->d, 1, g, b->x, &uncounted);
-    if (s->d > 0) dense_solve(s->d, 6, g, b->y, &uncounted);
+    if (s->d > 0 && !dense_factor(s->d, g, g, &small)) return false;
+    if (s->d > 0) dense_solve(s->d, 1, g, b->x, &small);
+    if (s->d > 0) dense_solve(s->d, 6, g, b->y, &small);
     for (int k = 0; k < s->d; k++) {
         lower(ia, u + 6 * k, b->y + 6 * k);
         for (int i = 0; i < 6; i++) pa[i] += u[6 * k + i] * b->x[k];
+        w->flop += LOWER_FLOP + SCREW_AXPY_FLOP;
     }
     sym6_mul(t, ia, bias);
     screw_add(pa, t);
+    w->flop += small.flop + SYM6_MUL_FLOP + SCREW_ADD_FLOP;
+    w->div += small.div;
     return true;
 }
 
-static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud)
+static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud, struct work *w)
 {
     const struct subspace *s = &d->pose[i].s;
     const int parent = d->body[i].parent;
@@ -62,6 +67,7 @@ static void accelerate(struct dynamics *d, int i, const struct resisting *b, rea
     screw_add(a, d->bias + 6 * i);
     for (int k = 0; k < s->d; k++) ud[k] = b->x[k] - screw_dot(b->y + 6 * k, a);
     subspace_h(s, ud, a);
+    w->flop += (uint64_t)(XFORM_MOTION_FLOP + SCREW_ADD_FLOP + s->d * (SCREW_DOT_FLOP + 1) + body_cost(&d->body[i])->h);
 }
 
 bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
@@ -70,33 +76,42 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
     struct arena_mark mark = arena_mark(d->arena);
     struct resisting *b = TAKE(d->arena, d->nbody, struct resisting);
     real *given = TAKE(d->arena, d->nu, real), *resistance = TAKE(d->arena, d->nu + 6, real);
+    struct work own = {0};
     bool good = true;
     for (int k = 0; k < d->nu; k++) given[k] = tau[k];
     springs_add(d, q, u, given);
     dynamics_place(d, q);
     dynamics_velocities(d, u);
-    work_count_aba(d, w);
+    work_count_place(d, &own);
+    work_count_velocities(d, &own);
+    work_count_springs(d, &own);
     for (int i = 0; i < d->nbody; i++) {
         const struct body *body = &d->body[i];
         sym6_from_inertia(&b[i].inertia, &body->inertia);
         body_gyro(body, d->v + 6 * i, b[i].p);
         if (d->load) screw_sub(b[i].p, d->load + 6 * i);
+        own.call++;
+        own.flop += BODY_GYRO_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
         if (!body->has_spring) continue;
         given[body->u_at] -= h * body->stiffness * u[body->u_at];
         resistance[body->u_at] = h * (body->damping + h * body->stiffness);
+        own.flop += 3 + 3; /* less h k u; h (c + h k) */
     }
     for (int i = d->nbody - 1; i >= 0 && good; i--) {
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;
         real pa[6];
-        good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at, resistance + body->u_at, &b[i], &ia, pa);
+        good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at, resistance + body->u_at, &b[i], &ia, pa,
+                         &own);
         if (!good || body->parent < 0) continue;
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);
         xform_force(pa, &d->pose[i].x, pa);
         screw_add(b[body->parent].p, pa);
+        own.flop += SYM6_MOVE_FLOP + SYM6_ADD_FLOP + XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
     }
-    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, &b[i], ud + d->body[i].u_at);
+    for (int i = 0; i < d->nbody && good; i++) accelerate(d, i, &b[i], ud + d->body[i].u_at, &own);
     arena_release(d->arena, mark);
+    if (w) work_add(w, &own);
     return good;
 }

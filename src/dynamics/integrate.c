@@ -2,6 +2,7 @@
 #include "dynamics/integrate.h"
 
 #include "dynamics/loops.h"
+#include "dynamics/work_count.h"
 
 bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
@@ -9,6 +10,7 @@ bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const re
     real *sum = TAKE(d->arena, d->nu, real);
     for (int k = 0; k < d->nu; k++) sum[k] = tau[k];
     springs_add(d, q, u, sum);
+    work_count_springs(d, w);
     bool good = d->model->nloop > 0 ? closed_forward(d, q, u, sum, ud, NULL, NULL, w) : aba(d, q, u, sum, ud, w);
     arena_release(d->arena, mark);
     return good;
@@ -32,19 +34,21 @@ static void drift(struct integrator *it)
     for (int i = 0; i < it->d->nbody; i++) {
         const struct body *b = &it->d->body[i];
         body_step(b, it->q + b->q_at, it->u + b->u_at, it->h);
+        work_add(&it->work, &body_cost(b)->step);
     }
 }
 
 /* y = x + h k. */
-static void combine(int n, const real *x, real h, const real *k, real *y)
+static void combine(struct integrator *it, int n, const real *x, real h, const real *k, real *y)
 {
     for (int i = 0; i < n; i++) y[i] = x[i] + h * k[i];
+    it->work.flop += 2 * (uint64_t)n;
 }
 
 static bool step_semi_implicit(struct integrator *it)
 {
     if (!accelerate(it, it->q, it->u, it->a)) return false;
-    combine(it->d->nu, it->u, it->h, it->a, it->u);
+    combine(it, it->d->nu, it->u, it->h, it->a, it->u);
     drift(it);
     return true;
 }
@@ -54,7 +58,7 @@ static bool step_linearly_implicit(struct integrator *it)
     it->evaluations++;
     if (it->d->model->nloop > 0 || !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
         return false;
-    combine(it->d->nu, it->u, it->h, it->a, it->u);
+    combine(it, it->d->nu, it->u, it->h, it->a, it->u);
     drift(it);
     return true;
 }
@@ -62,15 +66,16 @@ static bool step_linearly_implicit(struct integrator *it)
 static bool step_kdk(struct integrator *it)
 {
     int n = it->d->nu;
-    real half = it->h / 2;
+    const real half = (real)0.5 * it->h;
     if (!it->has_a && !accelerate(it, it->q, it->u, it->a)) return false;
     struct arena_mark mark = arena_mark(it->d->arena);
     real *predicted = TAKE(it->d->arena, n, real);
-    combine(n, it->u, half, it->a, it->u);
+    combine(it, n, it->u, half, it->a, it->u);
     drift(it);
-    combine(n, it->u, half, it->a, predicted);
+    combine(it, n, it->u, half, it->a, predicted);
+    it->work.flop++; /* half */
     bool good = accelerate(it, it->q, predicted, it->a);
-    combine(n, it->u, half, it->a, it->u);
+    combine(it, n, it->u, half, it->a, it->u);
     it->has_a = true;
     arena_release(it->d->arena, mark);
     return good;
@@ -82,6 +87,7 @@ static bool derive(struct integrator *it, const real *q, const real *u, real *qd
     for (int i = 0; i < it->d->nbody; i++) {
         const struct body *b = &it->d->body[i];
         body_qdot(b, q + b->q_at, u + b->u_at, qd + b->q_at);
+        work_add(&it->work, &body_cost(b)->qdot);
     }
     return accelerate(it, q, u, a);
 }
@@ -97,6 +103,7 @@ static void normalise(struct integrator *it)
         real *c = it->q + b->q_at + (b->joint == JOINT_FLOATING ? 3 : 0);
         real scale = 1 / real_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
         for (int k = 0; k < 4; k++) c[k] *= scale;
+        work_add(&it->work, &(struct work){.flop = 7 + 4, .div = 1, .sqrt = 1});
     }
 }
 
@@ -111,14 +118,18 @@ static bool step_rk4(struct integrator *it)
     static const real at[4] = {0, (real)0.5, (real)0.5, 1}, weight[4] = {1, 2, 2, 1};
     bool good = true;
     for (int s = 0; s < 4 && good; s++) {
-        combine(nq, it->q, at[s] * it->h, kq, q);
-        combine(nu, it->u, at[s] * it->h, ku, u);
+        const real h = at[s] * it->h;
+        combine(it, nq, it->q, h, kq, q);
+        combine(it, nu, it->u, h, ku, u);
+        it->work.flop++;
         good = derive(it, q, u, kq, ku);
-        combine(nq, sq, weight[s], kq, sq);
-        combine(nu, su, weight[s], ku, su);
+        combine(it, nq, sq, weight[s], kq, sq);
+        combine(it, nu, su, weight[s], ku, su);
     }
-    combine(nq, it->q, it->h / 6, sq, it->q);
-    combine(nu, it->u, it->h / 6, su, it->u);
+    const real sixth = it->h / 6;
+    combine(it, nq, it->q, sixth, sq, it->q);
+    combine(it, nu, it->u, sixth, su, it->u);
+    it->work.div++;
     normalise(it);
     arena_release(it->d->arena, mark);
     return good;

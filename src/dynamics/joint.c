@@ -102,8 +102,9 @@ static void helical_subspace(const struct body *b, struct subspace *s)
 {
     static const signed char others[4] = {0, 1, 3, 4};
     for (int k = 0; k < 36; k++) s->col[k] = 0;
-    s->col[2] = b->unit, s->col[5] = b->unit * b->pitch;
-    s->col[6 + 2] = -b->unit * b->pitch, s->col[6 + 5] = b->unit;
+    const real advance = b->unit * b->pitch;
+    s->col[2] = b->unit, s->col[5] = advance;
+    s->col[6 + 2] = -advance, s->col[6 + 5] = b->unit;
     for (int k = 0; k < 4; k++) s->col[6 * (2 + k) + others[k]] = 1;
 }
 
@@ -228,7 +229,8 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
     vec3_cross(t, w, p);
     vec3_cross(bias + 3, w, t);
     /* 2 w x v_J + w_J x v_J */
-    if (b->joint != JOINT_REVOLUTE && b->joint != JOINT_SPHERICAL && b->joint != JOINT_UNIVERSAL) {
+    if (b->joint != JOINT_FIXED && b->joint != JOINT_REVOLUTE && b->joint != JOINT_SPHERICAL &&
+        b->joint != JOINT_UNIVERSAL) {
         for (int i = 0; i < 3; i++) t[i] = w[i] + w[i] + h[i];
         vec3_cross_add(bias + 3, t, h + 3);
         add_kappa(b, pose, h, u, bias);
@@ -276,9 +278,10 @@ void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
 /* c <- c exp(h w / 2), normalised. */
 static void step_quaternion(real *c, const real *w, real h)
 {
-    real norm = vec3_norm(w), angle = (real)0.5 * h * norm, s, k;
-    angle_sincos(angle, &s, &k);
-    real f = norm > 0 ? s / norm : (real)0.5 * h;
+    const real norm = vec3_norm(w), half = (real)0.5 * h;
+    real s, k;
+    angle_sincos(half * norm, &s, &k);
+    real f = norm > 0 ? s / norm : half;
     real x = f * w[0], y = f * w[1], z = f * w[2];
     real n[4] = {c[0] * k + c[3] * x + c[1] * z - c[2] * y, c[1] * k + c[3] * y + c[2] * x - c[0] * z,
                  c[2] * k + c[3] * z + c[0] * y - c[1] * x, c[3] * k - c[0] * x - c[1] * y - c[2] * z};
@@ -288,7 +291,7 @@ static void step_quaternion(real *c, const real *w, real h)
 
 void body_step(const struct body *b, real *q, const real *u, real h)
 {
-    real rate[7], half = h / 2;
+    real rate[7], half;
     switch (b->joint) {
     case JOINT_SPHERICAL: step_quaternion(q, u, h); return;
     case JOINT_SLOT:
@@ -298,12 +301,14 @@ void body_step(const struct body *b, real *q, const real *u, real h)
         return;
     case JOINT_FLOATING:
         /* displacement along the axes of mid-step, so that the step is symmetric in time */
+        half = (real)0.5 * h;
         step_quaternion(q + 3, u + 3, half);
         body_qdot(b, q, u, rate);
         for (int i = 0; i < 3; i++) q[i] += h * rate[i];
         step_quaternion(q + 3, u + 3, half);
         return;
     case JOINT_PLANAR:
+        half = (real)0.5 * h;
         q[0] += half * u[0];
         body_qdot(b, q, u, rate);
         for (int i = 1; i < 3; i++) q[i] += h * rate[i];

@@ -30,6 +30,7 @@ void loop_make(const struct model *m, int i, struct loop *l)
 }
 
 /* y = a^-1 o b. */
+enum { BETWEEN_FLOP = MAT3_MUL_FLOP + 3 + MAT3_VEC_FLOP };
 static void between(struct xform *y, const struct xform *a, const struct xform *b)
 {
     real p[3];
@@ -39,6 +40,7 @@ static void between(struct xform *y, const struct xform *a, const struct xform *
 }
 
 /* Rotation vector of a small rotation: vee of (R - R^T) / 2. */
+enum { SMALL_ANGLE_FLOP = 6 };
 static void small_angle(const real *r, real *angle)
 {
     const real half = (real)0.5;
@@ -46,6 +48,7 @@ static void small_angle(const real *r, real *angle)
 }
 
 /* y = w x (w x p). */
+enum { CENTRIPETAL_FLOP = 2 * VEC3_CROSS_FLOP };
 static void centripetal(const real *w, const real *p, real *y)
 {
     vec3_cross(y, w, p);
@@ -66,7 +69,8 @@ static void joint_columns(const struct loop *l, const real *r, struct loop_pose 
     for (int k = 0; k < l->c; k++) subspace_column(&s, s.d + k, p->w + 6 * k);
 }
 
-/* Common end: projections of position error (6) and relative velocity (6). */
+/* Common end: projections of position error (6) and relative velocity (6); flops a constraint. */
+enum { PROJECT_FLOP = 2 * SCREW_DOT_FLOP + 5 };
 static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
 {
     for (int k = 0; k < l->c; k++) {
@@ -77,6 +81,10 @@ static void project(const struct loop *l, const real *error, const real *relativ
 }
 
 /* Axes of frame a; each body's own point. gamma is the difference of the points' centripetal accelerations. */
+enum {
+    PLACE_ROWS_FLOP = 2 * XFORM_COMPOSE_FLOP + MAT3_MUL_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
+                      2 * CENTRIPETAL_FLOP + 2 * MAT3_VEC_FLOP + 3 + BETWEEN_FLOP + SMALL_ANGLE_FLOP
+};
 static void place_rows(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
                        const real *vb, struct loop_pose *p)
 {
@@ -104,7 +112,13 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
     project(l, error, relative, p);
 }
 
-/* Frame b throughout: physics (7.1)-(7.3). */
+/* Frame b throughout: physics (7.1)-(7.3). A joint whose W moves with b adds one vector more. */
+enum {
+    PLACE_JOINT_FLOP = 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP +
+                       2 * MAT3_VEC_FLOP + VEC3_CROSS_FLOP + 2 * CENTRIPETAL_FLOP + VEC3_ADD_FLOP + 3 +
+                       VEC3_CROSS_ADD_FLOP + SMALL_ANGLE_FLOP + 2 * MAT3_VEC_FLOP
+};
+static bool moves_with_a(const struct loop *l) { return l->joint == JOINT_SLOT || l->joint == JOINT_POINT_PLANE; }
 static void place_joint(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
                         const real *vb, struct loop_pose *p)
 {
@@ -128,7 +142,7 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     vec3_sub(p->gamma + 3, t);
     for (int k = 0; k < 3; k++) t[k] = a[k] + a[k];
     /* slot and point-plane: W moves with frame a, which cancels w_J x v_J */
-    if (l->joint != JOINT_SLOT && l->joint != JOINT_POINT_PLANE) vec3_add(t, turn);
+    if (!moves_with_a(l)) vec3_add(t, turn);
     vec3_cross_sub(p->gamma + 3, t, slip);
     small_angle(rel.r, angle);
     mat3_mul_vec_transposed(error, rel.r, angle);
@@ -144,6 +158,12 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
         place_rows(l, xa, xb, va, vb, p);
     else
         place_joint(l, xa, xb, va, vb, p);
+}
+
+int loop_place_flops(const struct loop *l)
+{
+    const int joint = PLACE_JOINT_FLOP + (moves_with_a(l) ? 0 : VEC3_ADD_FLOP);
+    return (l->by_rows ? PLACE_ROWS_FLOP : joint) + l->c * PROJECT_FLOP;
 }
 
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb)

@@ -49,18 +49,24 @@ static inline void loops_make(const struct model *m, struct loop *loop, int *pla
  *
  *   xa, xb  in  transforms of the internal frames of a and b to the base, or to any one common frame (identity for
  *               the base)
- *   va, vb  in  (6) velocities of a and b in their internal frames (zero for the base) */
-enum { LOOP_PLACE_FLOP = 520 };
+ *   va, vb  in  (6) velocities of a and b in their internal frames (zero for the base)
+ *
+ * loop_place_flops: what it executes. */
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p);
+int loop_place_flops(const struct loop *l);
 
-/* loop_force: adds -T_a W lambda to fa (6) and T_b W lambda to fb (6), internal frames; either may be NULL. */
+/* loop_force: adds -T_a W lambda to fa (6) and T_b W lambda to fb (6), internal frames; either may be NULL.
+ * 12 flops a constraint, XFORM_FORCE_FLOP + SCREW_ADD_FLOP a side. */
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb);
 
-/* loop_column: T_b W (6 x c, column k at out + 6 k) for side b, -T_a W for side a: the loop's columns at a body. */
+/* loop_column: T_b W (6 x c, column k at out + 6 k) for side b, -T_a W for side a: the loop's columns at a body.
+ * XFORM_FORCE_FLOP a constraint. */
 void loop_column(const struct loop_pose *p, bool side_b, real *out);
 
-/* loop_residual: r (c) = W^T (T_b^T ab - T_a^T aa + gamma) + stabilise, for accelerations (6) of the two bodies. */
+/* loop_residual: r (c) = W^T (T_b^T ab - T_a^T aa + gamma) + stabilise, for accelerations (6) of the two bodies.
+ * LOOP_RESIDUAL_FLOP and 12 a constraint. */
+enum { LOOP_RESIDUAL_FLOP = 2 * XFORM_MOTION_FLOP + 2 * SCREW_ADD_FLOP };
 void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r);
 
 

@@ -1,6 +1,7 @@
 /* loop_project.c - mass-weighted projection of a state on its loops, physics 7.5. */
 #include "dynamics/integrate.h"
 #include "dynamics/loops.h"
+#include "dynamics/work_count.h"
 #include "linalg/least_norm.h"
 
 /* Responses M^-1 J^T (nrow x nu) to unit loop forces and S = J M^-1 J^T. */
@@ -12,14 +13,15 @@ static bool responses(struct dynamics *d, const struct loops *l, real *response,
     d->load = load;
     for (int k = 0; k < m && good; k++) {
         for (int i = 0; i < 6 * d->nbody; i++) load[i] = 0;
-        loops_column(l, k, load);
+        loops_column(l, k, load, w);
         good = aba_response(d, d->zero, response + (size_t)k * (size_t)n, w);
-        loops_residual(l, d->a, NULL, true, column);
+        loops_residual(l, d->a, NULL, true, column, w);
         for (int i = 0; i < m; i++) s[i * m + k] = column[i];
     }
     d->load = given;
     for (int i = 0; i < m; i++)
-        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (s[i * m + k] + s[k * m + i]) / 2;
+        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (real)0.5 * (s[i * m + k] + s[k * m + i]);
+    w->flop += (uint64_t)(m * (m - 1));
     return good;
 }
 
@@ -31,7 +33,9 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     struct loops l;
     dynamics_place(d, q);
     dynamics_velocities(d, u);
-    loops_take(d, &l);
+    work_count_place(d, w);
+    work_count_velocities(d, w);
+    loops_take(d, &l, w);
     real *response = TAKE(d->arena, size_product(m, n), real), *s = TAKE(d->arena, size_product(m, m), real);
     real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
@@ -39,12 +43,13 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     for (int k = 0; k < l.nloop; k++)
         for (int i = 0; i < l.pose[k].c; i++)
             x[l.loop[k].row_at + i] = position ? l.pose[k].g[i] : l.pose[k].rho[i];
-    loops_reference(d, &l, reference);
+    loops_reference(d, &l, reference, w);
     least_norm_solve(m, reference, s, x, room, w);
     for (int i = 0; i < n; i++) {
         delta[i] = 0;
         for (int k = 0; k < m; k++) delta[i] -= response[(size_t)k * (size_t)n + (size_t)i] * x[k];
     }
+    w->flop += 2 * (uint64_t)m * (uint64_t)n;
     arena_release(d->arena, mark);
     return good;
 }
@@ -59,9 +64,11 @@ bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work 
         good = correction(d, q, u, true, delta, &own);
         for (int i = 0; i < d->nbody && good; i++)
             body_step(&d->body[i], q + d->body[i].q_at, delta + d->body[i].u_at, 1);
+        for (int i = 0; i < d->nbody && good; i++) work_add(&own, &body_cost(&d->body[i])->step);
     }
     good = good && correction(d, q, u, false, delta, &own);
     for (int i = 0; i < d->nu && good; i++) u[i] += delta[i];
+    if (good) own.flop += (uint64_t)d->nu;
     if (w) work_add(w, &own);
     arena_release(d->arena, mark);
     return good;

@@ -223,10 +223,11 @@ void body_step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[3];
     if (b->joint == JOINT_PLANAR) { /* displacement along the axes of mid-step */
-        q[0] += h / 2 * u[0];
+        const real half = (real)0.5 * h;
+        q[0] += half * u[0];
         body_qdot(b, q, u, rate);
         for (int i = 1; i < 3; i++) q[i] += h * rate[i];
-        q[0] += h / 2 * u[0];
+        q[0] += half * u[0];
         return;
     }
     for (int i = 0; i < b->d; i++) q[i] += h * u[i];
@@ -240,15 +241,18 @@ void body_step(const struct body *b, real *q, const real *u, real h)
 /* Turning the tree by an angle; the bias w, w w, the origin in own axes and its product; that of slides besides. */
 enum { TURN = 6, SHIFT = 8, BIAS = 10, SLIDES = 6 };
 
+#define STEPS(n) .step = {.flop = 2 * (n)}
+#define PLANAR_STEPS .qdot = {.flop = 6, .trig = 2}, .step = {.flop = 15, .trig = 2}
+
 static const struct joint_cost picked[JOINT_MIXED] = {
     [JOINT_FIXED] = {.bias = BIAS, PICKED(0)},
-    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, PICKED(1)},
-    [JOINT_PRISMATIC] = {.place = 4, .bias = BIAS + SLIDES, PICKED(1)},
-    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PICKED(3)},
+    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), PICKED(1)},
+    [JOINT_PRISMATIC] = {.place = 4, .bias = BIAS + SLIDES, STEPS(1), PICKED(1)},
+    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, PICKED(3)},
 };
 static const struct joint_cost given[JOINT_MIXED] = {
-    [JOINT_REVOLUTE] = {.place = TURN + 1, .place_trig = 2, .bias = BIAS, GIVEN(1)},
-    [JOINT_PLANAR] = {.place = TURN + SHIFT + 2, .place_trig = 2, .bias = BIAS + SLIDES, GIVEN(3)},
+    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), GIVEN(1)},
+    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, GIVEN(3)},
 };
 
 const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint]; }

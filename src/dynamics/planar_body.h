@@ -42,6 +42,7 @@ struct joint_cost {
     int bias;
     int h, h_transposed;
     int w, w_transposed;
+    struct work qdot, step; /* body_qdot, body_step */
 };
 
 /* bodies_make: the constants of all bodies (nbody), in `a`; the scene must be planar, at least nearly. */
@@ -68,7 +69,7 @@ enum {
     BODY_GYRO_FLOP = 3,
     BODY_LOAD_FLOP = 15,
     BODY_SPRING_FLOP = 5,
-    BODY_FORCE_FLOP = 14,
+    BODY_FORCE_FLOP = 11,
     BODY_ACCELERATE_FLOP = 11,
     BODY_SHARE_FLOP = 160 /* of a balanced partition: sweeps, assembly */
 };
@@ -80,7 +81,7 @@ static inline void body_gyro(const struct body *b, const real *w, real *f)
     f[2] = pull * b->ms[1];
 }
 
-/* body_force: f = I a (3); BODY_FORCE_FLOP counts this and adding f to P. */
+/* body_force: f = I a (3); BODY_FORCE_FLOP. */
 static inline void body_force(const struct body *b, const real *a, real *f)
 {
     f[1] = b->m * (a[1] - a[0] * b->s[1]);
@@ -118,8 +119,13 @@ static inline void body_inertia_factors(const struct body *b, real *shift, real 
     about[4] = about[8] = b->m;
 }
 
-/* body_load, body_spring, body_step, body_qdot: as in body.h; of the wrench the part in the plane. */
+/* body_load, body_load_flops, body_spring, body_step, body_qdot: as in body.h; of the wrench the part in the plane. */
 void body_load(const struct body *b, const double *fext, real *f);
+static inline int body_load_flops(const struct body *b)
+{
+    (void)b;
+    return BODY_LOAD_FLOP;
+}
 void body_spring(const struct body *b, const real *q, const real *u, real *tau);
 void body_step(const struct body *b, real *q, const real *u, real h);
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd);

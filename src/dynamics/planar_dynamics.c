@@ -38,7 +38,8 @@ static struct scene scene_take(const struct model *m, const struct state *s, str
     return x;
 }
 
-static real sign_of(const struct body *b) { return b->flipped ? -1 : 1; }
+/* x about the normal or across a flipped joint's x axis. */
+static real turned(const struct body *b, real x) { return b->flipped ? -x : x; }
 
 /* The joint's velocity (or acceleration) from its rates: about the normal and along x, y. Signs cost nothing. */
 static void joint_motion(const struct body *b, const double *u, real *h)
@@ -46,13 +47,13 @@ static void joint_motion(const struct body *b, const double *u, real *h)
     screw_zero(h);
     switch (b->joint) {
     case JOINT_REVOLUTE:
-        h[0] = sign_of(b) * (real)u[0];
+        h[0] = turned(b, (real)u[0]);
         break;
     case JOINT_PRISMATIC:
         h[1] = (real)u[0];
         break;
     case JOINT_PLANAR:
-        h[0] = sign_of(b) * (real)u[0], h[1] = (real)u[1], h[2] = sign_of(b) * (real)u[2];
+        h[0] = turned(b, (real)u[0]), h[1] = (real)u[1], h[2] = turned(b, (real)u[2]);
         break;
     default:
         break;
@@ -64,23 +65,31 @@ static void joint_part(const struct body *b, const real *x, double *y)
 {
     switch (b->joint) {
     case JOINT_REVOLUTE:
-        y[0] = (double)(sign_of(b) * x[0]);
+        y[0] = (double)turned(b, x[0]);
         break;
     case JOINT_PRISMATIC:
         y[0] = (double)x[1];
         break;
     case JOINT_PLANAR:
-        y[0] = (double)(sign_of(b) * x[0]), y[1] = (double)x[1], y[2] = (double)(sign_of(b) * x[2]);
+        y[0] = (double)turned(b, x[0]), y[1] = (double)x[1], y[2] = (double)turned(b, x[2]);
         break;
     default:
         break;
     }
 }
 
+/* a += what joint_motion found, d flops. */
+static void joint_add(const struct body *b, const real *h, real *a)
+{
+    if (b->joint == JOINT_PLANAR) screw_add(a, h);
+    else if (b->joint == JOINT_PRISMATIC) a[1] += h[1];
+    else if (b->d > 0) a[0] += h[0];
+}
+
 static bool slides(const struct body *b) { return b->joint == JOINT_PRISMATIC || b->joint == JOINT_PLANAR; }
 
-/* start: place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: 1 flop, 1 and 4
- * and 6 for the centripetal part where the parent moves, 8 for slides. */
+/* start: place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: where the parent
+ * moves 1 flop, and 1, 2 and 6 for the centripetal part; 5 for slides. */
 static void start(const struct scene *x, int i, struct work *w)
 {
     const struct body *b = &x->body[i];
@@ -97,11 +106,14 @@ static void start(const struct scene *x, int i, struct work *w)
     m->w = 0;
     if (x->state->at_rest) return;
     joint_motion(b, x->state->qd + b->u_at, h);
-    m->w = turning + h[0];
-    const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
-    m->bias[1] = t->c * px + t->s * py;
-    m->bias[2] = t->c * py - t->s * px;
-    if (b->parent >= 0) w->flop += 1 + 1 + 2 + 6;
+    m->w = h[0];
+    if (b->parent >= 0) {
+        const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
+        m->w += turning;
+        m->bias[1] = t->c * px + t->s * py;
+        m->bias[2] = t->c * py - t->s * px;
+        w->flop += 1 + 1 + 2 + 6;
+    }
     if (!slides(b)) return;
     const real twice = turning + m->w;
     m->bias[1] -= twice * h[2];
@@ -116,18 +128,15 @@ static void pull(const struct scene *x, int i, struct work *w)
     const struct body *b = &x->body[i];
     struct moving *m = &x->moving[i];
     screw_zero(m->f);
+    if (x->terms && !x->state->at_rest) {
+        body_gyro(b, &m->w, m->f);
+        w->flop += BODY_GYRO_FLOP;
+    }
     if (x->load) {
         screw_sub(m->f, x->load + SPACE * i);
         w->flop += SCREW_ADD_FLOP;
     }
-    if (!x->terms) return;
-    if (!x->state->at_rest) {
-        real centripetal[SPACE];
-        body_gyro(b, &m->w, centripetal);
-        screw_add(m->f, centripetal);
-        w->flop += BODY_GYRO_FLOP;
-    }
-    if (!x->state->fext) return;
+    if (!x->terms || !x->state->fext) return;
     real load[SPACE];
     body_load(b, x->state->fext + 6 * i, load);
     screw_sub(m->f, load);
@@ -146,14 +155,14 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
         start(&x, i, w);
         joint_motion(b, s->qdd + b->u_at, h);
         xform_motion(moved, &m->pose.x, b->parent < 0 ? x.base : x.moving[b->parent].a);
-        screw_copy(m->a, m->bias);
-        screw_add(m->a, moved);
-        screw_add(m->a, h);
+        screw_copy(m->a, moved);
+        m->a[1] += m->bias[1], m->a[2] += m->bias[2];
+        joint_add(b, h, m->a);
         pull(&x, i, w);
         body_force(b, m->a, inertial);
         screw_add(m->f, inertial);
         /* the bias has no part about the normal, and a joint's columns are unit vectors */
-        w->flop += (uint64_t)(XFORM_MOTION_FLOP + 2 + b->d + BODY_FORCE_FLOP);
+        w->flop += (uint64_t)(XFORM_MOTION_FLOP + 2 + b->d + BODY_FORCE_FLOP + SCREW_ADD_FLOP);
     }
     for (int i = model->nbody - 1; i >= 0; i--) {
         const struct body *b = &x.body[i];
@@ -180,14 +189,15 @@ static void symmetric_multiply(const real *s, const real *x, real *y)
 static void hand_inertia(const struct xform *x, const real *s, bool bare, real *into, struct work *w)
 {
     const real t = x->s * (s[3] - s[5]) + (x->c + x->c) * s[4];
-    const real xx = s[3] - x->s * t, yy = s[5] + x->s * t, xy = x->c * t - s[4], jx = -x->p[1], jy = x->p[0];
-    real bx = 0, by = 0;
-    if (!bare) {
-        bx = x->c * s[1] - x->s * s[2];
-        by = x->s * s[1] + x->c * s[2];
+    const real st = x->s * t, xx = s[3] - st, yy = s[5] + st, xy = x->c * t - s[4], jx = -x->p[1], jy = x->p[0];
+    real shifted_x = xx * jx + xy * jy, shifted_y = xy * jx + yy * jy;
+    if (bare) {
+        into[0] += jx * shifted_x + jy * shifted_y;
+    } else {
+        const real bx = x->c * s[1] - x->s * s[2], by = x->s * s[1] + x->c * s[2];
+        shifted_x = bx + shifted_x, shifted_y = by + shifted_y;
+        into[0] += s[0] + (jx * (bx + shifted_x) + jy * (by + shifted_y));
     }
-    const real shifted_x = bx + (xx * jx + xy * jy), shifted_y = by + (xy * jx + yy * jy);
-    into[0] += (bare ? 0 : s[0]) + (jx * (bx + shifted_x) + jy * (by + shifted_y));
     into[1] += shifted_x;
     into[2] += shifted_y;
     into[3] += xx;
@@ -287,7 +297,7 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
     struct moving *m = &x->moving[i];
     real carried[SPACE], force[SPACE];
     xform_motion(carried, &m->pose.x, b->parent < 0 ? x->base : x->moving[b->parent].a);
-    screw_add(carried, m->bias);
+    carried[1] += m->bias[1], carried[2] += m->bias[2];
     screw_copy(m->a, carried);
     w->flop += XFORM_MOTION_FLOP + 2;
     if (b->joint == JOINT_PLANAR) {
@@ -301,8 +311,8 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
         w->flop += 3 * SCREW_ADD_FLOP;
     } else if (b->d == 1) {
         const int k = b->joint == JOINT_REVOLUTE ? 0 : 1;
-        real along = 0, y[SPACE] = {0};
-        for (int j = 0; j < 3; j++) along += m->inertia[row[k][j]] * carried[j];
+        real along = m->inertia[row[k][0]] * carried[0], y[SPACE] = {0};
+        for (int j = 1; j < 3; j++) along += m->inertia[row[k][j]] * carried[j];
         y[k] = m->per * (m->rest - along);
         joint_part(b, y, ud);
         m->a[k] += y[k];
@@ -355,7 +365,7 @@ static struct closing closing_take(const struct scene *x, struct arena *scratch,
     for (int l = 0; l < m->nloop; l++) {
         const int a = c.loop[l].body_a + 1, b = c.loop[l].body_b + 1;
         loop_place(&c.loop[l], &place[a], &place[b], v + SPACE * a, v + SPACE * b, &c.pose[l]);
-        w->flop += LOOP_PLACE_FLOP;
+        w->flop += (uint64_t)loop_place_flops(&c.loop[l]);
     }
     return c;
 }
@@ -389,8 +399,10 @@ static void closing_residual(const struct scene *x, const struct closing *c, rea
         screw_sub(b, a);
         if (x->terms) screw_add(b, p->gamma);
         for (int k = 0; k < loop->c; k++)
-            r[loop->row_at + k] = screw_dot(p->w + SPACE * k, b) + (x->terms ? p->stabilise[k] : 0);
-        w->flop += (uint64_t)(2 * XFORM_MOTION_FLOP + 2 * SCREW_ADD_FLOP + loop->c * (SCREW_DOT_FLOP + 1));
+            r[loop->row_at + k] = screw_dot(p->w + SPACE * k, b);
+        for (int k = 0; k < loop->c && x->terms; k++) r[loop->row_at + k] += p->stabilise[k];
+        w->flop += (uint64_t)(2 * XFORM_MOTION_FLOP + (x->terms ? 2 : 1) * SCREW_ADD_FLOP +
+                              loop->c * (SCREW_DOT_FLOP + (x->terms ? 1 : 0)));
     }
 }
 
@@ -440,7 +452,8 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
         for (int j = 0; j < n; j++) S[j * n + k] = r[j];
     }
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (S[i * n + k] + S[k * n + i]) / 2;
+        for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (real)0.5 * (S[i * n + k] + S[k * n + i]);
+    w->flop += (uint64_t)(n * (n - 1));
     good = good && open_forward(x, tau, ud, w);
     for (int pass = 0; pass < 2 && good; pass++) {
         closing_residual(x, &c, r, w);
@@ -448,6 +461,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
         for (int k = 0; k < n; k++) r[k] = -r[k];
         least_norm_solve(n, reference, copy, r, room, w);
         for (int k = 0; k < n; k++) lambda[k] += r[k];
+        w->flop += (uint64_t)n;
         closing_force(x, &c, lambda, w);
         x->load = c.load;
         good = open_forward(x, tau, ud, w);
@@ -466,7 +480,8 @@ bool planar_forward(const struct model *model, const struct state *s, struct are
         const struct body *b = &x.body[i];
         start(&x, i, w);
         if (!b->has_spring) continue;
-        tau[b->u_at] -= b->stiffness * (s->q[b->q_at] - b->rest) + b->damping * s->qd[b->u_at];
+        const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
+        tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
         w->flop += BODY_SPRING_FLOP;
     }
     const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w) : open_forward(&x, tau, qdd, w);

@@ -84,6 +84,7 @@ int loop_rows(const struct model *m)
 }
 
 /* y = r^T x. */
+enum { TURN_BACK_FLOP = 6 };
 static void turn_back(const struct xform *r, const real *x, real *y)
 {
     const real a = r->c * x[0] + r->s * x[1], b = r->c * x[1] - r->s * x[0];
@@ -92,6 +93,7 @@ static void turn_back(const struct xform *r, const real *x, real *y)
 }
 
 /* y = a^-1 o b. */
+enum { BETWEEN_FLOP = 2 + 6 + TURN_BACK_FLOP };
 static void between(struct xform *y, const struct xform *a, const struct xform *b)
 {
     const real p[2] = {b->p[0] - a->p[0], b->p[1] - a->p[1]};
@@ -101,6 +103,7 @@ static void between(struct xform *y, const struct xform *a, const struct xform *
 }
 
 /* gamma += sign times the centripetal acceleration of a point at p on a body that turns at the rate w. */
+enum { CENTRIPETAL_FLOP = 8 };
 static void add_centripetal(real sign, real w, const real *p, real *gamma)
 {
     gamma[1] -= sign * (w * w) * p[0];
@@ -145,6 +148,12 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
         screw_copy(p->w + SPACE * k, w);
         p->stabilise[k] = 2 * l->alpha * screw_dot(w, relative) + l->beta * l->beta * screw_dot(w, error);
     }
+}
+
+int loop_place_flops(const struct loop *l)
+{
+    return 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP + 2 * TURN_BACK_FLOP +
+           2 * CENTRIPETAL_FLOP + (l->by_rows ? 0 : 6 + TURN_BACK_FLOP) + l->c * (2 * SCREW_DOT_FLOP + 5);
 }
 
 void loop_column(const struct loop_pose *p, bool side_b, real *out)

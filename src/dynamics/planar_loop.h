@@ -33,8 +33,8 @@ int loop_rows(const struct model *m);
 /* loops_make: the constants of all loops (nloop), and of each acting constraint the place in the model's lambda. */
 void loops_make(const struct model *m, struct loop *loop, int *place);
 
-/* loop_place: as in loop.h. */
-enum { LOOP_PLACE_FLOP = 150 };
+/* loop_place, loop_place_flops: as in loop.h. */
+int loop_place_flops(const struct loop *l);
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p);
 

@@ -1,7 +1,5 @@
-/* revolute.c - compact constants; inverse dynamics of all-revolute systems. */
+/* revolute.c - compact constants of all-revolute systems; what their fast paths execute. */
 #include "dynamics/revolute.h"
-
-#include "linalg/angle.h"
 
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
 {
@@ -20,4 +18,16 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
         r->parent = b[i].parent;
     }
     return out;
+}
+
+void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w)
+{
+    if (!w) return;
+    uint64_t children = 0;
+    for (int i = 0; i < d->nbody; i++) children += d->revolute[i].parent >= 0;
+    const uint64_t n = (uint64_t)d->nbody;
+    w->flop += n * (uint64_t)cost.body + children * (uint64_t)cost.child;
+    w->div += n * (uint64_t)cost.div;
+    w->trig += 2 * n;
+    w->call += n;
 }

@@ -18,9 +18,17 @@ struct revolute {
 /* revolutes_take: of all bodies of d, from their constants. */
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a);
 
-/* rnea_revolute, aba_revolute, crba_revolute: rnea, aba and crba for d->revolute; no work is counted here. */
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau);
-bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud);
-void crba_revolute(struct dynamics *d, const real *q, real *mass);
+/* rnea_revolute, aba_revolute, crba_revolute: rnea, aba and crba for d->revolute. w may be NULL. */
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w);
+bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w);
+void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w);
+
+/* What a fast path executes [flop]: for each body, for each that hangs on another one besides. */
+struct revolute_cost {
+    int body, child, div; /* div: divisions a body */
+};
+
+/* revolute_count: *w += that for all bodies of d, a sine, a cosine and a call each. w may be NULL. */
+void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w);
 
 #endif

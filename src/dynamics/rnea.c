@@ -68,10 +68,6 @@ void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud,
 
 void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
-    if (!d->revolute) {
-        rnea_full(d, q, u, ud, tau, w);
-        return;
-    }
-    rnea_revolute(d, q, u, ud, tau);
-    work_count_rnea(d, w);
+    if (d->revolute) rnea_revolute(d, q, u, ud, tau, w);
+    else rnea_full(d, q, u, ud, tau, w);
 }

@@ -16,6 +16,7 @@ struct load {
 };
 
 /* k = al~ + w~ w~. */
+enum { SPIN_FLOP = 15 };
 static inline void spin_matrix(struct motion *c)
 {
     const real *w = c->w, *al = c->al;
@@ -28,6 +29,7 @@ static inline void spin_matrix(struct motion *c)
 }
 
 /* r = E Rz. */
+enum { TURN_FLOP = 18 };
 static inline void turn(real *restrict r, const real *restrict e, real s, real c)
 {
     for (int i = 0; i < 9; i += 3) {
@@ -38,6 +40,7 @@ static inline void turn(real *restrict r, const real *restrict e, real s, real c
 }
 
 /* w, al, a of body c from its parent's p: the joint adds z u and z ud + w* x z u. */
+enum { CARRY_FLOP = 2 * MAT3_VEC_FLOP + 18 + 1 + 5 + MAT3_VEC_FLOP + SPIN_FLOP };
 static inline void carry(const struct revolute *b, const real *r, real u, real ud, const struct motion *p,
                          struct motion *c)
 {
@@ -53,6 +56,7 @@ static inline void carry(const struct revolute *b, const real *r, real u, real u
 }
 
 /* f = m (a + K s), n = skew part of K S + s x f. */
+enum { NEWTON_EULER_FLOP = 21 + 33 + VEC3_CROSS_ADD_FLOP };
 static inline void newton_euler(const struct revolute *b, const struct motion *c, real *f, real *n)
 {
     const real *s = b->s, *S = b->second, *k = c->k;
@@ -64,6 +68,10 @@ static inline void newton_euler(const struct revolute *b, const struct motion *c
 }
 
 /* carry and newton_euler at rest: al and a alone, with al~ for K. */
+enum {
+    CARRY_AT_REST_FLOP = MAT3_VEC_FLOP + 1 + VEC3_CROSS_ADD_FLOP + MAT3_VEC_FLOP,
+    NEWTON_EULER_AT_REST_FLOP = VEC3_CROSS_ADD_FLOP + VEC3_SCALE_FLOP + 21 + VEC3_CROSS_ADD_FLOP
+};
 static inline void carry_at_rest(const struct revolute *b, const real *r, real ud, const struct motion *p,
                                  struct motion *c)
 {
@@ -89,6 +97,7 @@ static inline void newton_euler_at_rest(const struct revolute *b, const struct m
 }
 
 /* f, n of the parent += r f, r n + t x r f. */
+enum { HAND_DOWN_FLOP = 2 * MAT3_VEC_FLOP + 2 * VEC3_ADD_FLOP + VEC3_CROSS_ADD_FLOP };
 static inline void hand_down(const struct revolute *b, const struct load *c, struct load *p)
 {
     real f[3], n[3];
@@ -111,7 +120,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
     struct motion *motion = (struct motion *)(load + n);
     vec3_copy(base.al, d->base);
     vec3_copy(base.a, d->base + 3);
-    if (!at_rest) spin_matrix(&base);
+    if (!at_rest) mat3_skew(base.k, base.al);
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
@@ -137,8 +146,12 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
     }
 }
 
-void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau)
+void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
+    const int body = d->at_rest ? TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP
+                                : TURN_FLOP + CARRY_FLOP + NEWTON_EULER_FLOP;
     if (d->at_rest) sweep(d, true, q, u, ud, tau);
     else sweep(d, false, q, u, ud, tau);
+    const int load = d->load ? SCREW_ADD_FLOP : 0;
+    revolute_count(d, (struct revolute_cost){.body = body + load, .child = HAND_DOWN_FLOP}, w);
 }

@@ -85,9 +85,10 @@ void loop_drift(struct dynamics *d, const real *q, const real *u, real *g, real 
 {
     struct arena_mark mark = arena_mark(d->arena);
     struct loops l;
+    struct work uncounted = {0};
     dynamics_place(d, q);
     dynamics_velocities(d, u);
-    loops_take(d, &l);
+    loops_take(d, &l, &uncounted);
     for (int k = 0; k < l.nloop; k++)
         for (int i = 0; i < l.pose[k].c; i++) {
             if (g) g[l.loop[k].row_at + i] = l.pose[k].g[i];

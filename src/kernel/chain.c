@@ -281,7 +281,7 @@ void chain_gyro(struct chain *ch, int i, real *f)
     real load[SPACE];
     body_load(b, fext + 6 * i, load);
     screw_sub(f, load);
-    ch->work.flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
+    ch->work.flop += (uint64_t)body_load_flops(b) + SCREW_ADD_FLOP;
 }
 
 void chain_gain(struct chain *ch, real *gain)
@@ -312,18 +312,20 @@ static void load(struct chain *ch, int i)
 {
     const struct body *b = &ch->shared->body[i];
     real inertial[SPACE], *f = chain_at(ch, ch->f, i);
-    chain_gyro(ch, i, f);
+    const bool more = !ch->job->omit.velocity || ch->job->state->fext;
+    if (more) chain_gyro(ch, i, f);
     if (ch->dense) {
         real inertia[SQUARE];
         chain_shifted_inertia(b, inertia, &ch->work);
         dense_product(SPACE, 1, SPACE, inertia, chain_at(ch, ch->a, i), inertial, &ch->work);
-        ch->work.flop += SCREW_ADD_FLOP;
     } else {
         body_force(b, chain_at(ch, ch->a, i), inertial);
         ch->work.flop += BODY_FORCE_FLOP;
         ch->work.call++;
     }
-    screw_add(f, inertial);
+    if (more) screw_add(f, inertial);
+    else screw_copy(f, inertial);
+    ch->work.flop += more ? SCREW_ADD_FLOP : 0;
 }
 
 void chain_force(struct chain *ch, real *tau)

@@ -74,7 +74,7 @@ void closure_meet(struct closure *cl, struct work *w)
         if (s->owner[2 * l] != k && s->owner[2 * l + 1] != k) continue;
         loop_place(&s->loop[l], &cl->side_pose[2 * l], &cl->side_pose[2 * l + 1], cl->side_velocity + 2 * SPACE * l,
                    cl->side_velocity + 2 * SPACE * l + SPACE, &cl->pose[l]);
-        w->flop += LOOP_PLACE_FLOP;
+        w->flop += (uint64_t)loop_place_flops(&s->loop[l]);
         w->call++;
     }
     work_report(cl->comm, w);
@@ -144,7 +144,8 @@ static void solve(struct closure *cl, struct work *w)
 {
     const int n = cl->shared->nrow;
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < i; j++) cl->S[i * n + j] = cl->S[j * n + i] = (cl->S[i * n + j] + cl->S[j * n + i]) / 2;
+        for (int j = 0; j < i; j++)
+            cl->S[i * n + j] = cl->S[j * n + i] = (real)0.5 * (cl->S[i * n + j] + cl->S[j * n + i]);
     w->flop += (uint64_t)(n * (n - 1));
     cl->rank = least_norm_solve(n, cl->reference, cl->S, cl->lambda, cl->scratch, w);
 }

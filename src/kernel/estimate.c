@@ -82,7 +82,9 @@ static void local_work(const struct run_spec *spec, const struct outline *o, con
     const bool dense = spec->kernel.operators == OPERATORS_DENSE;
     const double place = o->place + (dense ? SQUARE_MUL_FLOP : 0);
     const double bias = omit->velocity ? 0 : o->rate + o->bias + BODY_GYRO_FLOP;
-    const double force = !forces ? 0 : dense ? 2 * SQUARE_MUL_FLOP + SQUARE_VEC_FLOP + SPACE : BODY_FORCE_FLOP;
+    const double force = !forces ? 0
+                         : dense ? 2 * SQUARE_MUL_FLOP + SQUARE_VEC_FLOP + SPACE
+                                 : BODY_FORCE_FLOP + SCREW_ADD_FLOP;
     const double base = forces && !omit->base ? o->x + SPACE : 0;
     e->flops += o->n * (place + bias + force + o->d) + base;
 }

@@ -93,7 +93,8 @@ static double bodies(const struct model *m, const struct job_omit *omit, bool fo
     double flops = 0;
     for (int i = 0; i < m->nbody; i++) {
         const struct joint_cost *c = joint_cost_of(m->body[i].joint);
-        flops += c->place + (omit->velocity ? 0 : c->rate + c->bias + BODY_GYRO_FLOP) + (forces ? BODY_FORCE_FLOP : 0);
+        flops += c->place + (omit->velocity ? 0 : c->rate + c->bias + BODY_GYRO_FLOP) +
+                 (forces ? BODY_FORCE_FLOP + SCREW_ADD_FLOP : 0);
     }
     return flops;
 }

@@ -43,8 +43,7 @@ static void drift(struct motion *m, real h)
         const struct body *b = body_of(m, l);
         body_step(b, m->q + q, m->u + u, h);
         q += b->nq, u += b->d;
-        m->work->flop += (uint64_t)(b->nq > b->d ? 40 + 4 * b->nq : 2 * b->nq);
-        m->work->trig += b->nq > b->d ? 2 : 0;
+        work_add(m->work, &body_cost(b)->step);
     }
 }
 
@@ -56,7 +55,7 @@ static void slope(struct motion *m)
         const struct body *b = body_of(m, l);
         body_qdot(b, m->q + q, m->u + u, m->dq + q);
         q += b->nq, u += b->d;
-        m->work->flop += (uint64_t)(b->nq > b->d ? 28 : 0);
+        work_add(m->work, &body_cost(b)->qdot);
     }
 }
 
@@ -74,21 +73,23 @@ static void kick_drift_kick(struct motion *m, real h, bool first)
         m->evaluate(m->program);
         memcpy(m->a, m->ud, (size_t)m->nu * sizeof(real));
     }
-    kick(m, m->a, h / 2);
+    const real half = (real)0.5 * h;
+    kick(m, m->a, half);
     drift(m, h);
     memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
-    kick(m, m->a, h / 2);
+    kick(m, m->a, half);
     m->evaluate(m->program);
     memcpy(m->a, m->ud, (size_t)m->nu * sizeof(real));
     memcpy(m->u, m->u0, (size_t)m->nu * sizeof(real));
-    kick(m, m->a, h / 2);
+    kick(m, m->a, half);
+    m->work->flop++; /* half */
 }
 
 /* runge_kutta: the classical method of order four; y = y0 + h (k1 + 2 k2 + 2 k3 + k4) / 6. */
 static void runge_kutta(struct motion *m, real h)
 {
     static const int weight[4] = {1, 2, 2, 1};
-    const real part[4] = {h / 2, h / 2, h, h / 6};
+    const real half = (real)0.5 * h, part[4] = {half, half, h, h / 6};
     memcpy(m->q0, m->q, (size_t)m->nq * sizeof(real));
     memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
     memset(m->qsum, 0, (size_t)m->nq * sizeof(real));
@@ -103,6 +104,8 @@ static void runge_kutta(struct motion *m, real h)
         for (int i = 0; i < m->nu; i++) m->u[i] = m->u0[i] + part[stage] * du[i];
         m->work->flop += (uint64_t)(4 * (m->nq + m->nu));
     }
+    m->work->flop++; /* half */
+    m->work->div++;  /* h / 6 */
     drift(m, 0);
 }
 

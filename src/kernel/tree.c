@@ -253,7 +253,7 @@ void tree_gyro(struct tree *t, int l, real *f)
     real load[SPACE];
     body_load(b, fext + 6 * t->bodies[l], load);
     screw_sub(f, load);
-    t->work.flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
+    t->work.flop += (uint64_t)body_load_flops(b) + SCREW_ADD_FLOP;
 }
 
 /* sweep_down: f_parent += X f inside the piece, in place; `out` (SPACE) gets what leaves at the anchor. */
@@ -310,13 +310,15 @@ static void scan_down(struct tree *t)
 
 void tree_force(struct tree *t, real *tau, const real *more)
 {
+    const bool terms = !t->job->omit.velocity || t->job->state->fext;
     for (int l = 0; l < t->n; l++) {
         real inertial[SPACE], *f = tree_at(t->f, l);
-        tree_gyro(t, l, f);
+        if (terms) tree_gyro(t, l, f);
         body_force(tree_body(t, l), tree_at(t->a, l), inertial);
-        screw_add(f, inertial);
+        if (terms) screw_add(f, inertial);
+        else screw_copy(f, inertial);
         if (more) screw_add(f, more + SPACE * l);
-        t->work.flop += (uint64_t)(BODY_FORCE_FLOP + (more ? SCREW_ADD_FLOP : 0));
+        t->work.flop += (uint64_t)(BODY_FORCE_FLOP + (terms + (more != NULL)) * SCREW_ADD_FLOP);
         t->work.call++;
     }
     scan_down(t);

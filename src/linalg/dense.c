@@ -76,22 +76,22 @@ void dense_solve(int c, int m, const real *G, real *B, struct work *w)
 void dense_product(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
 {
     account(w, dense_product_flops(a, b, k), 0);
-    memset(C, 0, (size_t)(a * b) * sizeof *C);
+    if (k == 0) memset(C, 0, (size_t)(a * b) * sizeof *C);
     for (int i = 0; i < a; i++)
         for (int l = 0; l < k; l++) {
             const real f = A[i * k + l];
-            for (int j = 0; j < b; j++) C[i * b + j] += f * B[l * b + j];
+            for (int j = 0; j < b; j++) C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
         }
 }
 
 void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
 {
     account(w, dense_product_flops(a, b, k), 0);
-    memset(C, 0, (size_t)(a * b) * sizeof *C);
+    if (k == 0) memset(C, 0, (size_t)(a * b) * sizeof *C);
     for (int l = 0; l < k; l++)
         for (int i = 0; i < a; i++) {
             const real f = A[l * a + i];
-            for (int j = 0; j < b; j++) C[i * b + j] += f * B[l * b + j];
+            for (int j = 0; j < b; j++) C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
         }
 }
 

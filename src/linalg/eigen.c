@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 /* Tangent, sine and cosine of the rotation that makes a_pq zero. */
+enum { ROTATION_FLOP = 2 + 3 + 2 + 1, ROTATION_DIV = 3, ROTATION_SQRT = 2 };
 static void rotation(real app, real aqq, real apq, real *s, real *c)
 {
     real theta = (aqq - app) / (2 * apq);
@@ -14,6 +15,7 @@ static void rotation(real app, real aqq, real apq, real *s, real *c)
 }
 
 /* Rotate rows/columns at offsets: x <- c x - s y, y <- s x + c y, over n elements with the given stride. */
+enum { ROTATE_FLOP = 6 }; /* an element */
 static void rotate(int n, real *x, real *y, int stride, real s, real c)
 {
     for (int k = 0; k < n; k++) {
@@ -24,12 +26,13 @@ static void rotate(int n, real *x, real *y, int stride, real s, real c)
 }
 
 /* One sweep; returns the number of rotations that were not negligible. */
-static int sweep(int n, real *a, real *v)
+static int sweep(int n, real *a, real *v, struct work *work)
 {
     int done = 0;
     for (int p = 0; p < n - 1; p++)
         for (int q = p + 1; q < n; q++) {
             real apq = a[p * n + q], scale = real_fabs(a[p * n + p]) + real_fabs(a[q * n + q]);
+            work->flop += apq == 0 ? 1 : 3;
             if (apq == 0 || (scale + real_fabs(apq) * (real)0.01 == scale && scale > 0)) continue;
             real s, c;
             rotation(a[p * n + p], a[q * n + q], apq, &s, &c);
@@ -37,17 +40,20 @@ static int sweep(int n, real *a, real *v)
             rotate(n, a + p * n, a + q * n, 1, s, c);
             if (v) rotate(n, v + p, v + q, n, s, c);
             a[p * n + q] = a[q * n + p] = 0;
+            work->flop += (uint64_t)(ROTATION_FLOP + (v ? 3 : 2) * ROTATE_FLOP * n);
+            work->div += ROTATION_DIV;
+            work->sqrt += ROTATION_SQRT;
             done++;
         }
     return done;
 }
 
-int eigen_symmetric(int n, real *a, real *v, real *w)
+int eigen_symmetric(int n, real *a, real *v, real *w, struct work *done)
 {
     int sweeps = 0;
     if (v)
         for (int i = 0; i < n * n; i++) v[i] = i % (n + 1) == 0;
-    while (sweeps < 60 && sweep(n, a, v) > 0) sweeps++;
+    while (sweeps < 60 && sweep(n, a, v, done) > 0) sweeps++;
     for (int i = 0; i < n; i++) w[i] = a[i * n + i];
     return sweeps;
 }

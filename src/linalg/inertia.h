@@ -22,6 +22,7 @@ enum {
     INERTIA_MUL_FLOP = 42,
     INERTIA_GYRO_FLOP = 42,
     SYM6_MUL_FLOP = 66,
+    SYM6_ADD_FLOP = 21,
     SYM6_MOVE_FLOP = 324 /* 75 + 75 + 90 rotate, 36 + 48 shift */
 };
 
@@ -48,7 +49,7 @@ static inline void inertia_gyro(real *f, const struct inertia *in, const real *w
 }
 
 /* inertia_move: *y = X I X^T, the body's inertia in the parent frame. inertia_add: *y += *x. */
-enum { INERTIA_MOVE_FLOP = 117, INERTIA_ADD_FLOP = 10 };
+enum { INERTIA_MOVE_FLOP = 123, INERTIA_ADD_FLOP = 10 };
 static inline void inertia_move(struct inertia *y, const struct xform *x, const struct inertia *in)
 {
     /* J' = r J r^T - [h~ p~ + p~ h~] - m p~ p~ with h = r ms; written through g = 2 h + m p: p~ g~ symmetrised. */

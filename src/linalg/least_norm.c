@@ -15,7 +15,7 @@ int least_norm_solve(int n, const real *reference, real *s, real *r, real *scrat
     int rank = 0;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) s[i * n + j] /= real_sqrt(reference[i]) * real_sqrt(reference[j]);
-    int sweeps = eigen_symmetric(n, s, v, value);
+    eigen_symmetric(n, s, v, value, w);
     for (int k = 0; k < n; k++) largest = value[k] > largest ? value[k] : largest;
     for (int i = 0; i < n; i++) r[i] /= real_sqrt(reference[i]);
     for (int k = 0; k < n; k++) {
@@ -31,8 +31,8 @@ int least_norm_solve(int n, const real *reference, real *s, real *r, real *scrat
         r[i] /= real_sqrt(reference[i]);
     }
     uint64_t m = (uint64_t)n;
-    w->flop += (uint64_t)sweeps * m * (m - (m > 0)) / 2 * 18 * m + 5 * m * m;
-    w->div += m * m + 3 * m;
+    w->flop += m * m + m + 2 * m * (uint64_t)rank + 2 * m * m; /* scaling, comparing, y, x */
+    w->div += m * m + 2 * m + (uint64_t)rank;
     w->sqrt += 2 * m * m + 2 * m;
     w->call++;
     return rank;

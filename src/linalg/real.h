@@ -65,4 +65,13 @@ __float128 expq(__float128);
 
 #include "linalg/real_names.h" /* made by the build */
 
+/* A build in which every operation of the source is executed as often as it is written, for tests that count them. */
+#ifdef REAL_COUNTED
+#ifdef __clang__
+#pragma clang optimize off
+#else
+#pragma GCC optimize("O0")
+#endif
+#endif
+
 #endif

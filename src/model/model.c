@@ -141,7 +141,8 @@ static void principal_moments(const double *inertia, double *w)
                    inertia[4], inertia[2], inertia[4], inertia[5]};
     double scale = norm(a, 9);
     for (int i = 0; scale > 0 && i < 9; i++) a[i] /= scale;
-    eigen_symmetric(3, a, NULL, w);
+    struct work uncounted = {0};
+    eigen_symmetric(3, a, NULL, w, &uncounted);
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2 - i; j++)
             if (w[j] > w[j + 1]) {

@@ -25,7 +25,7 @@ static void second_difference_eigenvalues(void **state)
         a[i * N + i] = 2;
         if (i) a[i * N + i - 1] = a[(i - 1) * N + i] = -1;
     }
-    assert_true(eigen_symmetric(N, a, v, w) < 12);
+    assert_true(eigen_symmetric(N, a, v, w, &(struct work){0}) < 12);
     for (int k = 1; k <= N; k++) {
         double want = 2 - 2 * cos(k * PI / (N + 1)), nearest = 1e9;
         for (int i = 0; i < N; i++) nearest = fmin(nearest, fabs(w[i] - want));
@@ -44,7 +44,7 @@ static void tiny_eigenvalues_of_graded_matrices_keep_their_digits(void **state)
     (void)state;
     /* diag(1, 1e-20) turned by a small coupling that keeps it positive definite */
     double a[4] = {1, 1e-11, 1e-11, 2e-20}, w[2];
-    eigen_symmetric(2, a, NULL, w);
+    eigen_symmetric(2, a, NULL, w, &(struct work){0});
     double small = fmin(w[0], w[1]);
     assert_near(small / 1.99e-20, 1, 0.01); /* 2e-20 - 1e-22 */
 }
