@@ -36,6 +36,8 @@ struct paper {
     struct store *store;
     struct err *e;
     struct claim_rules rules;
+    const struct run_spec *run; /* the runs of all plans while they are made, and how each is executed */
+    struct run_order *order;
     bool paper_only; /* without the scenes */
     int failed;      /* runs that could not be made, or did not end */
     int nplan;
@@ -72,7 +74,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     if (r->status != RUN_OK)
         fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name, spec->model.nbody,
                 spec->nrank, r->text);
-    return store_put(p->store, spec, r, p->e);
+    return store_put(p->store, spec, &p->order[spec - p->run], r, p->e);
 }
 
 /* The runs of all scenarios as one campaign. */
@@ -80,18 +82,22 @@ static bool run_plans(struct paper *p)
 {
     int n = 0, at = 0;
     for (int i = 0; i < p->nplan; i++) n += p->plan[i].nrun;
-    struct run_spec *spec = calloc((size_t)n + 1, sizeof *spec);
-    bool *skip = calloc((size_t)n + 1, sizeof *skip);
-    CHECK(spec && skip);
+    struct arena *a = arena_create();
+    struct run_spec *spec = TAKE(a, n + 1, struct run_spec);
+    bool *skip = TAKE(a, n + 1, bool);
+    p->order = TAKE(a, n + 1, struct run_order);
     for (int i = 0; i < p->nplan; i++)
         for (int k = 0; k < p->plan[i].nrun; k++, at++) {
             spec[at] = p->plan[i].run[k];
-            skip[at] = !p->common->force && store_has(p->store, &spec[at]);
+            p->order[at] = (struct run_order){0};
         }
-    bool ok = levels_settle(p->store, spec, n, skip, p->common->quiet, p->e) &&
-              run_campaign(spec, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
-    free(spec);
-    free(skip);
+    p->run = spec;
+    bool ok = levels_settle(p->store, spec, p->order, n, p->common->quiet, a, p->e);
+    for (int i = 0; i < n && ok; i++) skip[i] = !p->common->force && store_has(p->store, &spec[i]);
+    ok = ok && run_campaign(spec, p->order, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    p->run = NULL;
+    p->order = NULL;
+    arena_destroy(a);
     return ok;
 }
 

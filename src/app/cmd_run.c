@@ -30,6 +30,8 @@ static const char doc[] =
 struct keep {
     struct store *store;
     struct err *error;
+    const struct run_spec *run; /* (the plan's number) the runs that are made, and how each is executed */
+    struct run_order *order;
     int invalid, deadlock, redundant, refined;
     int done, failed;      /* runs, failed ones among them */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
@@ -56,7 +58,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
                 r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
-    return store_put(k->store, spec, r, k->error);
+    return store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
 }
 
 static bool *stored_already(struct store *s, const struct plan *p, bool force)
@@ -65,6 +67,19 @@ static bool *stored_already(struct store *s, const struct plan *p, bool force)
     CHECK(skip);
     for (int i = 0; i < p->nrun; i++) skip[i] = !force && store_has(s, &p->run[i]);
     return skip;
+}
+
+/* The plan with its levels settled: runs of its own, everything else is shared. */
+static bool settle_plan(const struct common *c, const struct plan *p, struct plan *settled, struct keep *k,
+                        bool keep_all, struct err *e)
+{
+    struct run_spec *run = TAKE(p->arena, p->nrun, struct run_spec);
+    memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
+    k->order = TAKE(p->arena, p->nrun, struct run_order);
+    for (int i = 0; i < p->nrun; i++) k->order[i] = (struct run_order){.keep = keep_all ? KEEP_ALL : 0};
+    *settled = *p;
+    settled->run = k->run = run;
+    return levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e);
 }
 
 static void say_unused(const struct plan *p)
@@ -78,18 +93,19 @@ static void say_failed(const struct keep *k)
             k->failed, k->done);
 }
 
-static bool answer(const struct common *c, const struct plan *p, struct keep *k, struct err *e)
+static bool answer(const struct common *c, const struct plan *p, bool keep_all, struct keep *k, struct err *e)
 {
+    struct plan settled;
     if (!c->quiet) say_unused(p);
     /* A robot that cannot be read is told before a database is made. */
     if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
     k->store = arguments_store(c, c->database, e);
     if (!k->store) return false;
-    bool *skip = stored_already(k->store, p, c->force);
-    bool ok = levels_settle(k->store, p->run, p->nrun, skip, c->quiet, e) &&
-              run_campaign(p->run, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    if (!settle_plan(c, p, &settled, k, keep_all, e)) return false;
+    bool *skip = stored_already(k->store, &settled, c->force);
+    bool ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
-    return ok && run_table_print(k->store, p, c->json, stdout, e);
+    return ok && run_table_print(k->store, &settled, c->json, stdout, e);
 }
 
 int cmd_run(int argc, char **argv)
@@ -103,9 +119,8 @@ int cmd_run(int argc, char **argv)
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e, .quiet = c.quiet};
     bool ok = plan_read(&p, c.arg[0], &o, &e);
-    for (int i = 0; ok && keep_all && i < p.nrun; i++) p.run[i].keep = KEEP_ALL;
     c.force = c.force || keep_all; /* the same results, but not the same row */
-    ok = ok && answer(&c, &p, &k, &e);
+    ok = ok && answer(&c, &p, keep_all, &k, &e);
     store_close(k.store);
     bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);

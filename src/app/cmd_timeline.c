@@ -95,7 +95,7 @@ static bool from_scenario(struct shown *t)
     t->status = t->result.status;
     if (ok && t->status != RUN_OK) fprintf(stderr, "mimdsim: %s: %s\n", t->title, t->result.text);
     t->store = ok ? store_open("timeline", STORE_MEMORY, t->e) : NULL;
-    ok = ok && t->store && store_put(t->store, &spec, &t->result, t->e);
+    ok = ok && t->store && store_put(t->store, &spec, NULL, &t->result, t->e);
     if (ok) t->run_id = store_run_id(t->store, &spec);
     plan_free(&plan);
     return ok;

@@ -356,7 +356,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
         t->passing = store_open("points", STORE_MEMORY, t->bench->e);
         if (!t->passing) return false;
     }
-    if (!store_put(t->passing, spec, r, t->bench->e)) return false;
+    if (!store_put(t->passing, spec, NULL, r, t->bench->e)) return false;
     text_add(&t->runs, "%s%.12s", t->runs.length ? " " : "", spec->config_hash);
     t->kept++;
     return t->of[t->kept] == mine || finish_point(t);
@@ -377,7 +377,7 @@ static void add_runs(struct batch *t, int request, const struct run_spec *from, 
 static bool run_batch(struct batch *t)
 {
     t->of[t->nspec] = -1;
-    bool ok = run_campaign(t->spec, t->nspec, NULL, t->bench->common->jobs, true, keep_result, t, t->bench->e);
+    bool ok = run_campaign(t->spec, NULL, t->nspec, NULL, t->bench->common->jobs, true, keep_result, t, t->bench->e);
     store_close(t->passing);
     text_free(&t->runs);
     return ok;

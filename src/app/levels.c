@@ -76,49 +76,73 @@ struct settled {
     char family[HEX];
     double tolerance;
     struct level_error taken;
+    bool stored, said; /* known before; told to the user */
 };
 
 /* Settle that of run[which]; x->family is known. */
-static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, bool quiet, struct settled *x,
-                   struct err *e)
+static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, struct settled *x, struct err *e)
 {
     const double tolerance = x->tolerance = run[which].machine.network.tolerance;
     struct known k;
-    bool stored = true;
+    x->stored = true;
     if (!find_known(s, x->family, &k, e)) return false;
     if (k.n == 0) {
-        stored = false;
+        x->stored = false;
         if (!measure(s, run, nrun, x->family, e) || !find_known(s, x->family, &k, e)) return false;
     }
     int best = level_cheapest(k.level, k.n, tolerance);
     if (best < 0)
         return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be within %.3g %%",
                        run[which].kernel.name, run[which].machine.name, 100 * tolerance);
-    const struct level_error *taken = &x->taken;
     x->taken = k.level[best];
-    if (!quiet)
-        fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% permitted)\n",
-                run[which].kernel.name, run[which].machine.name, taken->level, taken->at, 100 * taken->error,
-                stored ? "stored" : "measured now", 100 * tolerance);
     return true;
 }
 
-bool levels_settle(struct store *s, struct run_spec *run, int nrun, const bool *skip, bool quiet, struct err *e)
+/* Say once what a family took. */
+static void say(const struct run_spec *run, struct settled *x)
+{
+    if (x->said) return;
+    x->said = true;
+    fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% permitted)\n",
+            run->kernel.name, run->machine.name, x->taken.level, x->taken.at, 100 * x->taken.error,
+            x->stored ? "stored" : "measured now", 100 * x->tolerance);
+}
+
+/* The number among `known` (*n) of what run[which] takes, settled now if it is new; -1: failed. */
+static int settle_run(struct store *s, const struct run_spec *run, int nrun, int which, struct settled *known, int *n,
+                      struct err *e)
+{
+    struct settled *mine = &known[*n];
+    level_family(&run[which], mine->family);
+    int at = 0;
+    while (strcmp(known[at].family, mine->family) != 0 ||
+           (at < *n && known[at].tolerance != run[which].machine.network.tolerance))
+        at++;
+    if (at == *n && !settle(s, run, nrun, which, &known[(*n)++], e)) return -1;
+    return at;
+}
+
+bool levels_settle(struct store *s, struct run_spec *run, struct run_order *order, int nrun, bool quiet,
+                   struct arena *a, struct err *e)
 {
     struct settled *known = calloc((size_t)nrun + 1, sizeof *known);
-    CHECK(known);
-    int n = 0;
+    int *taken = calloc((size_t)nrun + 1, sizeof *taken), n = 0;
+    CHECK(known && taken);
     bool ok = true;
+    /* All are settled before the first one changes: a ladder is climbed over the runs that ask. */
     for (int i = 0; i < nrun && ok; i++) {
-        if (run[i].machine.network.level != LEVEL_AUTO_TOLERANCE || (skip && skip[i])) continue;
-        level_family(&run[i], known[n].family);
-        int at = 0;
-        while (strcmp(known[at].family, known[n].family) != 0 ||
-               (at < n && known[at].tolerance != run[i].machine.network.tolerance))
-            at++;
-        if (at == n) ok = settle(s, run, nrun, i, quiet, &known[n++], e);
-        if (ok) level_take(&run[i], &known[at].taken);
+        taken[i] = -1;
+        if (run[i].machine.network.level != LEVEL_AUTO_TOLERANCE) continue;
+        taken[i] = settle_run(s, run, nrun, i, known, &n, e);
+        ok = taken[i] >= 0;
+    }
+    for (int i = 0; i < nrun && ok; i++) {
+        if (taken[i] < 0) continue;
+        struct settled *x = &known[taken[i]];
+        level_take(&run[i], &x->taken, &order[i].level_choice, a);
+        if (!quiet && !store_has(s, &run[i])) say(&run[i], x);
     }
     free(known);
+    free(taken);
     return ok;
 }

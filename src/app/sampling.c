@@ -214,7 +214,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
         p->passing = store_open("samples", STORE_MEMORY, p->e);
         if (!p->passing || !store_begin(p->passing, p->e)) return false;
     }
-    if (!store_put(p->passing, spec, r, p->e)) return false;
+    if (!store_put(p->passing, spec, NULL, r, p->e)) return false;
     p->kept++;
     return p->sample_of[p->kept] == sample || finish_sample(p, sample);
 }
@@ -251,7 +251,7 @@ static bool run_samples(struct sampler *p)
     double began = host_seconds();
     char took[32];
     bool ok = clear_tables(p) &&
-              run_campaign(p->spec, p->nspec, NULL, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+              run_campaign(p->spec, NULL, p->nspec, NULL, p->common->jobs, p->common->quiet, keep_result, p, p->e);
     snprintf(took, sizeof took, "%.2f", host_seconds() - began);
     return ok && keep_meta(p, "samples_s", took) && keep_meta(p, "samples", hex);
 }

@@ -67,9 +67,9 @@ static struct rank_summary summarise_ranks(const struct run_result *r)
     return u;
 }
 
-struct run_row run_row_make(const struct run_spec *spec, const struct run_result *r)
+struct run_row run_row_make(const struct run_spec *spec, const struct run_order *order, const struct run_result *r)
 {
-    struct run_row row = {.spec = spec, .result = r, .ranks = summarise_ranks(r)};
+    struct run_row row = {.spec = spec, .order = order, .result = r, .ranks = summarise_ranks(r)};
     text_add(&row.left_out, "%s", "");
     for (int i = 0; i < r->nomission; i++)
         text_add(&row.left_out, "%s%s: %s", i > 0 ? "; " : "", r->omission[i].what, r->omission[i].why);

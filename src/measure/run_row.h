@@ -29,6 +29,7 @@ struct rank_summary {
 /* One run: what it was asked and what came of it. */
 struct run_row {
     const struct run_spec *spec;     /* borrowed; its columns stand where the struct is known */
+    const struct run_order *order;   /* borrowed, NULL: executed as usual */
     const struct run_result *result; /* borrowed */
     struct rank_summary ranks;
     struct text left_out; /* owned: the omissions as one text */
@@ -47,7 +48,7 @@ bool stage_time_idle(const struct stage_time *t);
 struct stage_row stage_row_make(const struct run_result *r, int stage);
 
 /* run_row_make: the row of a run; ended by run_row_free. */
-struct run_row run_row_make(const struct run_spec *spec, const struct run_result *r);
+struct run_row run_row_make(const struct run_spec *spec, const struct run_order *order, const struct run_result *r);
 void run_row_free(struct run_row *row);
 
 /* The columns: of struct run_row, how it ended, and which refinements it added; then of the structs named. */

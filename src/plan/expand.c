@@ -235,16 +235,17 @@ static bool advance(struct expansion *x)
 static bool expand_points(struct expansion *x, int64_t capacity)
 {
     struct plan *p = x->plan;
-    p->run = TAKE(p->arena, capacity, struct run_spec);
+    struct run_spec *run = TAKE(p->arena, capacity, struct run_spec);
+    p->run = run;
     do {
-        int made = make_point(x, &p->run[p->nrun]);
+        int made = make_point(x, &run[p->nrun]);
         if (made < 0) return false;
         if (made == 0) continue;
         const bool repeats = run_spec_is_random(&p->run[p->nrun]) && !p->run[p->nrun].refused;
         const int repetitions = repeats ? x->scenario->repetitions : 1;
         for (int rep = 1; rep < repetitions; rep++) {
-            p->run[p->nrun + rep] = p->run[p->nrun];
-            p->run[p->nrun + rep].rep = rep;
+            run[p->nrun + rep] = run[p->nrun];
+            run[p->nrun + rep].rep = rep;
         }
         p->nrun += repetitions;
     } while (advance(x));

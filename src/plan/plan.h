@@ -22,7 +22,7 @@ struct plan {
     char name[64];        /* stem of the scenario file */
     const char *question; /* the file's question, one line */
     int nrun;
-    struct run_spec *run; /* (nrun) in plan order */
+    const struct run_spec *run; /* (nrun) in plan order; final, copies may become other runs (identity.h) */
     int nrefused;         /* points that cannot run, such as more ranks than processors (run_spec.refused); never all */
     struct err refusal;   /* of the first of them */
     int nswept;

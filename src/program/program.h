@@ -46,7 +46,9 @@ struct rank_program {
  * it stays in place, since the program points into it. */
 struct program_run {
     const struct program_type *type;
-    struct run_spec spec;        /* the settings in force: `again` may change those of the program */
+    struct run_spec spec;        /* the settings in force, a copy: `again` may change those of the program, so it may
+                                    be another run than the one that its config_hash names */
+    struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere */
     struct program_cache *cache; /* what runs share; NULL: nothing */
     struct arena *arena;         /* memory of open: lives as long as this struct */
 

@@ -15,7 +15,7 @@
 
 #include "base/check.h"
 #include "base/progress.h"
-#include "measure/run_pulse.h"
+#include "measure/run_heartbeat.h"
 #include "run/run.h"
 
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
@@ -97,6 +97,7 @@ struct worker {
 
 struct campaign {
     const struct run_spec *spec;
+    const struct run_order *order; /* (nspec), NULL: as usual */
     int nspec, next, handed, nworker, ndone, ntodo;
     const bool *skip;
     struct worker worker[MOST_WORKERS];
@@ -106,7 +107,7 @@ struct campaign {
     void *context;
     struct progress progress;
     char detail[96];
-    struct run_pulse *pulse; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
+    struct run_heartbeat *heartbeat; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
 };
 
 static const double LONG_RUN_S = 0.9; /* [s] of the host; shorter runs show in the number of those done */
@@ -118,8 +119,8 @@ static void show_progress(void *context)
     double events = 0, rate = 0, now = host_seconds();
     int ended = 0, nrank = 0;
     if (!progress_due(&c->progress)) return;
-    for (int i = 0; c->pulse && (i < c->nworker || i == 0); i++) {
-        const struct run_pulse *p = &c->pulse[i];
+    for (int i = 0; c->heartbeat && (i < c->nworker || i == 0); i++) {
+        const struct run_heartbeat *p = &c->heartbeat[i];
         double mine = (double)atomic_load_explicit(&p->events, memory_order_relaxed);
         double spent = now - atomic_load_explicit(&p->begin, memory_order_relaxed);
         if (mine == 0 || spent < LONG_RUN_S || (c->nworker > 0 && c->worker[i].busy < 0)) continue;
@@ -134,24 +135,25 @@ static void show_progress(void *context)
     progress_show(&c->progress, c->ndone);
 }
 
-/* The run as the plan has it, with a place to tell how far it is. */
-static struct run_spec with_pulse(const struct run_spec *spec, struct run_pulse *pulse)
+/* The order of run `index`, with a place to tell how far it is. */
+static struct run_order with_heartbeat(const struct run_order *order, int index, struct run_heartbeat *heartbeat)
 {
-    struct run_spec own = *spec;
-    own.pulse = pulse;
-    if (pulse) atomic_store_explicit(&pulse->events, 0, memory_order_relaxed);
+    struct run_order own = {0};
+    if (order) own = order[index];
+    own.heartbeat = heartbeat;
+    if (heartbeat) atomic_store_explicit(&heartbeat->events, 0, memory_order_relaxed);
     return own;
 }
 
-static _Noreturn void worker_main(const struct run_spec *spec, struct run_pulse *pulse, int orders, int answers)
+static _Noreturn void worker_main(const struct campaign *c, struct run_heartbeat *heartbeat, int orders, int answers)
 {
     int index;
     struct run_cache *cache = run_cache_create();
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
-        struct run_spec own = with_pulse(&spec[index], pulse);
-        a.ok = run_sharing(&own, cache, arena, &a.result, &a.error);
+        const struct run_order own = with_heartbeat(c->order, index, heartbeat);
+        a.ok = run_sharing(&c->spec[index], &own, cache, arena, &a.result, &a.error);
         if (!send_answer(answers, &a)) break;
         arena_destroy(arena);
     }
@@ -173,7 +175,7 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
             close(c->worker[i].orders);
             close(c->worker[i].answers);
         }
-        worker_main(c->spec, c->pulse ? &c->pulse[at] : NULL, orders[0], answers[1]);
+        worker_main(c, c->heartbeat ? &c->heartbeat[at] : NULL, orders[0], answers[1]);
     }
     close(orders[0]);
     close(answers[1]);
@@ -304,10 +306,10 @@ static bool run_here(struct campaign *c)
         if (c->skip && c->skip[i]) continue;
         struct arena *arena = arena_create();
         struct run_result result;
-        struct run_spec own = with_pulse(&c->spec[i], c->pulse);
+        const struct run_order own = with_heartbeat(c->order, i, c->heartbeat);
         struct err why;
         err_clear(&why);
-        if (run_sharing(&own, cache, arena, &result, &why)) ok = c->done(c->context, &c->spec[i], &result);
+        if (run_sharing(&c->spec[i], &own, cache, arena, &result, &why)) ok = c->done(c->context, &c->spec[i], &result);
         else ok = hand_refused(c, i, &why);
         arena_destroy(arena);
         c->ndone++;
@@ -334,27 +336,27 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
 }
 
 /* Memory that workers share with the parent, all zero; NULL when there is none, which only costs a remark. */
-static struct run_pulse *pulses_make(void)
+static struct run_heartbeat *heartbeats_make(void)
 {
-    void *p = mmap(NULL, MOST_WORKERS * sizeof(struct run_pulse), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
-                   -1, 0);
+    void *p = mmap(NULL, MOST_WORKERS * sizeof(struct run_heartbeat), PROT_READ | PROT_WRITE,
+                   MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     return p == MAP_FAILED ? NULL : p;
 }
 
-bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
-                  void *context, struct err *e)
+bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
+                  bool quiet, run_done_fn *done, void *context, struct err *e)
 {
-    struct campaign c = {.spec = spec, .nspec = nspec, .skip = skip, .done = done, .context = context};
+    struct campaign c = {.spec = spec, .order = order, .nspec = nspec, .skip = skip, .done = done, .context = context};
     for (int i = 0; i < nspec; i++) c.ntodo += !(skip && skip[i]);
     if (c.ntodo == 0) return true;
     c.progress = progress_make("runs", c.ntodo, quiet);
     if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (workers > c.ntodo) workers = c.ntodo;
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
-    if (!quiet) c.pulse = pulses_make();
-    if (c.pulse && workers <= 1) c.pulse->beat = show_progress, c.pulse->context = &c;
+    if (!quiet) c.heartbeat = heartbeats_make();
+    if (c.heartbeat && workers <= 1) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
     bool ok = workers <= 1 ? run_here(&c) : run_workers(&c, workers, e);
     progress_end(&c.progress);
-    if (c.pulse) munmap(c.pulse, MOST_WORKERS * sizeof *c.pulse);
+    if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
     return ok;
 }

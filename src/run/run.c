@@ -50,10 +50,11 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
 
 /* --- one run ------------------------------------------------------------------------------------------------------ */
 
-bool run_open(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct program_run *r,
-              struct err *e)
+bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
+              struct program_run *r, struct err *e)
 {
     *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
     if (!r->type)
         return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", spec->kernel.name);
     r->cache = cache_of(cache, r->type);
@@ -134,8 +135,8 @@ static void describe(void *context, char *buffer, int size)
              s->kernel.name, s->model.nbody, s->nrank, s->machine.name, (unsigned long long)s->seed, s->rep);
 }
 
-bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct run_result *out,
-                 struct err *e)
+bool run_sharing(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
+                 struct run_result *out, struct err *e)
 {
     memset(out, 0, sizeof *out);
     const double begin = host_seconds();
@@ -146,7 +147,7 @@ bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct ar
     struct arena *own = arena_create(), *scratch = arena_create();
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
-    const bool ok = run_open(spec, cache, own, &r, e) && attempts(&r, scratch, a, out, e);
+    const bool ok = run_open(spec, order, cache, own, &r, e) && attempts(&r, scratch, a, out, e);
     if (ok) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;
@@ -164,7 +165,7 @@ bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct ar
 bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *out, struct err *e)
 {
     struct run_cache *cache = run_cache_create();
-    const bool ok = run_sharing(spec, cache, a, out, e);
+    const bool ok = run_sharing(spec, NULL, cache, a, out, e);
     run_cache_destroy(cache);
     return ok;
 }
@@ -179,7 +180,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     struct arena *own = arena_create();
     struct run_cache *cache = run_cache_create();
     struct program_run r;
-    const bool ok = run_open(spec, cache, own, &r, e);
+    const bool ok = run_open(spec, NULL, cache, own, &r, e);
     if (ok) {
         struct program_estimate k = {0};
         r.type->estimate(&r, &k);

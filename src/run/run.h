@@ -24,14 +24,15 @@ struct run_cache;
 struct run_cache *run_cache_create(void);
 void run_cache_destroy(struct run_cache *cache);
 
-/* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. */
-bool run_sharing(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct run_result *out,
-                 struct err *e);
+/* run_sharing: run_one with what earlier runs left in `cache`; sharing changes no result. `order`: how
+ * the run is executed, NULL: as usual. */
+bool run_sharing(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
+                 struct run_result *out, struct err *e);
 
 /* run_open: the program of `spec`, opened (program.h) but not prepared; memory from `a`, which must live as long as
  * *r, as must `cache`. Returns false as run_one. */
-bool run_open(const struct run_spec *spec, struct run_cache *cache, struct arena *a, struct program_run *r,
-              struct err *e);
+bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
+              struct program_run *r, struct err *e);
 
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
@@ -55,8 +56,9 @@ typedef bool run_done_fn(void *context, const struct run_spec *spec, const struc
 /* A run that is refused, or whose worker process dies, is handed over as a result, too: RUN_FAILED with its reason.
  *
  * run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
- * 1: in this process). Results are handed over in plan order, so the outcome does not depend on `workers`. */
-bool run_campaign(const struct run_spec *spec, int nspec, const bool *skip, int workers, bool quiet, run_done_fn *done,
-                  void *context, struct err *e);
+ * 1: in this process), executed as `order` (nspec; NULL: as usual) says but for its heartbeat, which is the campaign's
+ * own. Results are handed over in plan order, so the outcome does not depend on `workers`. */
+bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
+                  bool quiet, run_done_fn *done, void *context, struct err *e);
 
 #endif

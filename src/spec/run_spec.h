@@ -1,4 +1,5 @@
-/* run_spec.h - everything that one run depends on, resolved; nothing writes it after the plan. */
+/* run_spec.h - everything that one run depends on, resolved; nothing writes it after the plan. How it is executed is
+ * said beside it, by struct run_order. */
 #ifndef SPEC_RUN_SPEC_H
 #define SPEC_RUN_SPEC_H
 
@@ -25,14 +26,23 @@ enum keep_bit { KEEP_START_EVENTS = 1, KEEP_SPANS = 2, KEEP_LINKS = 4, KEEP_BASE
             KEEP_FIXED = 512, KEEP_GENERAL = 1024, KEEP_BRANCHES = 2048, KEEP_TURN = 4096,
             KEEP_SPATIAL = 8192, KEEP_SCENES = 1 << 15, KEEP_ALL = 0xffff };
 
-/* How level 'auto-tolerance' was settled: no setting, no part of a run's identity. */
+/* How level 'auto-tolerance' was settled: the spec of the run names the level that was taken. */
 struct level_choice {
     bool made;
-    double error;            /* of the makespan, relative, as measured for the level that was taken */
+    double tolerance;        /* what was asked for: relative error of the makespan that may be */
+    double error;            /* that of the level that was taken, as measured */
     char at[64];             /* where it was measured: "n=P=128" */
 };
 
-struct run_pulse;
+struct run_heartbeat;
+
+/* How a run is executed, beside what it is: nothing of it is a setting or part of the identity, and none of it changes
+ * a result. All zero: as usual. */
+struct run_order {
+    unsigned keep;                   /* KEEP_*: what is computed although nothing asks for it */
+    struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere; borrowed */
+    struct level_choice level_choice;
+};
 
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
@@ -49,11 +59,9 @@ struct run_spec {
     const char *machine_changes; /* JSON object of the machine's settings that are not those of the shipped machine of
                                     its name, "{}": none; NULL: none is shipped, or nobody looked. Borrowed */
     const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */
-    struct level_choice level_choice;
-    struct run_pulse *pulse; /* where the run tells how far it is, NULL: nowhere; no setting either, and borrowed */
     const char *refused;     /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
     int refused_kind;        /* err_kind of that */
-    unsigned keep;           /* KEEP_*: no setting, no part of the identity: results are the same */
+    unsigned keep;           /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */
 };
 
 /* run_spec_is_random: whether the run's own seed is used: noise, background traffic, random routes. Where not, all

@@ -61,12 +61,16 @@ static const struct column run_identity[] = {
 };
 const struct column_table run_identity_columns = COLUMNS(run_identity);
 
-static bool level_chosen(const void *row) { return spec_of(row)->level_choice.made; }
+#define ORDER(member) .part = PART(struct run_row, order), .offset = offsetof(struct run_order, member)
+
+static const struct run_order *order_of(const void *row) { return ((const struct run_row *)row)->order; }
+
+static bool level_chosen(const void *row) { return order_of(row) && order_of(row)->level_choice.made; }
 
 static void read_asked(const struct column *c, const void *row, struct column_value *v)
 {
     (void)c;
-    snprintf(v->buffer, sizeof v->buffer, "auto-tolerance %.9g %%", 100 * spec_of(row)->machine.network.tolerance);
+    snprintf(v->buffer, sizeof v->buffer, "auto-tolerance %.9g %%", 100 * order_of(row)->level_choice.tolerance);
     v->kind = VALUE_TEXT;
     v->text = v->buffer;
 }
@@ -74,9 +78,9 @@ static void read_asked(const struct column *c, const void *row, struct column_va
 static const struct column run_level[] = {
     {"level_asked", COLUMN_STRING, .value = read_asked, .known = level_chosen, .flags = COLUMN_NULL,
      .doc = "'auto-tolerance 2 %': `level` was taken for its measured error"},
-    {"level_error", COLUMN_REAL, SPEC(level_choice.error), .known = level_chosen, .flags = COLUMN_NULL,
+    {"level_error", COLUMN_REAL, ORDER(level_choice.error), .known = level_chosen, .flags = COLUMN_NULL,
      .doc = "of the makespan, relative, at level_error_at"},
-    {"level_error_at", COLUMN_CHARS, SPEC(level_choice.at), .known = level_chosen, .flags = COLUMN_NULL,
+    {"level_error_at", COLUMN_CHARS, ORDER(level_choice.at), .known = level_chosen, .flags = COLUMN_NULL,
      .doc = "where that was measured: \"n=P=128\""},
 };
 const struct column_table run_level_columns = COLUMNS(run_level);

@@ -43,8 +43,10 @@ void store_close(struct store *s);
 /* store_has: whether a run that ended RUN_OK with this identity is stored (RUN_INVALID and others are run again). */
 bool store_has(struct store *s, const struct run_spec *spec);
 
-/* store_put: the run with provenance, in one transaction; nothing is stored on failure. */
-bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e);
+/* store_put: the run with provenance and how its level was chosen (`order`, NULL: by the spec), in one transaction;
+ * nothing is stored on failure. */
+bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order, const struct run_result *r,
+               struct err *e);
 
 /* store_note_build: this program in table build, for rows that belong to no run; store_put does it by itself. */
 bool store_note_build(struct store *s, struct err *e);

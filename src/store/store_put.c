@@ -75,12 +75,13 @@ static bool put_row(struct store *s, enum statement which, struct binding *b, co
     return store_step(s, b->statement, e);
 }
 
-static bool put_run(struct store *s, const struct run_spec *spec, const struct run_result *r, int64_t *id,
+static bool put_run(struct store *s, const struct run_spec *spec, const struct run_order *order,
+                    const struct run_result *r, int64_t *id,
                     struct err *e)
 {
     struct binding b;
     if (!bind_start(s, STATEMENT_RUN_INSERT, &b, e)) return false;
-    struct run_row row = run_row_make(spec, r);
+    struct run_row row = run_row_make(spec, order, r);
     bind_int(&b, s->build_id);
     const bool ok = put_row(s, STATEMENT_RUN_INSERT, &b, &row, e);
     run_row_free(&row);
@@ -232,13 +233,14 @@ static bool remove_old(struct store *s, const struct run_spec *spec, struct err 
 
 bool store_note_build(struct store *s, struct err *e) { return find_build(s, e); }
 
-bool store_put(struct store *s, const struct run_spec *spec, const struct run_result *r, struct err *e)
+bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order, const struct run_result *r,
+               struct err *e)
 {
     bool alone = !s->in_transaction;
     int64_t run = 0;
     CHECK(s->writable);
     if (alone && !store_begin(s, e)) return false;
-    bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, r, &run, e) &&
+    bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, order, r, &run, e) &&
               put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) && put_baselines(s, run, r, e) &&
               put_errors(s, run, r, e) && put_omissions(s, run, r, e) && put_links(s, run, r, e) &&
               put_spans(s, run, r, e);

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/text.h"
 #include "spec/identity.h"
+#include "spec/spec_fields.h"
 
 void level_family(const struct run_spec *spec, char hex[65])
 {
@@ -32,12 +33,22 @@ int level_cheapest(const struct level_error *error, int n, double tolerance)
     return -1;
 }
 
-void level_take(struct run_spec *spec, const struct level_error *taken)
+/* The tolerance acts no more: its default, so that the run is the one that asked for this level at once. */
+static void drop_tolerance(struct run_spec *spec, struct arena *a)
+{
+    const struct field *f = &machine_table.field[field_find(&machine_table, "network.tolerance")];
+    char why[160];
+    CHECK(field_set(f, &spec->machine, f->fallback, a, why, (int)sizeof why));
+}
+
+void level_take(struct run_spec *spec, const struct level_error *taken, struct level_choice *choice, struct arena *a)
 {
     int k = 0;
     while (k < LEVELS && strcmp(network_level_name((enum network_level)k), taken->level) != 0) k++;
     CHECK(k < LEVELS);
+    *choice = (struct level_choice){.made = true, .tolerance = spec->machine.network.tolerance, .error = taken->error};
+    text_copy(choice->at, sizeof choice->at, taken->at);
     spec->machine.network.level = (enum network_level)k;
-    spec->level_choice = (struct level_choice){.made = true, .error = taken->error};
-    text_copy(spec->level_choice.at, sizeof spec->level_choice.at, taken->at);
+    drop_tolerance(spec, a);
+    run_identify(spec, a);
 }

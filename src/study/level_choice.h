@@ -6,6 +6,7 @@
 #ifndef STUDY_LEVEL_CHOICE_H
 #define STUDY_LEVEL_CHOICE_H
 
+#include "base/arena.h"
 #include "spec/run_spec.h"
 
 /* level_family: SHA-256, in hexadecimal, of the settings of `spec` without its numbers of ranks and bodies, level,
@@ -23,7 +24,8 @@ struct level_error {
  * `error` (n), -1: none. */
 int level_cheapest(const struct level_error *error, int n, double tolerance);
 
-/* level_take: `spec`, which asks for auto-tolerance, takes this level. */
-void level_take(struct run_spec *spec, const struct level_error *taken);
+/* level_take: `spec`, which asks for auto-tolerance and is a copy that nobody has run yet, becomes the run at this
+ * level, with the identity of any such run; its text lives in `a`. *choice keeps what was asked for. */
+void level_take(struct run_spec *spec, const struct level_error *taken, struct level_choice *choice, struct arena *a);
 
 #endif

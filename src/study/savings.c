@@ -34,12 +34,11 @@ static double spread_of(const struct shortest *s) { return s->time[2] - s->time[
 static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cache *cache, struct shortest *host,
                      int64_t *machine_ps, struct err *e)
 {
-    struct run_spec with = *spec;
+    const struct run_order order = {.keep = keep};
     struct run_result result;
     struct arena *a = arena_create();
-    with.keep = keep;
     double begin = host_processor_seconds();
-    bool ok = run_sharing(&with, cache, a, &result, e);
+    bool ok = run_sharing(spec, &order, cache, a, &result, e);
     shortest_add(host, host_processor_seconds() - begin);
     if (ok) *machine_ps = result.makespan_ps;
     arena_destroy(a);

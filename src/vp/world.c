@@ -8,7 +8,7 @@
 #include "base/digest.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "measure/run_pulse.h"
+#include "measure/run_heartbeat.h"
 #include "vp/vp.h"
 
 enum { STACK_BYTES = 64 * 1024 };
@@ -98,9 +98,9 @@ static inline void warm_up(const struct world *w)
 
 enum { PULSE_EVENTS = 1 << 14 }; /* 5 to 30 ms of the host */
 
-static void tell_pulse(const struct world *w)
+static void tell_heartbeat(const struct world *w)
 {
-    struct run_pulse *p = w->load->pulse;
+    struct run_heartbeat *p = w->load->heartbeat;
     if (!p) return;
     atomic_store_explicit(&p->events, sim_events(w->sim), memory_order_relaxed);
     atomic_store_explicit(&p->ended, w->nfinished, memory_order_relaxed);
@@ -120,15 +120,15 @@ static void loop(struct world *w)
             fiber_enter(v->fiber);
         }
         if (--quiet_events == 0) {
-            tell_pulse(w);
+            tell_heartbeat(w);
             quiet_events = PULSE_EVENTS;
         }
     } while (!w->late && sim_step(w->sim));
 }
 
-static void begin_pulse(const struct world *w, double now)
+static void begin_heartbeat(const struct world *w, double now)
 {
-    struct run_pulse *p = w->load->pulse;
+    struct run_heartbeat *p = w->load->heartbeat;
     if (!p) return;
     atomic_store_explicit(&p->events, 0, memory_order_relaxed);
     atomic_store_explicit(&p->ended, 0, memory_order_relaxed);
@@ -196,7 +196,7 @@ static void run(struct world *w, uint64_t seed)
 {
     struct run_result *r = w->result;
     double begin = host_seconds();
-    begin_pulse(w, begin);
+    begin_heartbeat(w, begin);
     make_ranks(w, seed);
     background_start(w, seed);
     loop(w);

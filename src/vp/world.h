@@ -25,7 +25,7 @@ struct world_load {
                                       come in order and some levels need fewer events, with the same times */
     const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
     int noutput;
-    struct run_pulse *pulse;       /* where to tell how far the run is, NULL: nowhere */
+    struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */
 };
 
 /* world_run: run a load on machine `m` to the end.

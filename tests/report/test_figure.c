@@ -59,7 +59,7 @@ static int make_fixture(void **state)
             spec.machine.network.level = level ? LEVEL_LINK : LEVEL_LOGGP;
             made_identity(&spec, a);
             struct run_result r = made_result(a, &spec);
-            assert_true(store_put(f->s, &spec, &r, &f->e));
+            assert_true(store_put(f->s, &spec, NULL, &r, &f->e));
         }
     arena_destroy(a);
     *state = f;
@@ -318,7 +318,7 @@ static void put_machines(struct fixture *f)
                 strcpy(r.baseline[0].name, "fastest serial");
                 strcpy(r.baseline[3].name, "parallel code on one processor");
                 if (p == 4 && ratio == 1) made_spans(&r, a);
-                assert_true(store_put(f->s, &spec, &r, &f->e));
+                assert_true(store_put(f->s, &spec, NULL, &r, &f->e));
             }
     arena_destroy(a);
 }

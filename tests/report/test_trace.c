@@ -212,7 +212,7 @@ static void a_stored_timeline_comes_back(void **state)
     struct run_result back;
     struct store *s = store_open(scratch_path(path, sizeof path, f->folder, "t.db"), STORE_WRITE, &f->e);
     assert_non_null(s);
-    assert_true(store_put(s, &f->spec, &f->r, &f->e));
+    assert_true(store_put(s, &f->spec, NULL, &f->r, &f->e));
     assert_true(trace_read(s, store_run_id(s, &f->spec), f->a, &back, &f->e));
     assert_int_equal(back.nspan, f->r.nspan);
     assert_int_equal(back.nrank, NRANK);

@@ -90,7 +90,7 @@ static struct rows campaign(const struct plan *p, const bool *skip, int workers)
     struct rows rows = {0};
     struct err e;
     err_clear(&e);
-    if (!run_campaign(p->run, p->nrun, skip, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+    if (!run_campaign(p->run, NULL, p->nrun, skip, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
     return rows;
 }
 
@@ -126,6 +126,15 @@ static void what_is_skipped_is_not_run_and_the_rest_keeps_its_order(void **unuse
     plan_free(&p);
 }
 
+/* Copies of the plan's runs, which the caller may change, in the plan's place. */
+static struct run_spec *own_runs(struct plan *p)
+{
+    struct run_spec *run = TAKE(p->arena, p->nrun, struct run_spec);
+    memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
+    p->run = run;
+    return run;
+}
+
 static void who_takes_the_rows_may_stop(void **unused)
 {
     (void)unused;
@@ -134,7 +143,7 @@ static void who_takes_the_rows_may_stop(void **unused)
         struct rows rows = {.last = 4};
         struct err e;
         err_clear(&e);
-        assert_false(run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e));
+        assert_false(run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e));
         assert_int_equal(rows.n, 4);
     }
     plan_free(&p);
@@ -144,12 +153,13 @@ static void a_run_that_cannot_be_made_fails_and_the_others_go_on(void **unused)
 {
     (void)unused;
     struct plan p = speedup();
-    p.run[6].nrank = p.run[6].model.nbody + 1;
+    struct run_spec *run = own_runs(&p);
+    run[6].nrank = run[6].model.nbody + 1;
     for (int workers = 1; workers <= 3; workers++) {
         struct rows rows = {0};
         struct err e;
         err_clear(&e);
-        if (!run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+        if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
         assert_int_equal(rows.n, p.nrun);
         assert_int_equal(rows.failed, 1);
         assert_int_equal(rows.refusal, ERR_CONFIG);
@@ -163,16 +173,17 @@ static void a_worker_that_dies_costs_its_run_alone(void **unused)
 {
     (void)unused;
     struct plan p = speedup();
+    struct run_spec *run = own_runs(&p);
     for (int i = 2; i < p.nrun; i++) { /* so long that the first row is there while others still run */
-        p.run[i] = p.run[13];
-        p.run[i].machine.network.level = LEVEL_FLIT;
+        run[i] = run[13];
+        run[i].machine.network.level = LEVEL_FLIT;
     }
     for (int workers = 2; workers <= 4; workers++) {
         for (int dies = ALL; dies <= THE_LAST; dies++) {
             struct rows rows = {.dies = dies};
             struct err e;
             err_clear(&e);
-            if (!run_campaign(p.run, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
+            if (!run_campaign(p.run, NULL, p.nrun, NULL, workers, true, keep, &rows, &e)) fail_msg("%s", e.text);
             assert_int_equal(rows.n, p.nrun);
             assert_true(rows.failed >= 1 && rows.failed <= (dies == ALL ? workers : 1));
             assert_int_equal(rows.refusal, ERR_INTERNAL);
@@ -208,9 +219,10 @@ static void sharing_scenes_changes_no_number(void **unused)
     if (!plan_read(&p, MIMDSIM_SRCDIR "/scenarios/fig7.yaml", &o, &e)) fail_msg("%s", e.text);
     int n = p.nrun < MOST_RUNS ? p.nrun : MOST_RUNS;
     struct shared with = {0}, without = {0};
-    assert_true(n > 4 && run_campaign(p.run, n, NULL, 1, true, keep_whole, &with, &e));
-    for (int i = 0; i < n; i++) p.run[i].keep = KEEP_SCENES;
-    assert_true(run_campaign(p.run, n, NULL, 1, true, keep_whole, &without, &e));
+    assert_true(n > 4 && run_campaign(p.run, NULL, n, NULL, 1, true, keep_whole, &with, &e));
+    struct run_order order[MOST_RUNS];
+    for (int i = 0; i < n; i++) order[i] = (struct run_order){.keep = KEEP_SCENES};
+    assert_true(run_campaign(p.run, order, n, NULL, 1, true, keep_whole, &without, &e));
     for (int i = 0; i < n; i++) {
         const struct run_result *x = &with.row[i], *y = &without.row[i];
         assert_true(x->status == y->status && x->digest == y->digest && x->makespan_ps == y->makespan_ps);

@@ -134,7 +134,7 @@ static bool answer_of(const struct run_spec *spec, struct arena *a, struct answe
     struct run_cache *cache = run_cache_create();
     struct program_run r;
     struct run_result *result = TAKE(a, 1, struct run_result);
-    const bool done = run_open(spec, cache, a, &r, &e) && r.type->prepare(&r, a, &e);
+    const bool done = run_open(spec, NULL, cache, a, &r, &e) && r.type->prepare(&r, a, &e);
     if (done) {
         if (left_out) *n = omission_listing(&r, left_out);
         const struct machine_spec machine = omission_machine(spec);

@@ -16,7 +16,7 @@
 #include "dynamics/system.h"
 #include "kernel/dynamics_program.h"
 #include "kernel/kernel.h"
-#include "measure/run_pulse.h"
+#include "measure/run_heartbeat.h"
 #include "model/model.h"
 #include "plan/plan.h"
 #include "run/run.h"
@@ -103,7 +103,7 @@ static void serial_run(const struct run_spec *spec, struct run_cache *cache, str
 {
     struct err e;
     err_clear(&e);
-    assert_true(run_open(spec, cache, a, r, &e) && r->type->prepare(r, a, &e));
+    assert_true(run_open(spec, NULL, cache, a, r, &e) && r->type->prepare(r, a, &e));
     const struct kernel_job *job = &dynamics_run_of(r)->job;
     struct work w = {0};
     const struct dynamics_type *t = dynamics_type_of(PRECISION_DOUBLE);
@@ -372,7 +372,7 @@ static void fail_a_check(void *context)
 }
 
 /* What the process writes to stderr before a CHECK ends it, in a child. */
-static void last_words(const struct run_spec *spec, char *text, int size)
+static void last_words(const struct run_spec *spec, const struct run_order *order, char *text, int size)
 {
     int end[2];
     assert_int_equal(pipe(end), 0);
@@ -382,7 +382,7 @@ static void last_words(const struct run_spec *spec, char *text, int size)
         struct arena *a = arena_create();
         struct run_result r;
         struct err e = {0};
-        run_one(spec, a, &r, &e);
+        run_sharing(spec, order, run_cache_create(), a, &r, &e);
         _exit(0);
     }
     close(end[1]);
@@ -400,10 +400,10 @@ static void a_failed_check_says_in_which_run(void **unused)
     (void)unused;
     struct plan p;
     struct run_spec spec = SPEC(&p, "level=link", "n=128", "seed=7");
-    struct run_pulse pulse = {.beat = fail_a_check, .context = &pulse};
+    struct run_heartbeat heartbeat = {.beat = fail_a_check, .context = &heartbeat};
     char text[2048];
-    spec.pulse = &pulse;
-    last_words(&spec, text, (int)sizeof text);
+    const struct run_order order = {.heartbeat = &heartbeat};
+    last_words(&spec, &order, text, (int)sizeof text);
     assert_non_null(strstr(text, "planted"));
     assert_non_null(strstr(text, "kernel dynamics, n = 128, 128 ranks"));
     assert_non_null(strstr(text, "seed 7"));

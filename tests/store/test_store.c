@@ -71,7 +71,7 @@ static double number(struct fixture *f, const char *sql) { return strtod(cell(f,
 
 static void put(struct fixture *f, const struct run_spec *spec, const struct run_result *r)
 {
-    if (!store_put(f->s, spec, r, &f->e)) fail_msg("%s", f->e.text);
+    if (!store_put(f->s, spec, NULL, r, &f->e)) fail_msg("%s", f->e.text);
 }
 
 static void a_run_comes_back_as_it_was_put(void **state)
@@ -374,7 +374,7 @@ static void a_run_that_fails_half_way_leaves_no_row(void **state)
                                   "BEGIN SELECT RAISE(ABORT, 'planted'); END",
                                   NULL, NULL, NULL),
                      SQLITE_OK);
-    assert_false(store_put(f->s, &spec, &r, &f->e));
+    assert_false(store_put(f->s, &spec, NULL, &r, &f->e));
     assert_non_null(strstr(f->e.text, "planted"));
     assert_int_equal(number(f, "SELECT count(*) FROM run"), 1);
     assert_int_equal(number(f, "SELECT count(DISTINCT run_id) FROM rank_stage"), 1);
@@ -414,7 +414,7 @@ static void a_passing_store_leaves_no_file_and_keeps_what_claims_ask(void **stat
     struct run_spec spec = made_spec(f->a, "t3e-300", 4, 4, 0);
     struct run_result r = made_result(f->a, &spec);
     char answer[8192];
-    assert_true(store_put(passing, &spec, &r, &f->e));
+    assert_true(store_put(passing, &spec, NULL, &r, &f->e));
     assert_true(store_has(passing, &spec));
     assert_true(store_select(passing, "SELECT count(*) > 0 FROM v_speedup", 0, NULL, take_cell, answer, &f->e));
     assert_string_equal(answer, "1");

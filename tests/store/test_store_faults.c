@@ -72,7 +72,7 @@ static void fill(const char *path, int count)
     for (int i = 0; i < count; i++) {
         struct run_spec spec = made_spec(a, "t3e-300", 16, 16, i);
         struct run_result r = made_result(a, &spec);
-        assert_true(store_put(s, &spec, &r, &e));
+        assert_true(store_put(s, &spec, NULL, &r, &e));
     }
     store_close(s);
     arena_destroy(a);
@@ -291,7 +291,7 @@ static void put_on_full_disk(struct fixture *f)
     struct run_spec spec = made_spec(a, "t3e-300", 256, 256, 99);
     struct run_result r = made_result(a, &spec);
     limit_files(30000);
-    REQUIRE(!store_put(s, &spec, &r, &f->e));
+    REQUIRE(!store_put(s, &spec, NULL, &r, &f->e));
     REQUIRE(f->e.kind == ERR_IO);
     REQUIRE(!store_has(s, &spec));
 }
@@ -317,7 +317,7 @@ static void run_for_ever(struct fixture *f, int told)
     for (int i = 0;; i++) {
         struct run_spec spec = made_spec(a, "t3e-300", 64, 64, i);
         struct run_result r = made_result(a, &spec);
-        REQUIRE(store_put(s, &spec, &r, &f->e));
+        REQUIRE(store_put(s, &spec, NULL, &r, &f->e));
         REQUIRE(write(told, &i, sizeof i) == sizeof i);
     }
 }
@@ -377,7 +377,7 @@ static void two_writers_at_once_lose_nothing(void **state)
         for (int i = 0; i < 30; i++) {
             struct run_spec spec = made_spec(a, "t3e-300", 8, 8, i * 2 + c);
             struct run_result r = made_result(a, &spec);
-            REQUIRE(store_put(s, &spec, &r, &f->e));
+            REQUIRE(store_put(s, &spec, NULL, &r, &f->e));
         }
         store_close(s);
         _exit(0);

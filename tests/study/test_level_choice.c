@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "spec/identity.h"
 #include "study/level_choice.h"
 #include "study/trial.h"
 
@@ -34,15 +35,29 @@ static void the_cheapest_level_within_the_tolerance_is_taken(void **state)
     assert_int_equal(level_cheapest(measured + 1, MEASURED - 1, 1e-4), -1);
 }
 
-static void a_run_takes_the_level_and_remembers_its_error(void **state)
+static void a_run_takes_the_level_and_is_the_run_at_that_level(void **state)
 {
     (void)state;
-    struct run_spec s = {.machine = trial_machine(8), .nrank = 8};
+    struct arena *a = arena_create();
+    struct run_spec s = {.machine = trial_machine(8), .nrank = 8}, plain = s;
+    struct level_choice choice;
     s.machine.network.level = LEVEL_AUTO_TOLERANCE;
-    level_take(&s, &measured[3]);
+    s.machine.network.tolerance = 0.01;
+    run_identify(&s, a);
+    char asked[65];
+    memcpy(asked, s.config_hash, sizeof asked);
+    level_take(&s, &measured[3], &choice, a);
     assert_int_equal(s.machine.network.level, LEVEL_LINK);
-    assert_true(s.level_choice.made && s.level_choice.error == 8e-3);
-    assert_string_equal(s.level_choice.at, "P=8");
+    assert_true(choice.made && choice.error == 8e-3 && choice.tolerance == 0.01);
+    assert_string_equal(choice.at, "P=8");
+    /* Its identity is its own: not that of the question, but that of a run that asks for the level at once. */
+    assert_string_not_equal(s.config_hash, asked);
+    plain.machine.network.level = LEVEL_LINK;
+    plain.machine.network.tolerance = 0.02; /* the default */
+    run_identify(&plain, a);
+    assert_string_equal(s.config_hash, plain.config_hash);
+    assert_non_null(strstr(s.config_text, "machine.network.level = link\n"));
+    arena_destroy(a);
 }
 
 static void a_family_is_alike_but_for_its_size(void **state)
@@ -68,7 +83,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_cheapest_level_within_the_tolerance_is_taken),
-        cmocka_unit_test(a_run_takes_the_level_and_remembers_its_error),
+        cmocka_unit_test(a_run_takes_the_level_and_is_the_run_at_that_level),
         cmocka_unit_test(a_family_is_alike_but_for_its_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
