@@ -145,6 +145,14 @@ bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
     return true;
 }
 
+bool net_ask_others(struct net *n, net_others_fn *others, void *context)
+{
+    if (!n->type->asks) return false;
+    n->others = others;
+    n->others_context = context;
+    return true;
+}
+
 bool net_stuck(const struct net *n, char *text, int size)
 {
     if (n->in_flight == 0 || !n->type->stuck) return false;

@@ -45,6 +45,7 @@ struct net_type {
     void (*send)(struct net *n, struct net_message *m);
     void (*occupy)(struct net *n, int link, sim_ps now, sim_ps busy); /* NULL: the level cannot */
     bool (*stuck)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
+    bool asks; /* for others' messages when a message comes to a link (net_ask_others) */
 };
 
 /* net_create: the level of `m->network` over `t`.
@@ -73,6 +74,14 @@ sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);
 /* net_occupy: directed link `link` serves somebody else's traffic for `busy` from `now`, or from when it is free, first
  * come first served. Called at the time `now` of the event being dispatched. False: this level knows no such thing. */
 bool net_occupy(struct net *n, int link, sim_ps now, sim_ps busy);
+
+/* net_others_fn: from when on `link` is free for a message that comes at `now`: `free`, or later when others' messages
+ * came to it by then; those of the same instant go first. Asked with rising `now` for each link. */
+typedef sim_ps net_others_fn(void *context, int link, sim_ps now, sim_ps free);
+
+/* net_ask_others: ask `others` whenever a message comes to a link; instead of net_occupy at each of theirs, and with
+ * the same outcome, but without an event for each. False: this level cannot. Call it before any message is sent. */
+bool net_ask_others(struct net *n, net_others_fn *others, void *context);
 
 /* net_stuck: true when messages are in the network but no event can move them; `text` (size bytes) then names the
  * cycle of links. */

@@ -14,4 +14,4 @@ static bool flit_create(struct net *n, struct err *e)
 
 static bool flit_stuck(const struct net *n, char *text, int size) { return way_of(n)->stuck(n, text, size); }
 
-const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, packet_send, packet_occupy, flit_stuck};
+const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, packet_send, packet_occupy, flit_stuck, false};

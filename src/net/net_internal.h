@@ -43,8 +43,8 @@ struct net {
     struct sim *sim;                    /* borrowed */
     struct arena *arena;                /* borrowed */
     net_deliver_fn *deliver;
-    void *context;
-
+    void *context, *others_context;
+    net_others_fn *others; /* NULL: nobody is asked (net_ask_others) */
     sim_ps tau, credit;                        /* hop and credit latency [ps] */
     int64_t flit_bytes;                        /* >= 1 */
     struct net_rate ejection, link;

@@ -63,6 +63,9 @@ static void flight_return(struct net *n, struct flight *f)
 static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, sim_ps now, sim_ps busy)
 {
     struct link_level *g = n->state;
+    /* Others' messages go by links alone; those that came since a link was last taken are served before. */
+    if (n->others && !net_is_injection(n, resource) && !net_is_ejection(n, resource))
+        g->free[resource] = n->others(n->others_context, resource - n->nnode, now, g->free[resource]);
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
     net_account(n, resource, 1, m->bytes, busy, at - now);
@@ -142,4 +145,4 @@ static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
     *free = ps_later(now > *free ? now : *free, busy);
 }
 
-const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, link_occupy, NULL};
+const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, link_occupy, NULL, true};

@@ -60,4 +60,4 @@ static void loggp_send(struct net *n, struct net_message *m)
     else sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), loggp_start, n, (uintptr_t)m);
 }
 
-const struct net_type net_loggp = {"loggp", LEVEL_LOGGP, loggp_create, loggp_send, NULL, NULL};
+const struct net_type net_loggp = {"loggp", LEVEL_LOGGP, loggp_create, loggp_send, NULL, NULL, false};

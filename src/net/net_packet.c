@@ -411,4 +411,5 @@ void packet_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), packet_start, f, (uintptr_t)w);
 }
 
-const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_occupy, packet_stuck};
+const struct net_type net_packet = {"packet", LEVEL_PACKET, packet_create, packet_send, packet_occupy,
+                                    packet_stuck, false};

@@ -10,6 +10,7 @@ struct background {
     struct random random;
     double mean_gap; /* between the messages on one link [ps] */
     sim_ps busy;     /* of one message */
+    sim_ps next;     /* when the next one comes, at levels that ask */
     int link;
 };
 
@@ -30,13 +31,22 @@ static void pass(void *subject, uint64_t argument, sim_ps now)
     sim_at(w->sim, now + gap(b), LANE_BACKGROUND, (uint64_t)b->link, pass, b, 0);
 }
 
+/* The messages up to `now`, without an event for each. */
+static sim_ps serve(void *context, int link, sim_ps now, sim_ps free)
+{
+    struct background *b = (struct background *)context + link;
+    for (; b->next <= now; b->next += gap(b)) free = ps_later(b->next > free ? b->next : free, b->busy);
+    return free;
+}
+
 void background_start(struct world *w, uint64_t seed)
 {
     const struct noise_spec *s = &w->machine->noise;
     if (s->background_load <= 0) return;
     int nlink = w->topology->nlink;
-    w->background_events = nlink;
     struct background *b = TAKE(w->scratch, nlink, struct background);
+    const bool asked = net_ask_others(w->net, serve, b);
+    if (!asked) w->background_events = nlink;
     for (int i = 0; i < nlink; i++) {
         double rate = topology_link_bandwidth(w->topology, i, w->machine->network.link_bandwidth);
         double busy = (double)s->background_bytes / (rate * w->machine->network.link_bandwidth) * SIM_PS_PER_S;
@@ -45,6 +55,7 @@ void background_start(struct world *w, uint64_t seed)
                                    .mean_gap = busy / s->background_load,
                                    .busy = ps_rounded(busy),
                                    .link = i};
-        sim_at(w->sim, gap(&b[i]), LANE_BACKGROUND, (uint64_t)i, pass, &b[i], 0);
+        b[i].next = gap(&b[i]);
+        if (!asked) sim_at(w->sim, b[i].next, LANE_BACKGROUND, (uint64_t)i, pass, &b[i], 0);
     }
 }

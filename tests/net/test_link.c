@@ -273,6 +273,101 @@ static void a_slow_dimension_holds_its_links_longer(void **state)
     assert_int_equal(arrival[0], (3 + 80 + 3 * 3 + 19 * 4 + 2) * 1000); /* from when the first frees the column */
 }
 
+/* Others' messages, one every `period` on each link, asked for or as events. */
+struct others {
+    struct net *net;
+    struct sim *sim;
+    sim_ps next[256], period, busy;
+    int left;
+};
+
+static sim_ps others_before(void *context, int link, sim_ps now, sim_ps free)
+{
+    struct others *o = context;
+    for (; o->next[link] <= now; o->next[link] += o->period)
+        free = (o->next[link] > free ? o->next[link] : free) + o->busy;
+    return free;
+}
+
+static void others_pass(void *subject, uint64_t link, sim_ps now)
+{
+    struct others *o = subject;
+    if (o->left == 0) return;
+    assert_true(net_occupy(o->net, (int)link, now, o->busy));
+    sim_at(o->sim, now + o->period, NET_LANE_START - 1, link, others_pass, o, link);
+}
+
+static void one_less(void *context, struct net_message *m)
+{
+    (void)m;
+    ((struct others *)context)->left--;
+}
+
+static void send_now(void *subject, uint64_t argument, sim_ps now)
+{
+    (void)now;
+    net_send(subject, (struct net_message *)(uintptr_t)argument);
+}
+
+enum { SHARED_MESSAGES = 400, ALONE = 0, EVENTS, ASKED };
+
+static void post_messages(struct others *o, struct net_message *message)
+{
+    for (int i = 0; i < SHARED_MESSAGES; i++) {
+        struct net_message *x = &message[i];
+        *x = (struct net_message){
+            .id = i, .src = i % 16, .dst = (i * 7 + 3) % 16, .bytes = 16 * (1 + i % 20)};
+        x->ready = 1000 * (i % 7 + 4 * i);
+        if (x->dst == x->src) x->dst = (x->src + 5) % 16;
+        sim_at(o->sim, x->ready, NET_LANE_START, (uint64_t)i, send_now, o->net, (uintptr_t)x);
+    }
+}
+
+static int64_t replay_shared(int how, sim_ps *arrival)
+{
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    struct topology_spec s = {
+        .family = TOPOLOGY_TORUS, .ndim = 2, .dims = {4, 4}, .nodes_per_router = 1, .processors_per_node = 1};
+    struct machine_spec m = netcheck_machine(&s, 1, 64, 0, 3);
+    struct others o = {.sim = sim_create(), .period = 40000, .busy = 13000, .left = SHARED_MESSAGES};
+    m.network.level = LEVEL_LINK;
+    struct topology *t = topology_create(&m.topology, a, &e);
+    o.net = t ? net_create(&m, t, o.sim, a, one_less, &o, false, &e) : NULL;
+    if (!o.net) fail_msg("%s", e.text);
+    assert_true(t->nlink <= 256);
+    /* All times are whole cycles, so that many heads come at the instant of another's message. */
+    for (int i = 0; how != ALONE && i < t->nlink; i++) {
+        o.next[i] = 1000 * (i % 37);
+        if (how == EVENTS) sim_at(o.sim, o.next[i], NET_LANE_START - 1, (uint64_t)i, others_pass, &o, (uint64_t)i);
+    }
+    if (how == ASKED) assert_true(net_ask_others(o.net, others_before, &o));
+    struct net_message *message = TAKE(a, SHARED_MESSAGES, struct net_message);
+    post_messages(&o, message);
+    while (o.left > 0) assert_true(sim_step(o.sim));
+    for (int i = 0; i < SHARED_MESSAGES; i++) arrival[i] = message[i].arrival;
+    int64_t events = sim_events(o.sim);
+    sim_destroy(o.sim);
+    arena_destroy(a);
+    return events;
+}
+
+static void others_asked_for_delay_as_their_events_do(void **state)
+{
+    (void)state;
+    sim_ps alone[SHARED_MESSAGES], events[SHARED_MESSAGES], asked[SHARED_MESSAGES];
+    int delayed = 0;
+    const int64_t quiet = replay_shared(ALONE, alone);
+    assert_true(replay_shared(EVENTS, events) > quiet);
+    assert_int_equal(replay_shared(ASKED, asked), quiet);
+    for (int i = 0; i < SHARED_MESSAGES; i++) {
+        assert_int_equal(asked[i], events[i]);
+        delayed += asked[i] > alone[i];
+    }
+    assert_true(delayed > SHARED_MESSAGES / 4);
+}
+
 static void wrong_lists_are_refused(void **state)
 {
     (void)state;
@@ -349,6 +444,7 @@ int main(void)
         cmocka_unit_test(a_message_costs_an_event_per_link_and_two),
         cmocka_unit_test(transactions_of_a_bus_follow_one_another),
         cmocka_unit_test(a_slow_dimension_holds_its_links_longer),
+        cmocka_unit_test(others_asked_for_delay_as_their_events_do),
         cmocka_unit_test(wrong_lists_are_refused),
         cmocka_unit_test(messages_that_wait_for_each_other_are_reported),
     };
