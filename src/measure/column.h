@@ -1,7 +1,10 @@
 /* column.h - results as tables of columns: one row of a table serves the database, JSON, the terminal and the manual.
  *
  * A column says where a value lies in its struct, what it is called and what it means; beside each result struct stands
- * its table. A value that is not known is absent: NULL in the database, null in JSON, "-" on the terminal. */
+ * its table. A value that is not known is absent: NULL in the database, null in JSON, "-" on the terminal.
+ *
+ * A new column of the database is COLUMN_NULL, since rows of older databases lack it, and wants a new STORE_VERSION
+ * (store/connection.h), since these databases lack it, too; `mimdsim query --schema` then writes docs/database.md. */
 #ifndef MEASURE_COLUMN_H
 #define MEASURE_COLUMN_H
 
