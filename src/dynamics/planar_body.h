@@ -42,6 +42,7 @@ struct joint_cost {
     int bias;
     int h, h_transposed;
     int w, w_transposed;
+    struct work subspace;
     struct work qdot, step; /* body_qdot, body_step */
 };
 
@@ -71,6 +72,7 @@ enum {
     BODY_SPRING_FLOP = 5,
     BODY_FORCE_FLOP = 11,
     BODY_ACCELERATE_FLOP = 11,
+    BODY_PHI_FLOP = 7,
     BODY_SHARE_FLOP = 160 /* of a balanced partition: sweeps, assembly */
 };
 static inline void body_gyro(const struct body *b, const real *w, real *f)

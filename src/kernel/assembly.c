@@ -10,6 +10,7 @@ void assembly_inverse_inertia(struct chain *ch, int i, real *phi)
     const struct body *b = &ch->shared->body[i];
     if (!ch->dense) {
         body_phi(b, phi);
+        ch->work.flop += BODY_PHI_FLOP;
         return;
     }
     chain_shifted_inertia(b, phi, &ch->work);
@@ -59,7 +60,7 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E)
     }
     if (D) {
         for (int k = 0; k < SQUARE; k++) D[k] += moved[k];
-        ch->work.flop += ch->dense ? SQUARE : PACKED;
+        ch->work.flop += SQUARE;
     }
     for (int k = 0; k < SQUARE; k++) E[k] = -E[k];
 }

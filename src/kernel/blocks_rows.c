@@ -167,7 +167,6 @@ static void finish(struct blocks *b, int slot, bool again, struct work *w)
         real *factor = b->factor + ((b->keep ? slot * n : 0) + i - b->lo) * b->factor_stride;
         if (!again && !dense_factor(b->size[i], blocks_row_D(b, i), factor, w)) b->broken = true;
         dense_solve(b->size[i], b->m, factor, blocks_row_r(b, i), w);
-        w->flop += (uint64_t)(b->size[i] * b->m);
         for (int k = 0; k < b->size[i] * b->m && b->broken; k++) blocks_row_r(b, i)[k] = (real)__builtin_nan("");
     }
     work_report(b->comm, w);

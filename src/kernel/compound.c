@@ -12,10 +12,12 @@ static void unpack(const real *S, real *full)
 }
 
 /* pack: the symmetric part of a full matrix that is symmetric but for rounding. */
-static void pack(const real *full, real *S)
+static void pack(const real *full, real *S, struct work *w)
 {
     for (int i = 0; i < SPACE; i++)
-        for (int j = 0; j <= i; j++) S[packed_index(i, j)] = (full[SPACE * i + j] + full[SPACE * j + i]) / 2;
+        for (int j = 0; j <= i; j++)
+            S[packed_index(i, j)] = (real)0.5 * (full[SPACE * i + j] + full[SPACE * j + i]);
+    w->flop += 2 * PACKED;
 }
 
 static void transpose(const real *M, real *out)
@@ -46,7 +48,7 @@ static bool soft_compliance(const struct joint_view *v, const real *Z, real *N, 
     if (!dense_factor(SPACE, G, G, w)) return false;
     for (int i = 0; i < SPACE; i++) inverse[(SPACE + 1) * i] = 1;
     dense_solve(SPACE, SPACE, G, inverse, w);
-    pack(inverse, N);
+    pack(inverse, N, w);
     w->flop += (uint64_t)(v->s->d * 2 * PACKED);
     return true;
 }
@@ -75,7 +77,7 @@ bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct
         dense_product_tn(SPACE, SPACE, c, columns, spread, full, w);
         w->flop += (uint64_t)(SQUARE_VEC_FLOP * c + SCREW_DOT_FLOP * c * c);
     }
-    pack(full, N);
+    pack(full, N, w);
     return true;
 }
 
@@ -95,7 +97,7 @@ void joint_force(const struct joint_view *v, int m, const real *Z, const real *N
         if (j == 0 && v->bias) screw_sub(rest, v->bias);
         packed_multiply(N, rest, seen, w);
         for (int k = 0; k < SPACE; k++) h[SPACE * j + k] = given[k] - seen[k];
-        w->flop += 3 * SCREW_ADD_FLOP;
+        w->flop += (uint64_t)((1 + (entry != NULL) + (j == 0 && v->bias)) * SCREW_ADD_FLOP);
     }
 }
 
@@ -126,7 +128,7 @@ bool compound_rake(const struct joint_view *v, int m, const struct compound *lea
     move_forces(v->x, full, moved, w); /* N X^T */
     transpose(moved, full);
     move_forces(v->x, full, moved, w); /* X N X^T */
-    pack(moved, packed);
+    pack(moved, packed, w);
     for (int i = 0; i < PACKED; i++) dI[i] += packed[i];
     for (int j = 0; j < m; j++) {
         xform_force(carried, v->x, h + SPACE * j);
@@ -157,7 +159,7 @@ bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, 
     for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < SPACE; j++)
             n21[SPACE * i + j] = right[2 * SPACE * i + j], product[SPACE * i + j] = right[2 * SPACE * i + SPACE + j];
-    pack(product, after22);
+    pack(product, after22, w);
     for (int j = 0; j < m; j++) { /* K (beta_2 - P22 dp), one column at a time; then beta_1 -= P12 (dp + dI beta_2) */
         real K_copy[SQUARE];
         memcpy(K_copy, again, sizeof again);
@@ -172,7 +174,7 @@ bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, 
     }
     dense_product(SPACE, SPACE, SPACE, load, n21, product, w);
     dense_product(SPACE, SPACE, SPACE, P12, product, K, w);
-    pack(K, product);
+    pack(K, product, w);
     for (int i = 0; i < PACKED; i++) u->p11[i] -= product[i];
     transpose(n21, u->p12);
     memcpy(u->p22, after22, PACKED * sizeof(real));
@@ -189,7 +191,7 @@ static void pulled_back(const struct xform *x, const real *p11, const real *p22,
     move_motions(x, full, moved, w); /* P22 X */
     transpose(moved, full);
     move_motions(x, full, moved, w); /* X^T P22 X */
-    pack(moved, Z);
+    pack(moved, Z, w);
     for (int i = 0; i < PACKED; i++) Z[i] += p11[i];
     w->flop += PACKED;
 }
@@ -199,8 +201,8 @@ static void subtract_product(const real *A, const real *B, real *S, struct work 
 {
     for (int i = 0; i < SPACE; i++)
         for (int j = 0; j <= i; j++) {
-            real sum = 0;
-            for (int k = 0; k < SPACE; k++) sum += A[SPACE * i + k] * B[SPACE * k + j];
+            real sum = A[SPACE * i] * B[j];
+            for (int k = 1; k < SPACE; k++) sum += A[SPACE * i + k] * B[SPACE * k + j];
             S[packed_index(i, j)] -= sum;
         }
     w->flop += PACKED * SCREW_AXPY_FLOP;

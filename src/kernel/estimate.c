@@ -117,7 +117,7 @@ static void interface(const struct run_spec *spec, const struct outline *o, doub
         add(e, 2 * o->pairs, update);
         e->bytes += 2 * o->triples * c * c * (double)sizeof(real);
         const double edges = 2 * (o->pairs - o->triples), both = o->P * o->steps - edges;
-        e->flops += both * two + edges * one + 2 * o->pairs * update + o->P * (factor + 2 * m * triangular);
+        e->flops += both * two + edges * one + 2 * o->pairs * update + o->P * (factor + m * (2 * triangular - c));
     }
 }
 

@@ -78,10 +78,7 @@ static void exchange_joints(struct forward *f)
         const struct body *b = forward_body(f, ch->lo - 1);
         comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
         body_subspace(b, f->message, f->left);
-        if (!f->left->pick) {
-            ch->work.flop += (uint64_t)body_cost(b)->place;
-            ch->work.trig += (uint64_t)body_cost(b)->place_trig;
-        }
+        work_add(&ch->work, &body_cost(b)->subspace);
     }
     chain_report(ch);
 }
@@ -274,6 +271,7 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
 {
     struct chain *ch = &f->chain;
     const real *D = f->D + SQUARE * (i - ch->lo), *E = f->E + SQUARE * (i - ch->lo), *next = E + SQUARE;
+    bool begun = false;
     for (int r = from; r < to; r++) y[r] = 0;
     for (int j = i - 1; j <= i + 1; j++) {
         if (j < 0 || j >= ch->n) continue;
@@ -283,9 +281,12 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
         assembly_turn_vector(ch, s, force, x);
         const int n = active ? s->d : SPACE;
         for (int r = from; r < to; r++)
-            for (int k = 0; k < n; k++)
-                y[r] += (j < i ? E[SPACE * r + k] : j == i ? D[SPACE * r + k] : next[SPACE * k + r]) * x[k];
-        ch->work.flop += (uint64_t)(2 * n * (to - from) - (j == i && n > 0 ? to - from : 0));
+            for (int k = 0; k < n; k++) {
+                const real element = j < i ? E[SPACE * r + k] : j == i ? D[SPACE * r + k] : next[SPACE * k + r];
+                y[r] = begun || k > 0 ? y[r] + element * x[k] : element * x[k];
+            }
+        ch->work.flop += (uint64_t)(2 * n * (to - from) - (!begun && n > 0 ? to - from : 0));
+        begun = begun || n > 0;
     }
 }
 

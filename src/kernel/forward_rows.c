@@ -27,10 +27,16 @@ void forward_add_reaction(struct forward *f, int i, const real *x, real *force)
     const struct joint_cost *cost = body_cost(forward_body(f, i));
     const bool soft = forward_resistance(f, i) > 0;
     real more[SPACE] = {0};
+    f->chain.work.flop += (uint64_t)(cost->w + (soft ? cost->h : 0));
+    if (s->pick && !f->exact) { /* unit columns: no sum to round before */
+        if (soft) subspace_h(s, x, force);
+        subspace_w(s, x + (soft ? s->d : 0), force);
+        return;
+    }
     if (soft) subspace_h(s, x, more);
     subspace_w(s, x + (soft ? s->d : 0), more);
     screw_add(force, more);
-    f->chain.work.flop += (uint64_t)(cost->w + (soft ? cost->h : 0));
+    f->chain.work.flop += SCREW_ADD_FLOP;
     if (f->exact) exact_add(f, i, more);
 }
 

@@ -15,8 +15,8 @@ void reduction_run(struct reduction *s, int tag, struct work *w)
     else if (s->method == SOLVER_PCR_SYMMETRIC) pcr_run(s, 1, tag, w);
     else cr_run(s, s->method == SOLVER_CR_PCR ? s->hybrid_levels : 32, tag, w);
     diagonal(s->c, s->last, pivot);
-    for (int i = 0; i < s->c; i++)
-        if (before[i] * pivot[i] > s->condition) s->condition = before[i] * pivot[i];
+    const real condition = reduction_condition(s->c, before, pivot);
+    if (condition > s->condition) s->condition = condition;
 }
 
 void reduction_rerun(struct reduction *s, int tag, struct work *w)

@@ -103,6 +103,10 @@ void reduction_eliminate(struct reduction *s, int slot, int nl, int nu, struct w
 /* reduction_finish: the row has no neighbours left: factor D into `slot` and r <- D^-1 r. */
 void reduction_finish(struct reduction *s, int slot, struct work *w);
 
+/* reduction_condition: largest diagonal element (c) times the inverse pivot that it became: a monitor, which costs the
+ * machine nothing. */
+real reduction_condition(int c, const real *before, const real *pivot);
+
 /* reduction_refinish: r <- D^-1 r with the factor in `slot`. */
 void reduction_refinish(struct reduction *s, int slot, struct work *w);
 

@@ -3,6 +3,16 @@
 
 #include "kernel/reduction.h"
 
+real reduction_condition(int c, const real *before, const real *pivot)
+{
+    real largest = 0;
+    for (int i = 0; i < c; i++) {
+        const real growth = before[i] * pivot[i];
+        largest = growth > largest ? growth : largest;
+    }
+    return largest;
+}
+
 /* steps: ceil(log2 n). */
 static int steps(int n)
 {
@@ -66,5 +76,4 @@ void reduction_finish(struct reduction *s, int slot, struct work *w)
 void reduction_refinish(struct reduction *s, int slot, struct work *w)
 {
     dense_solve(s->c, s->m, s->factor + (s->keep ? slot : 0) * s->factor_size, s->r, w);
-    w->flop += (uint64_t)(s->c * s->m); /* charged as 2 triangular(c,m), the formula's count */
 }

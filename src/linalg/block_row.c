@@ -47,14 +47,18 @@ INLINE void products(const int c, const int n, const int first, const int width,
         real sum[BLOCK_MAX] = {0};
         for (int k = 0; k < c; k++) {
             const real f = Y[k * width + first + i];
-            for (int j = 0; j < n; j++) sum[j] += f * Z[k * width + first + j];
+            for (int j = 0; j <= i; j++)
+                sum[j] = k > 0 ? sum[j] + f * Z[k * width + first + j] : f * Z[k * width + first + j];
         }
         for (int j = 0; j <= i; j++) out[packed_index(i, j)] = sum[j];
     }
     for (int i = 0; i < n; i++)
         for (int l = 0; l < m; l++) {
             real sum = 0;
-            for (int k = 0; k < c; k++) sum += Y[k * width + first + i] * y[k * m + l];
+            for (int k = 0; k < c; k++) {
+                const real product = Y[k * width + first + i] * y[k * m + l];
+                sum = k > 0 ? sum + product : product;
+            }
             v[i * m + l] = sum;
         }
 }
@@ -88,7 +92,7 @@ INLINE bool eliminate(const int c, const int nl, const int nu, const int m, cons
             real sum[BLOCK_MAX] = {0};
             for (int k = 0; k < c; k++) {
                 const real f = Y[k * width + nl + i];
-                for (int j = 0; j < nl; j++) sum[j] -= f * Z[k * width + j];
+                for (int j = 0; j < nl; j++) sum[j] = k > 0 ? sum[j] - f * Z[k * width + j] : -(f * Z[k * width + j]);
             }
             for (int j = 0; j < nl; j++) {
                 E[i * nl + j] = sum[j];
@@ -142,7 +146,10 @@ static void project(int c, int n, int first, int width, int m, const real *Y, co
     for (int i = 0; i < n; i++)
         for (int l = 0; l < m; l++) {
             real sum = 0;
-            for (int k = 0; k < c; k++) sum += Y[k * width + first + i] * y[k * m + l];
+            for (int k = 0; k < c; k++) {
+                const real product = Y[k * width + first + i] * y[k * m + l];
+                sum = k > 0 ? sum + product : product;
+            }
             v[i * m + l] = sum;
         }
 }
@@ -167,20 +174,20 @@ void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, re
 {
     const int width = nl + nu;
     const real *Y = factor + packed_size(c);
-    for (int i = 0; i < c; i++) {
+    for (int i = 0; i < c && width > 0; i++) {
         const real d = factor[packed_index(i, i)];
         for (int l = 0; l < m; l++) {
             real sum = 0;
-            for (int j = 0; j < nl; j++) sum += Y[i * width + j] * x_a[j * m + l];
-            for (int j = 0; j < nu; j++) sum += Y[i * width + nl + j] * x_b[j * m + l];
+            for (int j = 0; j < width; j++) {
+                const real product = Y[i * width + j] * (j < nl ? x_a[j * m + l] : x_b[(j - nl) * m + l]);
+                sum = j > 0 ? sum + product : product;
+            }
             y[i * m + l] -= d * sum;
         }
     }
     for (int i = c - 1; i >= 0; i--)
         for (int j = i + 1; j < c; j++)
             for (int l = 0; l < m; l++) y[i * m + l] -= factor[packed_index(j, i)] * y[j * m + l];
-    w->flop += (uint64_t)dense_triangular_flops(c, m);
-    if (nl > 0) w->flop += (uint64_t)(dense_product_flops(c, m, nl) + c * m);
-    if (nu > 0) w->flop += (uint64_t)(dense_product_flops(c, m, nu) + c * m);
+    w->flop += (uint64_t)(c * (c - 1) * m + (width > 0 ? dense_product_flops(c, m, width) + 2 * c * m : 0));
     w->call += (uint64_t)(1 + (nl > 0) + (nu > 0));
 }

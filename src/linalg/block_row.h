@@ -45,7 +45,7 @@ void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const re
                       struct work *w);
 
 /* block_row_resubstitute: y (c x m) of the two above becomes x = G^-T (y - D'^-1 (Y_L x_a + Y_U x_b)), given
- * x_a (nl x m) and x_b (nu x m). Cost: triangular(c,m) + for each neighbour n: product(c,m,n) + c m. */
+ * x_a (nl x m) and x_b (nu x m). Cost: c (c-1) m + product(c,m,nl+nu) + 2 c m, the latter two with neighbours. */
 void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, real *y, const real *x_a, const real *x_b,
                             struct work *w);
 

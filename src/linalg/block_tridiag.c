@@ -22,12 +22,13 @@ static void reduce(int n, int c, const real *G, real *L, real *D, struct work *w
             for (int j = 0; j < k; j++) row[k] -= G[packed_index(k, j)] * row[j];
         for (int k = 0; k < c; k++) scaled[k] = G[packed_index(k, k)] * row[k];
         for (int j = 0; j <= i; j++) {
-            real sum = 0;
-            for (int k = 0; k < c; k++) sum += scaled[k] * L[j * c + k];
+            if (c == 0) continue;
+            real sum = scaled[0] * L[j * c];
+            for (int k = 1; k < c; k++) sum += scaled[k] * L[j * c + k];
             D[packed_index(i, j)] -= sum;
         }
     }
-    w->flop += (uint64_t)(dense_triangular_flops(c, n) + dense_symmetric_flops(n, c) + packed_size(n));
+    w->flop += (uint64_t)(dense_triangular_flops(c, n) + dense_symmetric_flops(n, c) + (c > 0 ? packed_size(n) : 0));
     w->call += 2;
 }
 
@@ -61,13 +62,13 @@ void block_tridiag_solve(const struct block_tridiag *t, int m, real *x, struct w
         real *z = x + (size_t)i * stride, *after = z + stride;
         for (int k = 0; k < c; k++) {
             const real d = G[packed_index(k, k)];
-            for (int l = 0; l < m; l++) {
-                real sum = 0;
-                for (int j = 0; j < n; j++) sum += M[j * c + k] * after[j * m + l];
+            for (int l = 0; l < m && n > 0; l++) {
+                real sum = M[k] * after[l];
+                for (int j = 1; j < n; j++) sum += M[j * c + k] * after[j * m + l];
                 z[k * m + l] -= d * sum;
             }
         }
-        w->flop += (uint64_t)(n > 0 ? dense_product_flops(c, m, n) + 2 * c * m : c * m);
+        w->flop += (uint64_t)(n > 0 ? dense_product_flops(c, m, n) + 2 * c * m : 0);
         dense_backward(c, m, G, z, w);
     }
 }

@@ -93,7 +93,7 @@ static void keep(const struct program_run *r, struct evaluation *v)
     v->qd_end = program_output(r, OUTPUT_QD_END);
     v->lambda = program_output(r, OUTPUT_LAMBDA);
     v->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
-    for (int k = 0; k < r->spec.nrank; k++) {
+    for (int k = 0; k < r->spec.nrank && dynamics_run_of(r)->job.watch; k++) {
         v->residual = fmax(v->residual, program_output(r, OUTPUT_RESIDUAL)[k]);
         v->condition = fmax(v->condition, program_output(r, OUTPUT_CONDITION)[k]);
     }
@@ -117,7 +117,7 @@ static void go(const struct program_run *r, struct arena *a, struct evaluation *
 
 /* open_scene: whether a scene is planar is asked in double precision, whatever the program computes in. */
 static void open_scene(struct program_run *r, const struct model *model, const struct state *state,
-                       struct job_omit omit)
+                       struct job_omit omit, bool watch)
 {
     struct err e = {0};
     const struct kernel_spec given = r->spec.kernel;
@@ -128,11 +128,12 @@ static void open_scene(struct program_run *r, const struct model *model, const s
     d->kernel = d->kernel->planar ? kernel_find_planar(given.name, given.precision)
                                   : kernel_find_precision(given.name, given.precision);
     d->job.omit = omit;
+    d->job.watch = watch;
     r->rank = &d->kernel->rank;
 }
 
-struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
-                                    struct job_omit omit, struct arena *a)
+static struct evaluation evaluate_as(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                     struct job_omit omit, bool watch, struct arena *a)
 {
     struct err e = {0};
     struct evaluation v = {0};
@@ -141,13 +142,25 @@ struct evaluation evaluate_omitting(const struct run_spec *spec, const struct mo
     if (r->spec.kernel.algebra == ALGEBRA_AUTO) r->spec.kernel.algebra = ALGEBRA_SPATIAL;
     assert_non_null(r->type);
     if (!model && !r->type->open(r, &e)) fail_msg("%s", e.text);
-    if (model) open_scene(r, model, state, omit);
+    if (model) open_scene(r, model, state, omit, watch);
     if (!r->type->prepare(r, a, &e)) fail_msg("%s", e.text);
     go(r, a, &v);
     if (model) keep(r, &v);
     else v.measured = program_output(r, OUTPUT_SECONDS);
     if (model && spec->kernel.steps == 0) compare(r, a, &v);
     return v;
+}
+
+struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                    struct job_omit omit, struct arena *a)
+{
+    return evaluate_as(spec, model, state, omit, true, a);
+}
+
+struct evaluation evaluate_unwatched(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                     struct arena *a)
+{
+    return evaluate_as(spec, model, state, (struct job_omit){0}, false, a);
 }
 
 struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,

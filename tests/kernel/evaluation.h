@@ -31,6 +31,10 @@ struct evaluation evaluate(const struct run_spec *spec, struct arena *a);
 struct evaluation evaluate_omitting(const struct run_spec *spec, const struct model *model, const struct state *state,
                                     struct job_omit omit, struct arena *a);
 
+/* evaluate_unwatched: the same, nothing is left out, and nobody wants residuals. */
+struct evaluation evaluate_unwatched(const struct run_spec *spec, const struct model *model, const struct state *state,
+                                     struct arena *a);
+
 /* evaluate_model: the same, and nothing is left out. */
 struct evaluation evaluate_model(const struct run_spec *spec, const struct model *model, const struct state *state,
                                  struct arena *a);

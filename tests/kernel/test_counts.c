@@ -99,7 +99,7 @@ static void the_solvers_work_adds_up(void **state)
         for (int d = 1; d < P; d *= 2) edges += 2 * (P - d > d ? d : P - d);
         struct run_spec spec = evaluation_spec("forward", P, P);
         const struct many_ranks_result r = counts_of(spec);
-        const uint64_t expected = (uint64_t)(915 * (P * lg - edges) + 385 * edges + 20 * 2 * pairs + P * (55 + 50));
+        const uint64_t expected = (uint64_t)(915 * (P * lg - edges) + 385 * edges + 20 * 2 * pairs + P * (55 + 45));
         assert_int_equal(operations(&r.stage_work[5]), expected);
     }
 }

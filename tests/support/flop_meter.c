@@ -14,6 +14,9 @@ void flop_meter_start(void)
     running = 1;
 }
 
+void flop_meter_pause(void) { running--; }
+void flop_meter_resume(void) { running++; }
+
 struct work flop_meter_stop(void)
 {
     running = 0;

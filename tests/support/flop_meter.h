@@ -14,4 +14,8 @@
 void flop_meter_start(void);
 struct work flop_meter_stop(void);
 
+/* flop_meter_pause, flop_meter_resume: what is executed between them is not counted; they nest. */
+void flop_meter_pause(void);
+void flop_meter_resume(void);
+
 #endif
