@@ -1,19 +1,63 @@
-/* cmd_check.c - mimdsim check: validate scenario and machine files without running. */
+/* cmd_check.c - mimdsim check: validate scenario and machine files without running, databases by their own rows. */
 #include "app/verb.h"
+#include <stdlib.h>
 #include <string.h>
 
+#include "app/flag.h"
 #include "base/json.h"
+#include "plan/file_kind.h"
+#include "study/audit.h"
 #include "study/model_file.h"
 #include "study/probe.h"
 
 static const char doc[] =
     "Validate scenario, machine, robot (.urdf) and reference vector (.json) files without running "
-    "anything.\n\n"
+    "anything; and databases, whose rows must not contradict each other.\n\n"
     "Example: mimdsim check scenarios/speedup-t3e.yaml machines/t3e-300.yaml\n"
+    "         mimdsim check mimdsim.db --again 5\n"
     "\vAll files are checked; the exit status is that of the first invalid one. "
     "A warning on standard error names a machine on which a message is faster than one that is a "
     "byte smaller "
-    "(where a segment of its message software begins).";
+    "(where a segment of its message software begins).\n\n"
+    "Of a database: the times of ranks add up to those of stages, these to the makespan; columns "
+    "and identity are those of the stored configuration; checks passed where the error is within "
+    "the tolerance; serial codes take what their operations cost; views are those of this program. "
+    "--again K also makes K of its runs again (`all`: every run), chosen at random by --seed S "
+    "(default 1), and compares every stored number that does not depend on this computer, bit by "
+    "bit. Each contradiction is printed with its run and rule; the exit status is then 1.";
+
+/* The contradictions that were found, as an array. */
+static void print_findings(struct json *j, const struct audit_report *r)
+{
+    json_key(j, "findings");
+    json_array(j);
+    for (int i = 0; i < r->nfinding && i < AUDIT_KEPT; i++) {
+        json_object(j);
+        json_key_text(j, "rule", r->finding[i].rule);
+        json_key_int(j, "run", r->finding[i].run);
+        json_key_text(j, "text", r->finding[i].text);
+        json_end(j);
+    }
+    json_end(j);
+}
+
+/* The entry of a database that could be read: what common_error_json tells of any file, and what was found. */
+static void print_database(struct json *j, const char *file, const struct err *e,
+                           const struct audit_report *r)
+{
+    json_object(j);
+    json_key_int(j, "contradictions", r->nfinding);
+    json_key_int(j, "exit_status", err_exit_status(e->kind));
+    json_key_text(j, "file", file);
+    print_findings(j, r);
+    json_key_text(j, "kind", err_word(e->kind));
+    json_key_int(j, "line", e->line);
+    json_key_int(j, "made_again", r->nagain);
+    json_key_int(j, "not_made_again", r->nleft);
+    json_key_int(j, "runs", r->nrun);
+    json_key_text(j, "text", e->kind == ERR_NONE ? "" : e->text);
+    json_end(j);
+}
 
 /* Steps of the message software that go down: they may be meant, as where a protocol is switched too late. */
 static void tell_steps_down(const char *file)
@@ -40,24 +84,101 @@ static void tell_steps_down(const char *file)
     arena_destroy(a);
 }
 
+enum { SHOWN = 50 };
+
+/* The first contradictions on stderr; which are an error when there is one. */
+static bool tell_findings(const char *file, const struct audit_report *r, struct err *e)
+{
+    const int n = r->nfinding < SHOWN ? (int)r->nfinding : SHOWN;
+    for (int i = 0; i < n; i++) {
+        const struct audit_finding *f = &r->finding[i];
+        fprintf(stderr, "%s: ", file);
+        if (f->run) fprintf(stderr, "run %lld: ", (long long)f->run);
+        fprintf(stderr, "%s: %s\n", f->rule, f->text);
+    }
+    if (r->nfinding > n) fprintf(stderr, "%s: and %lld more\n", file, (long long)r->nfinding - n);
+    return r->nfinding == 0 || err_set(e, ERR_CHECK, "%s: %lld contradictions in %lld runs", file,
+                                       (long long)r->nfinding, (long long)r->nrun);
+}
+
+static void tell_database(const char *file, const struct audit_report *r)
+{
+    printf("%s: ok: %lld runs, %d rules", file, (long long)r->nrun, r->nrule);
+    if (r->nagain + r->nleft > 0) printf("; %d runs made again, equal in every bit", r->nagain);
+    if (r->nleft > 0) printf("; %d cannot be made from their row alone", r->nleft);
+    putchar('\n');
+}
+
+/* Whether the rows of database `file` agree; *r is filled when it could be read. */
+static bool check_database(const char *file, const struct audit_options *o, struct arena *a,
+                           struct audit_report **report, struct err *e)
+{
+    struct audit_report *r = TAKE(a, 1, struct audit_report);
+    struct store *s = store_open(file, STORE_READ, e);
+    if (s && store_remark(s) && !o->quiet) fprintf(stderr, "mimdsim: %s\n", store_remark(s));
+    bool ok = s && audit_database(s, o, a, r, e);
+    store_close(s);
+    if (ok) *report = r;
+    return ok && tell_findings(file, r, e);
+}
+
+/* One file of any kind; *report stays NULL where it is no database. */
+static bool check_file(const struct common *c, const char *file, const struct audit_options *audit, struct arena *a,
+                       struct audit_report **report, struct err *e)
+{
+    const struct plan_options o = common_plan(c);
+    if (file_kind_of(file, a) == FILE_DATABASE) {
+        const bool fine = check_database(file, audit, a, report, e);
+        if (fine && !c->quiet && !c->json) tell_database(file, *report);
+        return fine;
+    }
+    const bool model = model_file_is(file);
+    const bool fine = model ? model_file_check(file, c->quiet ? NULL : stderr, e) : plan_check_file(file, &o, e);
+    if (fine && !c->quiet && !c->json) printf("%s: ok\n", file);
+    if (fine && !c->quiet && !model) tell_steps_down(file);
+    return fine;
+}
+
+/* --again K and --seed S. */
+static bool read_options(const char *again, const char *seed, struct audit_options *o, struct err *e)
+{
+    char *end;
+    if (again && strcmp(again, "all") == 0) o->again = AUDIT_ALL;
+    else if (again) {
+        const long n = strtol(again, &end, 10);
+        if (end == again || *end || n < 0 || n > 1000000000)
+            return err_set(e, ERR_USAGE, "--again: '%s' is not a number of runs, nor 'all'", again);
+        o->again = (int)n;
+    }
+    if (!seed) return true;
+    o->seed = strtoull(seed, &end, 10);
+    return (end != seed && !*end && *seed != '-') || err_set(e, ERR_USAGE, "--seed: '%s' is not a whole number", seed);
+}
+
 int cmd_check(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, 0, "FILE...", doc, 1, 64);
-    struct plan_options o = common_plan(&c);
+    struct err e;
+    struct audit_options audit = {.seed = 1};
+    const char *again = take_value(&argc, argv, "--again"), *seed = take_value(&argc, argv, "--seed");
+    common_parse(&c, argc, argv, TAKES_JOBS, "FILE...", doc, 1, 64);
+    err_clear(&e);
+    if (!read_options(again, seed, &audit, &e)) return common_fail(&c, &e);
+    audit.jobs = c.jobs;
+    audit.quiet = c.quiet;
     struct json j = json_make(stdout);
     int status = 0;
     if (c.json) json_array(&j);
     for (int i = 0; i < c.narg; i++) {
-        struct err e;
+        struct arena *a = arena_create();
+        struct audit_report *report = NULL;
         err_clear(&e);
-        bool fine = model_file_is(c.arg[i]) ? model_file_check(c.arg[i], c.quiet ? NULL : stderr, &e)
-                                            : plan_check_file(c.arg[i], &o, &e);
-        if (c.json) common_error_json(&j, c.arg[i], &e);
-        else if (fine && !c.quiet) printf("%s: ok\n", c.arg[i]);
+        const bool fine = check_file(&c, c.arg[i], &audit, a, &report, &e);
+        if (c.json && report) print_database(&j, c.arg[i], &e, report);
+        else if (c.json) common_error_json(&j, c.arg[i], &e);
         if (!fine) err_print(&e);
-        if (fine && !c.quiet && !model_file_is(c.arg[i])) tell_steps_down(c.arg[i]);
         if (!status) status = err_exit_status(e.kind);
+        arena_destroy(a);
     }
     if (c.json) {
         json_end(&j);

@@ -254,10 +254,10 @@ static bool open_writer(struct store *s, struct err *e)
     return prepare_writer(s, e);
 }
 
-static bool open_memory(struct store *s, struct err *e)
+static bool open_memory(struct store *s, bool passing, struct err *e)
 {
     if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
-    s->passing = true;
+    s->passing = passing;
     return create_schema(s, e) && store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }
 
@@ -265,14 +265,18 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists = true;
     if (mode == STORE_WRITE) beside_clean(path);
-    if (mode != STORE_MEMORY && !check_path(path, mode, &exists, e)) return NULL;
+    const bool memory = mode == STORE_MEMORY || mode == STORE_SCRATCH;
+    if (!memory && !check_path(path, mode, &exists, e)) return NULL;
     if (!exists && !make_file(path, e)) return NULL;
     struct store *s = calloc(1, sizeof *s);
     CHECK(s != NULL);
     s->path = strdup(path);
     CHECK(s->path != NULL);
     s->writable = mode != STORE_READ;
-    if (mode == STORE_MEMORY ? open_memory(s, e) : s->writable ? open_writer(s, e) : open_reader(s, e)) return s;
+    const bool ok = memory        ? open_memory(s, mode == STORE_MEMORY, e)
+                    : s->writable ? open_writer(s, e)
+                                  : open_reader(s, e);
+    if (ok) return s;
     store_close(s);
     return NULL;
 }

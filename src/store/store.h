@@ -20,11 +20,12 @@ struct store;
 enum store_mode {
     STORE_READ,
     STORE_WRITE,
-    STORE_MEMORY /* a passing database without a file: `path` is a name for messages; settings and rows of single ranks
-                    are not kept */
+    STORE_MEMORY, /* a passing database without a file: `path` is a name for messages; settings and rows of single ranks
+                     are not kept */
+    STORE_SCRATCH /* the same with all rows */
 };
 
-/* store_open: open or (STORE_WRITE, STORE_MEMORY) make the database `path`. One of an older version is upgraded: in
+/* store_open: open or (all but STORE_READ) make the database `path`. One of an older version is upgraded: in
  * its file with STORE_WRITE, the old one kept beside it; in a temporary copy with STORE_READ; store_remark tells it.
  * Returns NULL with ERR_NO_INPUT (read, not there), ERR_DATA (not ours, newer, or too old), ERR_BUSY (locked),
  * ERR_CREATE or ERR_IO (read-only, disk full). */
