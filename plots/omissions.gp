@@ -7,7 +7,7 @@ stats data using (h = column("host_saved_ms"), m = column("machine_saved_us"), \
     host_most = h > host_most ? h : host_most, host_least = h < host_least ? h : host_least, \
     machine_most = m > machine_most ? m : machine_most, machine_least = m < machine_least ? m : machine_least, \
     headline = "What leaving out saves: ".strcol("scenario"), 0) nooutput
-subline = "time of the same run with that part put back, less that of the run that leaves it out; shortest of repeats taken in turn"
+subline = "time of the same run with the omission undone, minus that of the run with the omission; shortest of repeats taken in turn"
 exact_colour = "#0072b2"; bounded_colour = "#e69f00"; noise_colour = "#d0d0d0"
 wide = 1100.0; upper = 122.0; row_high = 40.0
 total = upper + row_high*n + 84
