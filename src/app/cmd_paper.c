@@ -13,8 +13,8 @@
 #include "base/check.h"
 #include "base/progress.h"
 #include "report/claims.h"
-#include "report/document.h"
 #include "report/report.h"
+#include "report/report_document.h"
 #include "run/run.h"
 #include "store/store.h"
 

@@ -8,8 +8,8 @@
 #include "base/check.h"
 #include "base/json.h"
 #include "base/text.h"
-#include "report/document.h"
 #include "report/report.h"
+#include "report/report_document.h"
 #include "store/store.h"
 
 static const char doc[] =

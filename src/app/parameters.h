@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "plan/plan.h"
-#include "report/document.h"
+#include "report/report_document.h"
 
 /* parameters_gather: every value with a source of every machine in the plans, in memory of `a`; *n of them. */
 bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out,

@@ -153,10 +153,10 @@ bool net_ask_others(struct net *n, net_others_fn *others, void *context)
     return true;
 }
 
-bool net_stuck(const struct net *n, char *text, int size)
+bool net_deadlock(const struct net *n, char *text, int size)
 {
-    if (n->in_flight == 0 || !n->type->stuck) return false;
-    return n->type->stuck(n, text, size);
+    if (n->in_flight == 0 || !n->type->deadlock) return false;
+    return n->type->deadlock(n, text, size);
 }
 
 const struct link_load *net_links(const struct net *n, int *nlink)

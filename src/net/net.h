@@ -44,7 +44,7 @@ struct net_type {
     bool (*create)(struct net *n, struct err *e);
     void (*send)(struct net *n, struct net_message *m);
     void (*occupy)(struct net *n, int link, sim_ps now, sim_ps busy); /* NULL: the level cannot */
-    bool (*stuck)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
+    bool (*deadlock)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
     bool asks; /* for others' messages when a message comes to a link (net_ask_others) */
 };
 
@@ -83,9 +83,9 @@ typedef sim_ps net_others_fn(void *context, int link, sim_ps now, sim_ps free);
  * the same outcome, but without an event for each. False: this level cannot. Call it before any message is sent. */
 bool net_ask_others(struct net *n, net_others_fn *others, void *context);
 
-/* net_stuck: true when messages are in the network but no event can move them; `text` (size bytes) then names the
+/* net_deadlock: true when messages are in the network but no event can move them; `text` (size bytes) then names the
  * cycle of links. */
-bool net_stuck(const struct net *n, char *text, int size);
+bool net_deadlock(const struct net *n, char *text, int size);
 
 /* net_links: the loads recorded so far, (*nlink) entries in the arena; 0 when not recorded. */
 const struct link_load *net_links(const struct net *n, int *nlink);

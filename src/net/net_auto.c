@@ -158,4 +158,4 @@ static void auto_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), start_event, f, (uintptr_t)w);
 }
 
-const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, packet_occupy, packet_stuck, false};
+const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, packet_occupy, packet_deadlock, false};

@@ -12,6 +12,6 @@ static bool flit_create(struct net *n, struct err *e)
     return n->state != NULL;
 }
 
-static bool flit_stuck(const struct net *n, char *text, int size) { return way_of(n)->stuck(n, text, size); }
+static bool flit_deadlock(const struct net *n, char *text, int size) { return way_of(n)->deadlock(n, text, size); }
 
-const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, packet_send, packet_occupy, flit_stuck, false};
+const struct net_type net_flit = {"flit", LEVEL_FLIT, flit_create, packet_send, packet_occupy, flit_deadlock, false};

@@ -12,7 +12,7 @@
 /* The functions of one way. */
 struct flit_way {
     struct fabric *(*create)(struct net *n, struct err *e);
-    bool (*stuck)(const struct net *n, char *text, int size);
+    bool (*deadlock)(const struct net *n, char *text, int size);
 };
 
 extern const struct flit_way flit_train, flit_event;

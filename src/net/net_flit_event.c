@@ -376,7 +376,7 @@ static const struct leg *front_at(const struct flits *g, int r, int channel)
     return NULL;
 }
 
-static bool flits_stuck(const struct net *n, char *text, int size)
+static bool flits_deadlock(const struct net *n, char *text, int size)
 {
     const struct flits *g = n->state;
     const struct leg *l = NULL;
@@ -394,4 +394,4 @@ static bool flits_stuck(const struct net *n, char *text, int size)
     return l != NULL;
 }
 
-const struct flit_way flit_event = {flits_create, flits_stuck};
+const struct flit_way flit_event = {flits_create, flits_deadlock};

@@ -399,7 +399,7 @@ static int waits_for(const struct train *g, int r)
     return front && front->known > 0 ? front[1].resource : -1;
 }
 
-static bool train_stuck(const struct net *n, char *text, int size)
+static bool train_deadlock(const struct net *n, char *text, int size)
 {
     const struct train *g = n->state;
     struct arena_mark mark = arena_mark(n->arena);
@@ -416,4 +416,4 @@ static bool train_stuck(const struct net *n, char *text, int size)
     return r >= 0;
 }
 
-const struct flit_way flit_train = {train_create, train_stuck};
+const struct flit_way flit_train = {train_create, train_deadlock};

@@ -79,7 +79,7 @@ void pass_unlink(struct fabric *f, struct pass *s);
 /* packet_name_cycle: write "A waits for B waits for A" for the `count` resources way[]; returns true. */
 bool packet_name_cycle(const struct net *n, const int *way, int count, char *text, int size);
 
-/* packet_stuck: net_type.stuck of both levels. */
-bool packet_stuck(const struct net *n, char *text, int size);
+/* packet_deadlock: net_type.deadlock of both levels. */
+bool packet_deadlock(const struct net *n, char *text, int size);
 
 #endif

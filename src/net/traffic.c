@@ -141,7 +141,7 @@ static void replay_run(struct replay *r)
     out->digest = sim_digest(r->sim);
     out->link = net_links(r->net, &out->nlink);
     out->deadlock = out->arrived < r->q->nmessage;
-    if (out->deadlock && !net_stuck(r->net, out->text, (int)sizeof out->text))
+    if (out->deadlock && !net_deadlock(r->net, out->text, (int)sizeof out->text))
         strcpy(out->text, "messages wait for each other");
 }
 

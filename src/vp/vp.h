@@ -2,7 +2,7 @@
  *
  * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; clock.c its time; mailbox.c matches
  * messages; launch.c sends them off;
- * rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links; stuck.c
+ * rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links; deadlock.c
  * explains deadlocks. */
 #ifndef VP_VP_H
 #define VP_VP_H
@@ -139,12 +139,12 @@ sim_ps server_pass(struct vp *v, int64_t bytes);
  * Acts at levels that can occupy a link (net_occupy); the plan reports it as unused at the others. */
 void background_start(struct world *w, uint64_t seed);
 
-/* --- stuck.c --- */
+/* --- deadlock.c --- */
 
 /* late_explain: who had come how far when simulated time ended, into the result's text. */
 void late_explain(struct world *w);
 
-/* stuck_explain: the wait-for cycle, and the network's if it is the network, into the result's text. */
-void stuck_explain(struct world *w);
+/* deadlock_explain: the wait-for cycle, and the network's if it is the network, into the result's text. */
+void deadlock_explain(struct world *w);
 
 #endif

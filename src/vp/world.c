@@ -207,7 +207,7 @@ static void run(struct world *w, uint64_t seed)
         return;
     }
     if (w->late || sim_beyond(w->sim)) late_explain(w);
-    else stuck_explain(w);
+    else deadlock_explain(w);
     r->status = w->late || sim_beyond(w->sim) ? RUN_FAILED : RUN_DEADLOCK;
 }
 

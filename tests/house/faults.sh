@@ -124,6 +124,7 @@ planted listed 'tests/data/a.csv: not in tests/data/README.md' 'touch tests/data
 planted sizes 'src/vp/vp.c:8: TAKE of n * n' 'echo "double *k(int n) { return TAKE(a, n * n, double); }" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* TO""DO: later */" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* see /wo""rk/shared */" >>src/vp/vp.c'
+planted words 'src/vp/vp.c:8:' 'echo "static const char text[] = \"the dear""est stage\";" >>src/vp/vp.c'
 planted words 'src/README.md:' 'echo "leaves /t""mp/x" >>src/README.md'
 
 planted readme 'src/README.md lacks: - `extra.c` - more' 'echo "/* extra.c - more. */" >src/vp/extra.c'

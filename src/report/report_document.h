@@ -1,4 +1,4 @@
-/* document.h - a report as NAME.md and NAME.html, on the paper or on whatever a database holds, out of that alone. */
+/* report_document.h - a report as NAME.md and NAME.html, on the paper or on the contents of a database. */
 #ifndef REPORT_DOCUMENT_H
 #define REPORT_DOCUMENT_H
 

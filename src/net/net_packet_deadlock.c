@@ -1,4 +1,4 @@
-/* net_packet_stuck.c - who waits for whom when nothing moves.
+/* net_packet_deadlock.c - who waits for whom when nothing moves.
  *
  * At a standstill every waiting packet wants a resource whose FIFO is full of packets that wait themselves, so
  * following the front packet of the full FIFO must come round to a resource seen before. */
@@ -35,7 +35,7 @@ static const struct fifo *blocked_by(const struct fabric *f, const struct packet
     return o->fifo[s->channel].front ? &o->fifo[s->channel] : NULL;
 }
 
-bool packet_stuck(const struct net *n, char *text, int size)
+bool packet_deadlock(const struct net *n, char *text, int size)
 {
     const struct fabric *f = n->state;
     const struct packet *p = NULL;

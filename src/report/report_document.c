@@ -1,5 +1,5 @@
-/* document.c - the chapters of the report; see document.h. Every number in it is the answer of a query. */
-#include "report/document.h"
+/* report_document.c - the chapters of the report (report_document.h). Each number comes from a query. */
+#include "report/report_document.h"
 
 #include <stdlib.h>
 #include <string.h>

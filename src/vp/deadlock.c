@@ -1,4 +1,4 @@
-/* stuck.c - nothing can happen any more: who waits for whom, or how far a rank had come when simulated time ended. */
+/* deadlock.c - who waits for whom when no event is left, or how far a rank came when simulated time ended. */
 #include <stdio.h>
 #include <string.h>
 
@@ -54,11 +54,11 @@ static struct vp *walk_into_cycle(struct world *w, struct vp *v)
     return v;
 }
 
-void stuck_explain(struct world *w)
+void deadlock_explain(struct world *w)
 {
     char *text = w->result->text;
     int size = (int)sizeof w->result->text, used = 0;
-    if (net_stuck(w->net, text, size)) return;
+    if (net_deadlock(w->net, text, size)) return;
     struct vp *start = walk_into_cycle(w, first_blocked(w)), *v = start;
     used += snprintf(text, size, "deadlock: ");
     for (int k = 0; k < 8 && used < size; k++) {
