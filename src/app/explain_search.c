@@ -178,26 +178,64 @@ static void weigh(struct explain_search *s, int i, double end, const struct expl
     if (change > s->gain[i]) s->gain[i] = change, s->end[i] = end;
 }
 
-/* From nothing to the end of axis i: where the claim begins to hold, by bisection when it holds at the end. */
-static bool scan_axis(struct round *r, int i, double end)
+/* From where the claim fails on axis i alone to where it holds: where it begins to, by bisection. */
+static bool scan_boundary(struct round *r, int i, double fails, double holds)
 {
     enum { HALVINGS = 7 };
     struct explain_search *s = r->search;
     struct explain_grade grade;
-    double u[EXPLAIN_MOST_AXES] = {0}, fails = 0, holds = end;
-    u[i] = end;
-    if (!look(r, u, &grade)) return false;
-    weigh(s, i, end, &grade);
-    if (!grade.holds) return true;
-    consider(&s->single, u, &grade);
     for (int k = 0; k < HALVINGS; k++) {
-        memset(u, 0, sizeof u);
+        double u[EXPLAIN_MOST_AXES] = {0};
         u[i] = 0.5 * (fails + holds);
         if (!look(r, u, &grade)) return false;
         if (grade.holds) holds = u[i], consider(&s->single, u, &grade);
         else fails = u[i];
     }
     return true;
+}
+
+/* A claim with two bounds may hold between nothing and an end at which it fails: small changes are doubled while they
+ * bring it nearer, then the best margin is sought between its neighbours. */
+static bool scan_between(struct round *r, int i, double end, double margin_at_end)
+{
+    enum { DOUBLINGS = 5, HALVES = 6 };
+    double best = r->search->nominal, low = 0, at = 0, high = ldexp(end, -DOUBLINGS);
+    bool rises = true;
+    for (int k = 0; k < DOUBLINGS + HALVES; k++) {
+        double u[EXPLAIN_MOST_AXES] = {0}, x;
+        struct explain_grade grade;
+        /* Outwards first; then the middles of both sides in turn. A margin that rises to the end has no peak. */
+        if (!rises && at == 0) return true;
+        if (rises && k >= DOUBLINGS && margin_at_end > best) return true;
+        rises = rises && k < DOUBLINGS;
+        x = u[i] = rises ? high : k % 2 ? 0.5 * (low + at) : 0.5 * (at + high);
+        if (!look(r, u, &grade)) return false;
+        if (grade.holds) consider(&r->search->single, u, &grade);
+        if (grade.holds) return scan_boundary(r, i, fabs(x) > fabs(at) ? at : low, u[i]);
+        if (grade.margin > best) {
+            if (fabs(x) < fabs(at)) high = at;
+            else low = at, high = rises ? 2 * x : high;
+            best = grade.margin, at = x;
+        } else if (!rises) *(fabs(x) > fabs(at) ? &high : &low) = x;
+        else rises = false;
+    }
+    return true;
+}
+
+/* From nothing to the end of axis i: where the claim begins to hold. */
+static bool scan_axis(struct round *r, int i, double end)
+{
+    struct explain_search *s = r->search;
+    struct explain_grade grade;
+    double u[EXPLAIN_MOST_AXES] = {0};
+    /* The ends are enough where starts are given, and of claims that can never hold. */
+    const bool between = s->goal.starts > 0 && s->goal.nfrom == 0;
+    u[i] = end;
+    if (!look(r, u, &grade)) return false;
+    weigh(s, i, end, &grade);
+    if (!grade.holds) return !between || s->goal.subject->space.axis[i].dear || scan_between(r, i, end, grade.margin);
+    consider(&s->single, u, &grade);
+    return scan_boundary(r, i, 0, end);
 }
 
 static bool scan(struct round *r)
@@ -223,10 +261,8 @@ static bool scan(struct round *r)
  * that do not. */
 static double cost_of(const struct explain_grade *g)
 {
-    enum { FAILS = 50 };
-    if (g->holds) return g->distance;
-    double short_by = isnan(g->margin) ? 20 : fmin(20, fmax(-g->margin, 1e-6));
-    return FAILS + short_by + 0.002 * g->distance;
+    const double fails = 50, short_by = isnan(g->margin) ? 20 : fmin(20, fmax(-g->margin, 1e-6));
+    return g->holds ? g->distance : fails + short_by + 0.002 * g->distance;
 }
 
 /* The axes that simplexes move along: of those that change anything the most effective, the dear ones when asked. */

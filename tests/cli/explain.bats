@@ -49,6 +49,18 @@ answer() { sqlite3 toy.db "SELECT $1 FROM explain_answer WHERE subject = 'T1' AN
     [ -s figures/explain-T1.csv ]
 }
 
+@test "a claim with two bounds is found between nothing and an end where it fails" {
+    toy 'S is at least 0.3' 'speedup - 0.3'
+    nominal=$(sqlite3 toy.db "SELECT speedup FROM v_speedup WHERE baseline = 'fastest serial'")
+    rm -r data toy.db; unset MIMDSIM_DATA; MIMDSIM_DATA=$MIMDSIM_SRCDIR
+    # 9 to 10 % above nominal: the serial code alone does it, 9 % slower, and at ten times slower it is far beyond
+    toy 'S is 9 to 10 % higher' "min(speedup / $nominal - 1.09, 1.1 - speedup / $nominal)"
+    works mimdsim claims --explain toy.db --quiet
+    [ "$(answer verdict)" = holds ]
+    [ "$(answer settings)" != '' ]
+    [ "$(sqlite3 toy.db "SELECT distance < ln(1.1) + 0.005 FROM explain_answer WHERE goal = 'own'")" = 1 ]
+}
+
 @test "what cannot be is told as not found, with the points that were tried; a reason makes it never" {
     toy 'S is at least 1000000' 'speedup / 1e6 - 1'
     works mimdsim claims --explain toy.db --quiet
