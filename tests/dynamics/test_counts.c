@@ -85,7 +85,7 @@ static struct model_spec open_system(int n)
     struct random r = random_make((uint64_t)n, 0, 0);
     struct model_spec spec =
         spec_random(generator[random_below(&r, 3)], 1 + (int)random_below(&r, 7), n % (JOINT_MIXED + 1), (uint64_t)n);
-    spec.base = random_below(&r, 3);
+    spec.base = (enum model_base)random_below(&r, 3);
     if (spec.base == BASE_MOVING)
         for (int k = 0; k < 6; k++) spec.base_acceleration[k] = k - 2.5;
     if (random_below(&r, 3) == 0) spec.rate = 0;
@@ -118,7 +118,7 @@ static struct scene closed_system(int n)
     struct random r = random_make((uint64_t)n, 1, 0);
     struct model_spec spec = spec_random(n % 2 ? MODEL_RANDOM_TREE : MODEL_SERIAL_CHAIN, 9,
                                          n % 3 ? JOINT_SPHERICAL : JOINT_REVOLUTE, (uint64_t)n);
-    spec.base = random_below(&r, 3);
+    spec.base = (enum model_base)random_below(&r, 3);
     if (n % 4 == 0) spec.rate = 0;
     if (n % 5 == 0) spec.external_force = 0;
     struct scene s = {.a = arena_create()};

@@ -53,7 +53,7 @@ static void transforms_execute_what_they_declare(void **state)
     EXECUTES(screw_add(x, y), SCREW_ADD_FLOP);
     EXECUTES(screw_sub(x, y), SCREW_ADD_FLOP);
     EXECUTES(screw_axpy(x, 2, y), SCREW_AXPY_FLOP);
-    EXECUTES(screw_dot(x, y), SCREW_DOT_FLOP);
+    EXECUTES(z[0] = screw_dot(x, y), SCREW_DOT_FLOP);
     EXECUTES(xform_force(x, &b, y), XFORM_FORCE_FLOP);
     EXECUTES(xform_motion(x, &b, y), XFORM_MOTION_FLOP);
     EXECUTES(xform_slide(x, &b, y), XFORM_SLIDE_FLOP);
@@ -72,8 +72,8 @@ static void vectors_execute_what_they_declare(void **state)
     EXECUTES(vec3_add(x, y), VEC3_ADD_FLOP);
     EXECUTES(vec3_sub(x, y), VEC3_ADD_FLOP);
     EXECUTES(vec3_scale(x, 2, y), VEC3_SCALE_FLOP);
-    EXECUTES(vec3_dot(x, y), VEC3_DOT_FLOP);
-    EXECUTES(vec3_norm(x), VEC3_DOT_FLOP, .sqrt = 1);
+    EXECUTES(z[0] = vec3_dot(x, y), VEC3_DOT_FLOP);
+    EXECUTES(z[0] = vec3_norm(x), VEC3_DOT_FLOP, .sqrt = 1);
     EXECUTES(vec3_cross(x, y, z), VEC3_CROSS_FLOP);
     EXECUTES(vec3_cross_add(x, y, z), VEC3_CROSS_ADD_FLOP);
     EXECUTES(vec3_cross_sub(x, y, z), VEC3_CROSS_ADD_FLOP);
