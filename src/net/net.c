@@ -88,6 +88,18 @@ static bool sizes_fit(const struct topology *t, struct err *e)
                    t->nlink);
 }
 
+/* what a router does for a head before its flits go on; the flits behind it do not wait for that */
+static bool setup_make(struct net *n, const struct network_spec *w, struct err *e)
+{
+    n->allocation = sim_from_seconds(w->vc_allocation_latency);
+    n->setup = n->allocation + sim_from_seconds(w->routing_latency);
+    if (n->setup <= n->tau) return true;
+    return err_set(e, ERR_CONFIG,
+                   "network.routing_latency %lld ps and network.vc_allocation_latency %lld ps are parts of "
+                   "network.hop_latency, which is %lld ps; expected at most that together",
+                   (long long)(n->setup - n->allocation), (long long)n->allocation, (long long)n->tau);
+}
+
 struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
                        net_deliver_fn *deliver, void *context, bool want_links, struct err *e)
 {
@@ -102,6 +114,7 @@ struct net *net_create(const struct machine_spec *m, const struct topology *t, s
     n->nresource = 2 * t->nnode + t->nlink;
     n->tau = sim_from_seconds(w->hop_latency);
     n->credit = sim_from_seconds(w->credit_latency);
+    if (!setup_make(n, w, e)) return NULL;
     if (ps_times(t->max_hops + 2, n->tau) > PS_LAST) {
         err_set(e, ERR_CONFIG, "network.hop_latency: a route of %d routers takes longer than the largest "
                                "simulated time, %.3g s",

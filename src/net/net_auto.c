@@ -12,13 +12,13 @@ static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 /* ---- the closed form ---- */
 
 /* In a message of several packets none waits for the one before when the injection port is the slowest resource and
- * each finds room: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
+ * each finds room, and the routers need no time between packets: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
  * net_packet.c) it may, whichever packet `ahead` of it one looks at. */
 static bool train_flows(const struct fabric *f, const struct flight *w)
 {
     if (w->npacket == 1) return true;
     sim_ps flit = w->pass[0].flit, tau = f->net->tau, credit = f->net->credit;
-    if (flit < w->slowest) return false;
+    if (flit < w->slowest || f->net->setup > 0) return false;
     for (int64_t apart = w->full; apart - w->full < f->buffer; apart += w->full) {
         if (apart + w->full <= f->buffer) continue;
         int64_t ahead = apart - f->buffer, k0 = ahead < 0 ? -ahead : 0, k1 = w->full - 1 - (ahead > 0 ? ahead : 0);
@@ -42,7 +42,7 @@ static sim_ps closed_form(const struct fabric *f, struct flight *w, sim_ps start
         slow = later(slow, s->flit);
         s->begin = start + h * n->tau;
         s->end = s->begin + train + (w->last - 1) * slow + s->flit;
-        s->follow = later(s->end, s->begin + train + n->tau + s->flit);
+        s->follow = later(s->end, s->begin + train + n->tau + s->flit) + n->setup;
     }
     for (int h = 0; h <= w->nhop; h++) {
         struct pass *s = &w->pass[h];
@@ -82,7 +82,7 @@ static bool meets_simulated(const struct fabric *f, const struct resource *o, co
     if (s->hop == s->flight->nhop || !o->fifo) return false;
     for (int i = s->channel; i < s->channel + s->nchannel; i++) {
         const struct fifo *q = &o->fifo[i];
-        if (q->front || q->left > s->begin || q->home > s->begin) return true;
+        if (q->front || later(q->left, q->free) > s->begin || q->home > s->begin) return true;
     }
     return false;
 }

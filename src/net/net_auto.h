@@ -56,8 +56,8 @@ void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s,
 /* auto_clear: from when on nothing at pass h tells that w was there. */
 static inline sim_ps auto_clear(const struct fabric *f, const struct pass *s)
 {
-    sim_ps credit = s->hop == s->flight->nhop ? 0 : s[1].end + f->net->credit;
-    return s->end > credit ? s->end : credit;
+    sim_ps credit = s->hop == s->flight->nhop ? 0 : s[1].end + f->net->credit, end = s->end + f->net->setup;
+    return end > credit ? end : credit;
 }
 
 /* auto_earliest: lower bound of the time at which a simulated message asks for its pass s, which it has not passed. */

@@ -50,7 +50,8 @@ static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow)
     if (granted > 0) {
         s->last = auto_begin(w, granted - 1, h);
         if (s->state == PASS_CLAIM) auto_turn(f, o, s, granted);
-        if (h > 0) o->free = later(o->free, auto_tail(w, granted - 1, h, slow) + s->flit);
+        sim_ps setup = h == w->nhop ? packet_ejection_setup(f) : 0;
+        if (h > 0) o->free = later(o->free, auto_tail(w, granted - 1, h, slow) + s->flit + setup);
     }
     pass_unlink(f, s);
     if (h > 0 && granted < w->npacket) pass_wait(f, s);
@@ -132,7 +133,7 @@ static void presence_push(struct fabric *f, struct presence p)
 static void presence_find(struct fabric *f, struct flight *w, int h, sim_ps slow, sim_ps now)
 {
     const struct pass *next = &w->pass[h + 1];
-    sim_ps after = later(f->net->credit, next->flit);
+    sim_ps after = later(f->net->credit, next->flit) + (f->net->setup > 0 ? f->net->setup + w->pass[h].flit : 0);
     for (int i = w->pass[h].granted - 1; i >= 0; i--) {
         if (i < next->granted && auto_tail(w, i, h + 1, slow) + after <= now) return;
         presence_push(f, (struct presence){auto_begin(w, i, h), w, i, h});
@@ -153,6 +154,7 @@ static void presence_place(struct fabric *f, const struct presence *e)
     const struct pass *s = &w->pass[e->hop];
     struct fifo *q = fifo_of(f, &f->resource[s->resource], auto_lane(f, w, e->index, e->hop));
     int32_t flits = flight_packet_flits(w, e->index);
+    if (e->hop > 0) q->free = auto_tail(w, e->index, e->hop, auto_slow(w, e->hop)) + s->flit + f->net->allocation;
     if (e->index < s[1].granted) {
         sim_ps tail = auto_tail(w, e->index, e->hop + 1, auto_slow(w, e->hop + 1));
         packet_left(f, q, q->position, flits, auto_begin(w, e->index, e->hop + 1), tail, s[1].flit);

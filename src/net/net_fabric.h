@@ -24,6 +24,7 @@ struct fifo {
     struct credit *first, *last;  /* packets that were, oldest first */
     sim_ps left;                  /* when the tail of the last one of these has left: the next may ask */
     sim_ps home;                  /* when all credits of these are back */
+    sim_ps free;                  /* when the channel may be allocated to the next packet */
     uint32_t position;            /* flits that ever entered; wraps */
     bool starved;                 /* somebody upstream waits for a packet of it to be granted */
 };

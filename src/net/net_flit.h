@@ -17,4 +17,14 @@ struct flit_way {
 
 extern const struct flit_way flit_train, flit_event;
 
+/* flit_arrival: when v is delivered whose last flit is ejected at `tail`. Flits that wait behind a slow resource save the
+ * setup of the routers after it, which its head has paid; v is never delivered sooner than in an empty network. */
+static inline sim_ps flit_arrival(const struct fabric *f, const struct flight *v, sim_ps tail)
+{
+    sim_ps at = tail + net_end(f->net, v->m->bytes);
+    if (f->net->setup == 0) return at;
+    sim_ps least = v->m->injected + flight_empty(f->net, v);
+    return at > least ? at : least;
+}
+
 #endif

@@ -91,7 +91,7 @@ static void front_asks(struct flits *g, struct vc *v)
     if (!l || l->sent == 0) return;
     struct leg *to = l + 1;
     struct crossing *x = &g->crossing[to->resource];
-    to->ask = later(l->first + g->fabric.net->tau, v->left);
+    to->ask = later(l->first + g->fabric.net->tau, v->left + g->fabric.net->setup);
     to->rival = x->request;
     x->request = to;
     packet_wake(&g->fabric, to->resource, later(to->ask, g->fabric.resource[to->resource].free));
@@ -201,7 +201,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
     struct vc *v = &g->crossing[l->resource].vc[l->channel];
     sim_ps flit = pass_of(l)->flit;
     v->owner = NULL;
-    v->free = now + flit;
+    v->free = now + flit + (l->hop > 0 ? f->net->allocation : 0);
     net_account(f->net, l->resource, w->index == 0, w->index == 0 ? m->m->bytes : 0, w->flits * flit,
                 l->first - l->ask);
     if (l->hop == 0 && w->index == m->npacket - 1) {
@@ -215,7 +215,7 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
         front_asks(g, before);
     }
     if (!is_last(l)) return;
-    if (++m->ejected == m->npacket) packet_deliver_at(f, m, now + net_end(f->net, m->m->bytes));
+    if (++m->ejected == m->npacket) packet_deliver_at(f, m, flit_arrival(f, m, now));
     worm_return(g, w);
 }
 
@@ -236,9 +236,10 @@ static void flit_send(struct flits *g, struct leg *l, sim_ps now)
     }
     if (!last) {
         struct vc *v = &g->crossing[l->resource].vc[l->channel];
-        *slot_of(g, v, v->in++) = now + f->net->tau;
+        sim_ps there = now + f->net->tau - f->net->setup;
+        *slot_of(g, v, v->in++) = there;
         if (head && v->front == l) front_asks(g, v);
-        if (l[1].channel >= 0) packet_wake(f, l[1].resource, later(now + f->net->tau, f->resource[l[1].resource].free));
+        if (l[1].channel >= 0) packet_wake(f, l[1].resource, later(there, f->resource[l[1].resource].free));
     }
     if (tail) tail_sent(g, l, now);
 }

@@ -156,7 +156,9 @@ static int bounds_of(struct train *g, const struct stage *s, struct bound b[3])
     if (s->hop > 0) {
         const struct run *r = s[-1].crossed.first;
         if (!r) return 0;
-        b[n++] = (struct bound){r->at + f->net->tau, r->step, r->count};
+        bool head = s->known == 0 && f->net->setup > 0;
+        sim_ps pass = f->net->tau - (head ? 0 : f->net->setup);
+        b[n++] = (struct bound){r->at + pass, r->step, head ? 1 : r->count};
     }
     if (is_last(s)) return n;
     int64_t spare = f->buffer - s->base - s->known; /* flits that need no credit */
@@ -202,7 +204,7 @@ static void stage_ask(struct train *g, struct stage *s)
     if (l->front != s || s->known == 0) return;
     struct stage *to = s + 1;
     struct line *next = &g->line[to->resource];
-    to->ask = later(s->head + g->fabric.net->tau, l->left);
+    to->ask = later(s->head + g->fabric.net->tau, l->left + g->fabric.net->setup);
     to->rival = next->request;
     next->request = to;
     if (!next->owner) packet_wake(&g->fabric, to->resource, later(to->ask, g->fabric.resource[to->resource].free));
@@ -212,7 +214,7 @@ static void worm_end(struct train *g, struct worm *w)
 {
     struct flight *v = w->flight;
     if (++v->ejected == v->npacket)
-        packet_deliver_at(&g->fabric, v, w->stage[w->nhop].last + net_end(g->fabric.net, v->m->bytes));
+        packet_deliver_at(&g->fabric, v, flit_arrival(&g->fabric, v, w->stage[w->nhop].last));
     w->next = g->ended;
     g->ended = w;
 }
@@ -227,6 +229,7 @@ static void tail_known(struct train *g, struct stage *s)
     sim_ps free = s->last + s->flit;
     bool ends_message = w->index == w->flight->npacket - 1;
     o->free = s->hop == 0 && ends_message ? later(free, s->last + net_port(f->net, w->flight->m->bytes)->gap) : free;
+    if (s->hop > 0) o->free += f->net->allocation;
     o->free += l->debt;
     l->debt = 0;
     l->owner = NULL;

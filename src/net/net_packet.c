@@ -93,7 +93,7 @@ static sim_ps channel_room(struct fabric *f, struct resource *o, const struct pa
     sim_ps best = SIM_NEVER;
     for (int i = s->channel; i < s->channel + s->nchannel; i++) {
         struct fifo *q = fifo_of(f, o, i);
-        sim_ps at = fifo_room(f, q, flits, s->flit, now);
+        sim_ps at = later(fifo_room(f, q, flits, s->flit, now), q->free);
         if (at < best) {
             best = at;
             *channel = i;
@@ -125,13 +125,14 @@ void packet_enter(struct fabric *f, struct packet *p)
     p->position = q->position;
     q->position += (uint32_t)p->flits;
     p->next = NULL;
+    if (s->hop > 0) q->free = p->tail + s->flit + f->net->allocation;
     if (q->front) {
         q->back->next = p;
         q->back = p;
         return;
     }
     q->front = q->back = p;
-    p->ask = later(p->arrive, q->left);
+    p->ask = later(p->arrive, q->left + f->net->setup);
     request(f, p);
 }
 
@@ -144,7 +145,7 @@ static void fifo_pop(struct fabric *f, struct packet *p, sim_ps now, sim_ps tail
     packet_left(f, q, p->position, p->flits, now, tail, flit);
     q->front = p->next;
     if (q->front) {
-        q->front->ask = later(q->front->arrive, q->left);
+        q->front->ask = later(q->front->arrive, q->left + f->net->setup);
         request(f, q->front);
     }
     if (!q->starved) return;
@@ -190,6 +191,7 @@ static sim_ps grant(struct fabric *f, struct resource *o, struct packet *p, sim_
     }
     o->free = tail + s->flit;
     net_account(f->net, s->resource, p->index == 0, p->index == 0 ? w->m->bytes : 0, o->free - now, now - p->ask);
+    if (s->hop == w->nhop) o->free += packet_ejection_setup(f);
     s->granted++;
     s->last = now;
     if (s->state == PASS_PENDING && s->granted == w->npacket) pass_unlink(f, s);
@@ -311,7 +313,7 @@ void flight_measure(struct fabric *f, struct flight *w)
     sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
     sim_ps at = later(m->ready, *port);
     *port = at + net_port_busy(n, m->bytes, flits);
-    m->uncontended = at + w->nhop * n->tau + (flits - 1) * w->slowest + net_end(n, m->bytes);
+    m->uncontended = at + flight_empty(n, w);
 }
 
 /* the next packet of w leaves its node; the gap between messages follows the last one */

@@ -48,6 +48,13 @@ static inline int32_t flight_packet_flits(const struct flight *w, int index)
     return index < w->npacket - 1 ? w->full : w->last;
 }
 
+/* flight_empty: how long w takes from its injection in an empty network. */
+static inline sim_ps flight_empty(const struct net *n, const struct flight *w)
+{
+    int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
+    return w->nhop * n->tau + (flits - 1) * w->slowest + net_end(n, w->m->bytes);
+}
+
 /* source_enter: put w among the messages of its node that wait for the injection port. */
 void source_enter(struct fabric *f, struct flight *w);
 
@@ -59,6 +66,12 @@ void packet_wake(struct fabric *f, int r, sim_ps at);
 
 /* packet_occupied: event, resource `argument` is taken by others for debt[argument], from when it is free. */
 void packet_occupied(void *subject, uint64_t argument, sim_ps now);
+
+/* packet_ejection_setup: how long an ejection port of one virtual channel is idle between packets. */
+static inline sim_ps packet_ejection_setup(const struct fabric *f)
+{
+    return f->nchannel == 1 ? f->net->allocation : 0;
+}
 
 /* packet_enter: packet p, granted its pass p->hop, stands in the FIFO behind it. */
 void packet_enter(struct fabric *f, struct packet *p);

@@ -80,6 +80,8 @@ struct network_spec {
     double hop_latency;         /* router and wire, head of a message, per resource [s] (tau) */
     double end_latency;         /* network interface, entry and exit together [s] */
     double credit_latency;      /* a freed buffer to the sender upstream [s] (c) */
+    double routing_latency;     /* part of hop_latency: the route of a head at the front of its buffer [s] */
+    double vc_allocation_latency; /* part of hop_latency: a virtual channel for it, once one is free [s] */
     int64_t flit_bytes;         /* [B] */
     int64_t packet_bytes;       /* largest payload of a packet [B]; 0: a message is one packet */
     int64_t header_bytes;       /* added to each packet on the wire [B] */

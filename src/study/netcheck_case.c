@@ -163,6 +163,8 @@ struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int
         .hop_latency = head_cycles * cycle,
         .end_latency = 2 * cycle,
         .credit_latency = 2 * cycle,
+        .routing_latency = head_cycles > 3 ? cycle : 0,
+        .vc_allocation_latency = head_cycles > 4 ? cycle : 0,
         .flit_bytes = NETCHECK_FLIT_BYTES,
         .packet_bytes = (int64_t)packet_flits * NETCHECK_FLIT_BYTES,
         .virtual_channels = vcs,

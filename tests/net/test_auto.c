@@ -58,8 +58,14 @@ static void draw_times(struct sample *s, struct random *r)
     if (one_in(r, 6)) w->injection_bandwidth = 16e9 / (double)(1 + random_below(r, 3));
     if (one_in(r, 6)) w->ejection_bandwidth = 16e9 / (double)(1 + random_below(r, 3));
     if (one_in(r, 8)) s->spec.dim_bandwidth[0] = 16e9 / (double)(1 + random_below(r, 4));
+    if (one_in(r, 2)) { /* 1 + 1 of 3 cycles; with other latencies they are drawn below */
+        w->routing_latency = one_in(r, 2) ? 1e-9 : 0;
+        w->vc_allocation_latency = one_in(r, 3) ? 0 : one_in(r, 2) ? 1e-9 : 2e-9;
+    }
     if (!one_in(r, 6)) return;
+    double setup = w->routing_latency + w->vc_allocation_latency;
     w->hop_latency = 0.25e-9 * (double)(1 + random_below(r, 30));
+    if (w->hop_latency < setup) w->hop_latency = setup;
     w->credit_latency = 0.25e-9 * (double)random_below(r, 20);
     w->end_latency = 0.5e-9 * (double)random_below(r, 4);
     double trip = w->hop_latency + (w->credit_latency > 1e-9 ? w->credit_latency : 1e-9);

@@ -208,6 +208,12 @@ static void trains_equal_single_flits(void **state)
         if (random_below(&r, 2)) w->packet_bytes = 16 * (1 + (int64_t)random_below(&r, 30));
         if (random_below(&r, 2)) w->hop_latency = 1e-10 * (double)(1 + random_below(&r, 60));
         if (random_below(&r, 2)) w->credit_latency = 1e-10 * (double)random_below(&r, 60);
+        if (random_below(&r, 2)) {
+            sim_ps tau = sim_from_seconds(w->hop_latency);
+            sim_ps setup = (sim_ps)random_below(&r, (uint64_t)tau + 1);
+            w->routing_latency = 1e-12 * (double)random_below(&r, (uint64_t)setup + 1);
+            w->vc_allocation_latency = 1e-12 * (double)setup - w->routing_latency;
+        }
         if (random_below(&r, 3) == 0) w->injection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
         if (random_below(&r, 3) == 0) w->ejection_bandwidth = 16e9 / (double)(1 + random_below(&r, 4));
         if (random_below(&r, 3) == 0) b.machine.software.gap = 1e-9 * (double)random_below(&r, 50);
