@@ -12,8 +12,9 @@ static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 /* ---- the closed form ---- */
 
 /* In a message of several packets none waits for the one before when the injection port is the slowest resource and
- * each finds room, and the routers need no time between packets: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
- * net_packet.c) it may, whichever packet `ahead` of it one looks at. */
+ * each finds room: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
+ * net_packet.c) it may, whichever packet `ahead` of it one looks at.
+ * Routers that need time between packets make it wait. */
 static bool train_flows(const struct fabric *f, const struct flight *w)
 {
     if (w->npacket == 1) return true;

@@ -17,8 +17,8 @@ struct flit_way {
 
 extern const struct flit_way flit_train, flit_event;
 
-/* flit_arrival: when v is delivered whose last flit is ejected at `tail`. Flits that wait behind a slow resource save the
- * setup of the routers after it, which its head has paid; v is never delivered sooner than in an empty network. */
+/* flit_arrival: when v is delivered whose last flit is ejected at `tail`. Flits that wait behind a slow resource save
+ * the setup of the routers after it, which the head has paid; v is never delivered sooner than in an empty network. */
 static inline sim_ps flit_arrival(const struct fabric *f, const struct flight *v, sim_ps tail)
 {
     sim_ps at = tail + net_end(f->net, v->m->bytes);

@@ -45,9 +45,7 @@ struct net {
     net_deliver_fn *deliver;
     void *context, *others_context;
     net_others_fn *others; /* NULL: nobody is asked (net_ask_others) */
-    sim_ps tau, credit;                        /* hop and credit latency [ps] */
-    sim_ps allocation;                         /* part of tau: a head is given a virtual channel [ps] */
-    sim_ps setup;                              /* part of tau: allocation and the route before it [ps] */
+    sim_ps tau, credit, allocation, setup; /* latencies: hop, credit, channel of a head, route and channel [ps] */
     int64_t flit_bytes;                        /* >= 1 */
     struct net_rate ejection, link;
     struct net_port port[SOFTWARE_MAX_SEGMENTS]; /* (nport) the injection ports by rising size */

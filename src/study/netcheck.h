@@ -48,7 +48,6 @@ struct netcheck_row {
     int channels;     /* virtual channels per link */
     bool cuts;        /* a message is cut into several packets */
     bool worms;       /* a packet is longer than a buffer */
-    bool five_stages; /* the reference's routers have the pipeline P5 */
     double crowding;  /* load: reference latency over that of the empty network */
     int nmessage;
     bool played;   /* there is no reference answer */

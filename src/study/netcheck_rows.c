@@ -114,7 +114,6 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c, const str
              head == 3   ? ""
              : head == 4 ? " P4"
                          : " P5");
-    row->five_stages = head == 5;
     if (routing_is_ours(r, c, s->topology, &tie, &why) && netcheck_topology(s->topology, tie, t, &why))
         k->topology = topology_create(t, r->arena, &why);
     if (why.kind == ERR_UNAVAILABLE) netcheck_unanswered(row, why.text);

@@ -77,6 +77,15 @@ static void one_channel_is_exact(void **state)
     assert_int_equal(messages, 47232 + 19288);
 }
 
+/* routers that compute the route (P4) and allocate the channel (P5) before the switch, up to beyond saturation */
+static void stages_are_exact(void **state)
+{
+    (void)state;
+    int64_t messages = 0;
+    assert_int_equal(exact_rows(DATA "stages.json", NULL, &messages), 4);
+    assert_int_equal(messages, 135 + 154 + 153 + 165);
+}
+
 /* the reference's allocators for several channels are its own: bounds, not equality */
 static void several_channels_are_close(void **state)
 {
@@ -151,6 +160,36 @@ static void ring_deadlock_names_the_cycle(void **state)
             snprintf(name, sizeof name, "router %d to %d", l, (l + 1) % 4);
             if (!strstr(r.text, name)) fail_msg("'%s' does not name %s", r.text, name);
         }
+        arena_destroy(b.arena);
+    }
+}
+
+/* 0 -> 3 and 1 -> 3 share two links and the ejection port; route and channel take a cycle each of a hop's five.
+ * 1 -> 3 is alone: 5 R + 2 + 17 = 34. Its tail leaves link 1-2 at 22, so that the channel is allocated at 23 and the
+ * head of 0 -> 3, there since 10, crosses at 24. It is behind that tail in the buffers, too: at router 2 it is the
+ * front from 28 and crosses at 30, at router 3 from 33 and crosses at 35; 35 + 17 + 2 = 54. */
+static void heads_wait_for_route_and_channel(void **state)
+{
+    (void)state;
+    static const enum network_level levels[] = {LEVEL_FLIT, LEVEL_PACKET, LEVEL_AUTO};
+    int src[2] = {0, 1}, dst[2] = {3, 3};
+    int64_t bytes[2] = {288, 288};
+    sim_ps time[2] = {0}, arrival[2];
+    struct traffic q = {.nmessage = 2, .src = src, .dst = dst, .bytes = bytes, .time = time};
+    for (int l = 0; l < 3; l++) {
+        struct traffic_result r = {.arrival = arrival};
+        struct bench b;
+        struct err e;
+        err_clear(&e);
+        bench_open(&b, "mesh1x8", 1, 64);
+        b.machine = netcheck_machine(&b.spec, 1, 64, 0, 5);
+        b.machine.network.level = levels[l];
+        assert_true(traffic_run(&q, &b.machine, b.topology, b.arena, false, &r, &e));
+        assert_int_equal(arrival[0], 54000);
+        assert_int_equal(arrival[1], 34000);
+        b.machine.network.vc_allocation_latency = 4.5e-9; /* with the route more than the hop */
+        assert_false(traffic_run(&q, &b.machine, b.topology, b.arena, false, &r, &e));
+        assert_non_null(strstr(e.text, "network.vc_allocation_latency 4500 ps"));
         arena_destroy(b.arena);
     }
 }
@@ -233,6 +272,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hand_cases_are_exact),
         cmocka_unit_test(one_channel_is_exact),
+        cmocka_unit_test(stages_are_exact),
+        cmocka_unit_test(heads_wait_for_route_and_channel),
         cmocka_unit_test(several_channels_are_close),
         cmocka_unit_test(ring_deadlock_names_the_cycle),
         cmocka_unit_test(trains_equal_single_flits),
