@@ -120,7 +120,7 @@ static void bench_doubling(const bool *wanted)
         job_open(&j, networks[i].topology, networks[i].vcs);
         doubling(&j);
         snprintf(what, sizeof what, "doubling %s", networks[i].topology);
-        for (int l = 0; l < NETCHECK_LEVELS; l++) {
+        for (int l = 0; l < LEVELS; l++) {
             bool flit_by_flit = l == LEVEL_FLIT && networks[i].vcs > 1;
             if (wanted[l] && !(flit_by_flit && j.topology->nnode > BIG)) measure(&j, what, (enum network_level)l, 0);
         }
@@ -149,7 +149,7 @@ static void bench_loads(const bool *wanted)
             int cycles = k == 0 ? 20 * LOAD_CYCLES : LOAD_CYCLES;
             CHECK(netcheck_load("uniform", j.topology, FLITS, loads[k], cycles, 1, j.arena, &j.q, &e));
             snprintf(what, sizeof what, "load %g %s", loads[k], networks[i].topology);
-            for (int l = 0; l < NETCHECK_LEVELS; l++)
+            for (int l = 0; l < LEVELS; l++)
                 if (wanted[l]) measure(&j, what, (enum network_level)l, networks[i].booksim[k]);
             arena_destroy(j.arena);
         }
@@ -157,10 +157,10 @@ static void bench_loads(const bool *wanted)
 
 int main(int argc, char **argv)
 {
-    bool wanted[NETCHECK_LEVELS];
-    for (int l = 0; l < NETCHECK_LEVELS; l++) wanted[l] = argc == 1;
+    bool wanted[LEVELS];
+    for (int l = 0; l < LEVELS; l++) wanted[l] = argc == 1;
     for (int i = 1; i < argc; i++)
-        for (int l = 0; l < NETCHECK_LEVELS; l++)
+        for (int l = 0; l < LEVELS; l++)
             if (strcmp(argv[i], netcheck_level_name((enum network_level)l)) == 0) wanted[l] = true;
     printf("%-26s %-7s %9s %10s %9s %9s %9s %10s\n", "pattern", "level", "messages", "messages/s", "ns/mess.",
            "ev./mess.", "B/node", "BookSim");
