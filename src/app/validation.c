@@ -51,10 +51,11 @@ const char *validation_level_name(int level)
 
 void validation_levels_json(const double level[LEVELS], double scale, struct json *j)
 {
-    static const int sorted[LEVELS] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
+    enum network_level sorted[LEVELS];
+    network_levels_by_name(sorted);
     json_object(j);
     for (int i = 0; i < LEVELS; i++) {
-        json_key_real(j, validation_level_name(sorted[i]), level[sorted[i]] / scale);
+        json_key_real(j, network_level_name(sorted[i]), level[sorted[i]] / scale);
     }
     json_end(j);
 }

@@ -2,6 +2,7 @@
 #include "spec/machine_spec.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/size.h"
 #include "comm/collective_rules.h"
@@ -443,6 +444,15 @@ void network_levels_by_fineness(enum network_level level[LEVELS])
 #define X(constant, word, stem, cost, fineness) level[fineness] = constant;
     LEVEL_LIST(X)
 #undef X
+}
+
+void network_levels_by_name(enum network_level level[LEVELS])
+{
+    for (int i = 0; i < LEVELS; i++) { /* each into its place among those before it */
+        int at = i;
+        for (; at > 0 && strcmp(levels[level[at - 1]], levels[i]) > 0; at--) level[at] = level[at - 1];
+        level[at] = (enum network_level)i;
+    }
 }
 
 int64_t machine_spec_processors(const struct machine_spec *m)

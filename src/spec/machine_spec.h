@@ -126,11 +126,12 @@ bool topology_has(enum topology_family f, enum topology_trait trait);
 int topology_family_dims(enum topology_family f);
 const char *topology_family_name(enum topology_family f);
 
-/* network_level_name: the word in files, of any level. network_levels_by_cost, network_levels_by_fineness: all levels,
- * the cheapest or the finest first. */
+/* network_level_name: the word in files, of any level. network_levels_by_cost, _by_fineness, _by_name: all levels, the
+ * cheapest first, the finest first, in the order of their words. */
 const char *network_level_name(enum network_level level);
 void network_levels_by_cost(enum network_level level[LEVELS]);
 void network_levels_by_fineness(enum network_level level[LEVELS]);
+void network_levels_by_name(enum network_level level[LEVELS]);
 
 /* machine_spec_processors: how many ranks the machine can hold: routers x nodes_per_router x processors_per_node. A fat
  * tree has arity^levels nodes and a dragonfly terminals x routers x groups, whatever nodes_per_router says. */

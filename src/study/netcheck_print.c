@@ -238,8 +238,9 @@ static const struct column_table answer_columns = COLUMNS(answer_column);
 
 static void write_levels(const struct column *c, const void *x, struct json *j)
 {
-    static const enum network_level by_name[] = {LEVEL_AUTO, LEVEL_FLIT, LEVEL_LINK, LEVEL_LOGGP, LEVEL_PACKET};
+    enum network_level by_name[LEVELS];
     (void)c;
+    network_levels_by_name(by_name);
     json_object(j);
     for (int l = 0; l < LEVELS; l++) {
         struct shown at = *shown(x);
