@@ -16,8 +16,8 @@
 #include "base/check.h"
 #include "base/json.h"
 
-/* last_words: run `act` in a child that must die of abort(); its standard error goes to `out`. */
-static void last_words(void (*act)(void), char *out, size_t size)
+/* words_of: run `act` in a child; its standard error goes to `out`. Returns how it ended. */
+static int words_of(void (*act)(void), char *out, size_t size)
 {
     int ends[2];
     assert_int_equal(pipe(ends), 0);
@@ -37,6 +37,13 @@ static void last_words(void (*act)(void), char *out, size_t size)
     close(ends[0]);
     int status = 0;
     waitpid(child, &status, 0);
+    return status;
+}
+
+/* last_words: what a process says before a CHECK ends it. */
+static void last_words(void (*act)(void), char *out, size_t size)
+{
+    const int status = words_of(act, out, size);
     assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT);
 }
 
@@ -142,12 +149,21 @@ static void misuse_of_the_base_is_found(void **state)
 {
     (void)state;
     char out[2000];
-    void (*const misuses[])(void) = {json_left_open, json_value_without_key, json_two_documents, mark_released_twice,
-                                     take_too_much};
+    void (*const misuses[])(void) = {json_left_open, json_value_without_key, json_two_documents, mark_released_twice};
     for (size_t i = 0; i < sizeof misuses / sizeof misuses[0]; i++) {
         last_words(misuses[i], out, sizeof out);
         assert_non_null(strstr(out, "CHECK("));
     }
+}
+
+/* Memory that cannot be had is nobody's mistake: a message and a status, no abort. */
+static void memory_that_is_refused_ends_with_its_status(void **state)
+{
+    (void)state;
+    char out[2000];
+    const int status = words_of(take_too_much, out, sizeof out);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 71);
+    assert_non_null(strstr(out, "out of memory"));
 }
 
 int main(void)
@@ -158,6 +174,7 @@ int main(void)
         cmocka_unit_test(a_failing_note_does_not_come_back_for_ever),
         cmocka_unit_test(a_check_that_holds_is_silent),
         cmocka_unit_test(misuse_of_the_base_is_found),
+        cmocka_unit_test(memory_that_is_refused_ends_with_its_status),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
