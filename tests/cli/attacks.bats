@@ -57,7 +57,7 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
     stderr_says ' had reached 1.15'
     # the parallel run ends in time, the serial codes do not: there is no speedup to tell
     fails_with 1 slow --set n=4
-    stderr_says "the parallel run took 855830 s, and 'parallel code on one processor' on one processor takes longer"
+    stderr_says "the parallel run took 858830 s, and 'parallel code on one processor' on one processor takes longer"
     for level in loggp link packet flit auto; do
         fails_with 1 mimdsim run speedup-t3e -o slow.db --quiet --set n=8 --set level=$level --set machine.network.link.bandwidth='1e-6 B/s'
         stderr_says 'simulated time ends at 1.15e+06 s'
@@ -69,7 +69,7 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
     works mimdsim run speedup-t3e --set n=1 --set ranks=1 --set level=loggp --set machine.node.flop_rate='1 flop/s' -o one.db --quiet
     sql_is one.db "SELECT status, makespan_ps > 1000000000000 FROM run" 'ok|1'
     fails_with 78 mimdsim run speedup-t3e --set machine.network.hop_latency='1 s' --set machine.topology.dims='[16777216]' -o slow.db
-    stderr_says 'network.hop_latency: a way of 8388609 routers takes longer than simulated time is'
+    stderr_says 'network.hop_latency: a route of 8388609 routers takes longer than the largest simulated time'
 }
 
 # --- texts of a database and gnuplot ----------------------------------------------------------------------------------
@@ -91,6 +91,13 @@ every_figure() {
     works mimdsim explain small.yaml --measure -o all.db --quiet
     run mimdsim validate paragon -o all.db --quiet
     run mimdsim claims all.db
+    # a plane of two parameters, by hand: to simulate one takes long
+    sqlite3 all.db "INSERT INTO explain_point VALUES (1, 'C1', 'key', 'structured', '', 0, 1, 'runs');
+        INSERT INTO explain_judged VALUES (1, 'C1', 'variant', 1.0, 0.5, 1);
+        INSERT INTO explain_map WITH k(v) AS (VALUES (0), (1))
+            SELECT 'C1', a.v, b.v, 'node.call', 'node.flop_rate', 'node.call (50 ns)', 'node.flop_rate (45 Mflop/s)', 0.5 + a.v,
+                   0.5 + b.v, 0.5, 1.5, NULL, NULL, 1, 1, 1.2, 1.3, 'variant', 1 FROM k a, k b;
+        INSERT INTO explain_answer VALUES ('C1', 'own', 'holds', 'variant', 'structured', '', 0.5, 1, 0.5, 4, 1, 1, 'A sentence.')"
     cp all.db "$BATS_FILE_TMPDIR/"
 }
 
@@ -135,7 +142,8 @@ draw_all() {
             baseline.name stage.name check_point.suite check_point.quantity check_point.unit check_point.verdict
             setting.key span.kind claim.verdict claim.variant claim.id ladder.ladder ladder.quantity ladder.method ladder.rung
             ladder.status ladder.at ladder.scenario ladder_choice.ladder stability.precision stability.algorithm
-            stability.status omission.class run_omission.class setting.value run.config_text'
+            stability.status omission.class run_omission.class setting.value run.config_text
+            explain_map.subject explain_answer.subject explain_judged.claim'
     shown=
     for column in $(text_columns); do case " $(echo $chosen) " in *" $column "*) ;; *) shown="$shown $column" ;; esac; done
     shown="$shown run.machine stage.name claim.id claim.statement ladder.method stability.algorithm"

@@ -58,8 +58,8 @@ old_database() {
     sql_is old.db "SELECT count(*), count(DISTINCT build_id) FROM run" '8|2'
     works mimdsim run small.yaml -o old.db --set level=link --set n=2 --set 'machine.noise.compute=5 %' --set seed=9
     sql_is old.db "SELECT count(*) FROM run" 8
-    # What today's program predicts is what that of then predicted.
+    # Today's program predicts what that of then predicted but for the counts of operations, corrected since: within 0.5 %.
     works mimdsim run small.yaml -o new.db --quiet
-    sql_is new.db "ATTACH 'old.db' AS old; SELECT count(*) FROM run n JOIN old.run o
-        ON o.config_hash = n.config_hash AND o.digest = n.digest AND o.makespan_ps = n.makespan_ps" 4
+    sql_is new.db "ATTACH 'old.db' AS old; SELECT count(*) FROM run n JOIN old.run o ON o.config_hash = n.config_hash
+        AND o.messages = n.messages AND abs(o.makespan_ps - n.makespan_ps) < 0.005 * o.makespan_ps" 4
 }

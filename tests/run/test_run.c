@@ -354,7 +354,7 @@ static void what_cannot_run_is_refused(void **unused)
     spec.nrank = 5;
     assert_false(run_one(&spec, a, &r, &e));
     assert_int_equal(e.kind, ERR_CONFIG);
-    assert_non_null(strstr(e.text, "5 processors for 4 bodies"));
+    assert_non_null(strstr(e.text, "5 ranks for 4 bodies"));
     err_clear(&e);
     spec.nrank = 4;
     strcpy(spec.kernel.name, "dynamo");
