@@ -210,7 +210,8 @@ bool findings_stability(struct page *p, struct store *s, struct err *e)
     return store_select(s,
                         "SELECT suite, suite = 'suite', format('%d ok, %d degraded, %d failed of %d answers on %d "
                         "scene%s.', sum(status = 'ok'), sum(status = 'degraded'), sum(status = 'failed'), count(*),"
-                        " count(DISTINCT subject), iif(count(DISTINCT subject) = 1, '', 's')) FROM stability GROUP BY suite ORDER BY suite <> 'suite', suite",
+                        " count(DISTINCT subject), iif(count(DISTINCT subject) = 1, '', 's')) FROM stability"
+                        " GROUP BY suite ORDER BY suite <> 'suite', suite",
                         0, NULL, tell_suite, &c, e) &&
            e->kind == ERR_NONE;
 }

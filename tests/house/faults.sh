@@ -35,13 +35,13 @@ clean_house() {
     HOUSE=$place/clean HOUSE_BUILD=$place/clean bash "$HERE/readme.sh" --write
 }
 
-# compile FOLDER: one archive a room.
+# compile FOLDER: one archive a room. CC may be more than one word.
 compile() {
     local room file
     for room in $(room_names); do
         for file in "$1/src/$room"/*.c; do
             [ "$file" -nt "${file%.c}.o" ] || continue
-            "${CC:-cc}" -std=gnu17 -w -fno-common -I"$1/src" -c "$file" -o "${file%.c}.o"
+            ${CC:-cc} -std=gnu17 -w -fno-common -I"$1/src" -c "$file" -o "${file%.c}.o"
         done
         ar cr "$1/lib$room.a" "$1/src/$room"/*.o
     done
