@@ -23,7 +23,7 @@ static inline sim_ps flit_arrival(const struct fabric *f, const struct flight *v
 {
     sim_ps at = tail + net_end(f->net, v->m->bytes);
     if (f->net->setup == 0) return at;
-    sim_ps least = v->m->injected + flight_empty(f->net, v);
+    sim_ps least = ps_later(v->m->injected, flight_empty(f->net, v));
     return at > least ? at : least;
 }
 

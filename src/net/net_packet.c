@@ -312,8 +312,8 @@ void flight_measure(struct fabric *f, struct flight *w)
     int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
     sim_ps *port = &f->own_port[m->src * f->nprocessor + m->processor];
     sim_ps at = later(m->ready, *port);
-    *port = at + net_port_busy(n, m->bytes, flits);
-    m->uncontended = at + flight_empty(n, w);
+    *port = ps_later(at, net_port_busy(n, m->bytes, flits));
+    m->uncontended = ps_later(at, flight_empty(n, w));
 }
 
 /* the next packet of w leaves its node; the gap between messages follows the last one */

@@ -48,11 +48,11 @@ static inline int32_t flight_packet_flits(const struct flight *w, int index)
     return index < w->npacket - 1 ? w->full : w->last;
 }
 
-/* flight_empty: how long w takes from its injection in an empty network. */
+/* flight_empty: how long w takes from its injection in an empty network; at most PS_TOO_LONG. */
 static inline sim_ps flight_empty(const struct net *n, const struct flight *w)
 {
     int64_t flits = (int64_t)(w->npacket - 1) * w->full + w->last;
-    return w->nhop * n->tau + (flits - 1) * w->slowest + net_end(n, w->m->bytes);
+    return ps_later(ps_times(flits - 1, w->slowest), w->nhop * n->tau + net_end(n, w->m->bytes));
 }
 
 /* source_enter: put w among the messages of its node that wait for the injection port. */

@@ -202,7 +202,13 @@ struct flight *flight_take(struct fabric *f, struct net_message *m)
     struct flight *w = flight_alloc(f, nhop);
     *w = (struct flight){.m = m, .nhop = nhop, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
     flight_cut(f, w);
-    for (int h = 0; h <= nhop; h++) pass_init(f, w, h, &way[h]);
+    /* Flits so slow that the message outlasts simulated time: as slow as that takes, so that no sum of times wraps. */
+    const sim_ps longest = PS_TOO_LONG / ((int64_t)(w->npacket - 1) * w->full + w->last);
+    if (w->slowest > longest) w->slowest = longest;
+    for (int h = 0; h <= nhop; h++) {
+        pass_init(f, w, h, &way[h]);
+        if (w->pass[h].flit > longest) w->pass[h].flit = longest;
+    }
     f->nflight++;
     return w;
 }
