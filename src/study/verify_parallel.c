@@ -67,28 +67,15 @@ struct outcome {
     char text[96];       /* refused, broken: why */
 };
 
-/* Answers do not depend on the machine; this one is simple, and as large as it must be. */
-static struct machine_spec machine_make(const struct verify_options *o, int nrank)
-{
-    struct machine_spec crossbar = {
-        .name = "crossbar",
-        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
-                     .processors_per_node = 1},
-        .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
-        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
-                    .virtual_channels = 1},
-        .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
-    };
-    return o->machine ? *o->machine : crossbar;
-}
-
 /* Run a kernel on nrank virtual processors; in space unless the plane is asked for. */
 static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank, struct outcome *out,
                        struct err *e)
 {
     struct program_run *r = TAKE(v->arena, 1, struct program_run);
     struct run_result *result = TAKE(v->arena, 1, struct run_result);
-    struct run_spec spec = {.machine = machine_make(v->options, nrank), .kernel = *kernel, .nrank = nrank};
+    struct run_spec spec = {.machine = v->options->machine ? *v->options->machine : trial_machine(nrank),
+                            .kernel = *kernel,
+                            .nrank = nrank};
     const bool lumped = strcmp(kernel->name, "inverse") != 0;
     struct err refused;
     err_clear(&refused);
