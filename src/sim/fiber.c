@@ -1,4 +1,5 @@
-/* fiber.c - stacks from one reserved mapping; switching by Boost.Context's assembly or by ucontext. */
+/* fiber.c - stacks from one reserved mapping; switching by Boost.Context's assembly or by ucontext.
+ */
 #include "config.h"
 
 #include "sim/fiber.h"
@@ -30,6 +31,8 @@ void *make_fcontext(void *stack_top, size_t size, void (*entry)(struct transfer)
 #include <ucontext.h>
 #endif
 
+/* Start addresses of neighbouring stacks are shifted by one of COLOURS multiples of
+ * COLOUR_BYTES. */
 enum { COLOURS = 8, COLOUR_BYTES = 128 };
 
 struct fiber {
@@ -60,6 +63,7 @@ struct fiber_pool {
     int64_t switches;
 };
 
+/* The limit on mappings per process; 65530 is the default of Linux. */
 static int mapping_limit(void)
 {
     int limit = 65530;
@@ -70,6 +74,9 @@ static int mapping_limit(void)
     return limit;
 }
 
+/* The address sanitizer keeps a shadow of the current stack. Each switch is announced before, with
+ * the bounds of the stack to come, and confirmed after it, on the new stack. NULL instead of the
+ * place to save says that the stack being left is finished. */
 #ifdef SANITIZERS
 static void sanitizer_enter(struct fiber *f)
 {
@@ -81,12 +88,19 @@ static void sanitizer_entered(struct fiber *f)
 }
 static void sanitizer_leave(struct fiber *f)
 {
-    __sanitizer_start_switch_fiber(f->finished ? NULL : &f->fake_fiber, f->outside_stack, f->outside_size);
+    __sanitizer_start_switch_fiber(f->finished ? NULL : &f->fake_fiber, f->outside_stack,
+                                   f->outside_size);
 }
-static void sanitizer_left(struct fiber *f) { __sanitizer_finish_switch_fiber(f->fake_outside, NULL, NULL); }
+static void sanitizer_left(struct fiber *f)
+{
+    __sanitizer_finish_switch_fiber(f->fake_outside, NULL, NULL);
+}
 
 /* A mapping at the address of an earlier pool must not inherit what was poisoned there. */
-static void sanitizer_fresh(void *memory, size_t bytes) { __asan_unpoison_memory_region(memory, bytes); }
+static void sanitizer_fresh(void *memory, size_t bytes)
+{
+    __asan_unpoison_memory_region(memory, bytes);
+}
 #else
 static inline void sanitizer_enter(struct fiber *f) { (void)f; }
 static inline void sanitizer_entered(struct fiber *f) { (void)f; }
@@ -97,17 +111,23 @@ static inline void sanitizer_fresh(void *memory, size_t bytes) { (void)memory, (
 
 struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 {
+    /* Round stacks up to pages: guards are made and stack use is measured in pages. MAP_NORESERVE:
+     * ten thousands of stacks may be reserved on a machine that has memory for the touched pages
+     * only. */
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
     size_t stack = ((size_t)stack_bytes + page - 1) / page * page, stride = stack + page;
     char *base = mmap(NULL, stride * (size_t)n, PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
     if (base == MAP_FAILED) {
-        err_set(e, ERR_INTERNAL, "cannot reserve %zu MiB of address space for the stacks of %d virtual processors: %s",
-                stride * (size_t)n >> 20, n, strerror(errno));
+        err_set(
+            e, ERR_INTERNAL,
+            "cannot reserve %zu MiB of address space for the stacks of %d virtual processors: %s",
+            stride * (size_t)n >> 20, n, strerror(errno));
         return NULL;
     }
     sanitizer_fresh(base, stride * (size_t)n);
-    madvise(base, stride * (size_t)n, MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
+    madvise(base, stride * (size_t)n,
+            MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
     struct fiber_pool *p = calloc(1, sizeof *p);
     CHECK(p);
     p->fiber = calloc((size_t)n, sizeof *p->fiber);
@@ -117,7 +137,9 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     p->stack_bytes = stack;
     p->page = page;
     p->n = n;
-    /* Each guard splits the mapping in two more; leave half of the system's limit to everybody else. */
+    /* Each guard splits the mapping in two more; leave half of the system's limit to everybody
+     * else. A failed mprotect is no error: fiber_pool_stack_peak looks at the spare pages
+     * instead. */
     int most = mapping_limit() / 4;
     for (p->nguard = 0; p->nguard < n && p->nguard < most; p->nguard++)
         if (mprotect(base + stride * (size_t)p->nguard, page, PROT_NONE) != 0) break;
@@ -127,13 +149,16 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
 void fiber_pool_destroy(struct fiber_pool *p)
 {
     if (!p) return;
-    sanitizer_fresh(p->base, p->stride * (size_t)p->n); /* whoever is mapped here next inherits nothing */
+    sanitizer_fresh(p->base,
+                    p->stride * (size_t)p->n); /* whoever is mapped here next inherits nothing */
     munmap(p->base, p->stride * (size_t)p->n);
     free(p->fiber);
     free(p);
 }
 
 #ifdef HAVE_FCONTEXT
+/* The first switch into a fiber arrives here, every later one behind the jump that left it. This
+ * function must not return: there is no caller on this stack. */
 static void entry(struct transfer t)
 {
     struct fiber *f = t.data;
@@ -146,12 +171,20 @@ static void entry(struct transfer t)
     CHECK(f->pool == NULL); /* a finished fiber was entered */
 }
 
-static void prepare(struct fiber *f, char *top) { f->context = make_fcontext(top, (size_t)(top - f->stack), entry); }
+static void prepare(struct fiber *f, char *top)
+{
+    f->context = make_fcontext(top, (size_t)(top - f->stack), entry);
+}
 
+/* A jump returns when somebody jumps back, and hands over where that one continues. */
 static inline void switch_in(struct fiber *f) { f->context = jump_fcontext(f->context, f).context; }
 
-static inline void switch_out(struct fiber *f) { f->outside = jump_fcontext(f->outside, f).context; }
+static inline void switch_out(struct fiber *f)
+{
+    f->outside = jump_fcontext(f->outside, f).context;
+}
 
+/* The first lines of a fiber are those that jump_fcontext saved on top of its stack. */
 void fiber_prefetch(const struct fiber *f)
 {
     const char *top = f->context;
@@ -160,6 +193,7 @@ void fiber_prefetch(const struct fiber *f)
 
 const char *fiber_backend(void) { return "fcontext"; }
 #else
+/* makecontext passes int arguments only, so that the pointer comes in two halves. */
 static void entry(unsigned high, unsigned low)
 {
     struct fiber *f = (struct fiber *)((uintptr_t)high << 32 | low);
@@ -177,7 +211,8 @@ static void prepare(struct fiber *f, char *top)
     f->context.uc_stack.ss_size = (size_t)(top - f->stack);
     f->context.uc_link = NULL;
     uintptr_t address = (uintptr_t)f;
-    makecontext(&f->context, (void (*)(void))entry, 2, (unsigned)(address >> 32), (unsigned)address);
+    makecontext(&f->context, (void (*)(void))entry, 2, (unsigned)(address >> 32),
+                (unsigned)address);
 }
 
 static inline void switch_in(struct fiber *f) { swapcontext(&f->outside, &f->context); }
@@ -195,7 +230,8 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
     struct fiber *f = &p->fiber[i];
     *f = (struct fiber){.pool = p, .fn = fn, .argument = argument};
     f->stack = p->base + p->stride * (size_t)i + p->page;
-    /* Stacks lie a power of two apart; shifted tops keep their hot lines out of the same cache sets. */
+    /* Stacks lie a whole number of pages apart, so that their tops would compete for the same sets
+     * of the first-level cache. Shifted tops keep the hot lines of different fibers apart. */
     char *top = f->stack + p->stack_bytes - (size_t)(i % COLOURS) * COLOUR_BYTES;
     prepare(f, top);
     return f;
@@ -218,6 +254,8 @@ void fiber_leave(struct fiber *f)
     sanitizer_entered(f);
 }
 
+/* Pages down to the lowest resident one. Stacks grow downwards, so this is the depth ever reached;
+ * a page that was skipped (a large array never written) counts too. */
 static size_t resident_depth(const unsigned char *resident, size_t npage)
 {
     size_t lowest = 0;
@@ -229,14 +267,19 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
 {
     enum { BATCH = 1024 };
     size_t npage = p->stride / p->page, deepest = 0;
+    /* mincore answers for a range of pages at once. In batches, the answer stays small whatever the
+     * number of fibers. */
     unsigned char *resident = malloc(size_product(npage, BATCH));
     CHECK(resident);
     for (int first = 0; first < p->n; first += BATCH) {
         size_t n = (size_t)(p->n - first < BATCH ? p->n - first : BATCH);
+        /* A kernel without mincore: report what was found so far, since this is a statistic
+         * only. */
         if (mincore(p->base + p->stride * (size_t)first, p->stride * n, resident) != 0) break;
         for (size_t k = 0; k < n; k++) {
             const unsigned char *r = resident + k * npage;
-            CHECK(first + (int)k < p->nguard || !(r[0] & 1)); /* the spare page was touched: stack overflow */
+            CHECK(first + (int)k < p->nguard ||
+                  !(r[0] & 1)); /* the spare page was touched: stack overflow */
             size_t depth = resident_depth(r + 1, npage - 1);
             if (depth > deepest) deepest = depth;
         }

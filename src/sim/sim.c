@@ -9,6 +9,7 @@
 #include "base/picoseconds.h"
 #include "sim/event_queue.h"
 
+/* The lane stands above the key in one integer, so that one comparison orders both. */
 enum { KEY_BITS = 48 };
 
 struct sim {
@@ -36,8 +37,8 @@ void sim_destroy(struct sim *s)
     free(s);
 }
 
-void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action, void *subject,
-            uint64_t argument)
+void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action,
+            void *subject, uint64_t argument)
 {
     CHECK(time >= s->now);
     CHECK(lane < 65536 && key >> KEY_BITS == 0);
@@ -49,14 +50,20 @@ bool sim_step(struct sim *s)
 {
     struct event e;
     if (!event_queue_pop(&s->queue, &e)) return false;
+    /* Durations are cut off at PS_TOO_LONG, so that a time past PS_LAST has not wrapped yet; its next
+     * sum might. The run ends before this event, and sim_beyond says why. */
     if (__builtin_expect(e.time > PS_LAST, 0)) {
         s->beyond = true;
         return false;
     }
+    /* ties counts neighbours whose order the key or the age alone decides. Many ties show that
+     * results depend on the rule for simultaneous events. */
     s->ties += s->events > 0 && e.time == s->now && (e.order ^ s->last_order) >> KEY_BITS == 0;
     s->events++;
     s->now = e.time;
     s->last_order = e.order;
+    /* The digest covers what is dispatched and when, not the host's addresses. Equal digests mean
+     * equal sequences of events, on any host and with any number of workers. */
     s->digest = digest_mix(digest_mix(s->digest, (uint64_t)e.time), e.order);
     e.action(e.subject, e.argument, e.time);
     return true;

@@ -68,7 +68,7 @@ planted() {
 
 clean_house
 compile clean
-for check in includes symbols globals cycles documented lengths listed words readme sizes; do
+for check in includes symbols globals cycles documented lengths listed words readme sizes comments; do
     said=$(HOUSE=$place/clean HOUSE_BUILD=$place/clean bash "$HERE/$check.sh" 2>&1) ||
         complain "$check.sh does not pass a clean house: $said"
 done
@@ -122,6 +122,8 @@ planted listed 'tests/base/test_more.c: not in' 'cp tests/base/test_base.c tests
 planted listed 'tests/data/a.csv: not in tests/data/README.md' 'touch tests/data/a.csv'
 
 planted sizes 'src/vp/vp.c:8: TAKE of n * n' 'echo "double *k(int n) { return TAKE(a, n * n, double); }" >>src/vp/vp.c'
+planted comments 'src/sim: 14.3 % of 7 lines carry comments' 'echo "int k;" >>src/sim/sim.c'
+planted comments 'src/sim: 14.3 % of 7 lines' 'echo "const char *k = \"/*\";" >>src/sim/sim.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* TO""DO: later */" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "/* see /wo""rk/shared */" >>src/vp/vp.c'
 planted words 'src/vp/vp.c:8:' 'echo "static const char text[] = \"the dear""est stage\";" >>src/vp/vp.c'
