@@ -31,7 +31,8 @@ static void say_order(const struct common *c, int at, struct err *e)
 /* How the database was opened, where there is something to say. */
 static struct store *with_remark(const struct common *c, struct store *s)
 {
-    if (s != NULL && store_remark(s) != NULL && !c->quiet) fprintf(stderr, "mimdsim: %s\n", store_remark(s));
+    if (s != NULL && store_remark(s) != NULL && !c->quiet)
+        fprintf(stderr, "mimdsim: %s\n", store_remark(s));
     return s;
 }
 

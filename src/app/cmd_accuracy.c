@@ -30,7 +30,8 @@ static bool read_within(const char *text, double *within, struct err *e)
     bool number = end != text;
     if (strcmp(end, "%") == 0) *within /= 100, end++;
     if (!number || *end || !(*within > 0) || !isfinite(*within))
-        return err_set(e, ERR_USAGE, "--within: '%s' is not a positive number such as 2%% or 1e-6", text);
+        return err_set(e, ERR_USAGE, "--within: '%s' is not a positive number such as 2%% or 1e-6",
+                       text);
     return true;
 }
 
@@ -58,7 +59,8 @@ int cmd_accuracy(int argc, char **argv)
     struct plan_options o = common_plan(&c);
     struct arena *a = arena_create();
     struct accuracy_report r;
-    ok = ok && plan_read(&p, c.arg[0], &o, &e) && accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
+    ok = ok && plan_read(&p, c.arg[0], &o, &e) &&
+         accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
     if (ok && !c.json) accuracy_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);
     if (ok && c.json) accuracy_print_json(stdout, &r);

@@ -1,4 +1,5 @@
-/* cmd_check.c - mimdsim check: validate scenario and machine files without running, databases by their own rows. */
+/* cmd_check.c - mimdsim check: validate scenario and machine files without running, databases by
+ * their own rows. */
 #include "app/verb.h"
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,8 @@ static void print_findings(struct json *j, const struct audit_report *r)
     json_end(j);
 }
 
-/* The entry of a database that could be read: what common_error_json tells of any file, and what was found. */
+/* The entry of a database that could be read: what common_error_json tells of any file, and what
+ * was found. */
 static void print_database(struct json *j, const char *file, const struct err *e,
                            const struct audit_report *r)
 {
@@ -59,7 +61,8 @@ static void print_database(struct json *j, const char *file, const struct err *e
     json_end(j);
 }
 
-/* Steps of the message software that go down: they may be meant, as where a protocol is switched too late. */
+/* Steps of the message software that go down: they may be meant, as where a protocol is switched
+ * too late. */
 static void tell_steps_down(const char *file)
 {
     struct machine_spec m;
@@ -69,14 +72,17 @@ static void tell_steps_down(const char *file)
     struct text path = {0};
     err_clear(&e);
     text_add(&path, "%s%s", strchr(file, '/') == NULL ? "./" : "", file);
-    const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e) ? software_segments(&m.software, list) : 0;
+    const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e)
+                      ? software_segments(&m.software, list)
+                      : 0;
     for (int i = 1; i < n; i++) {
         double below, at, size = (double)list[i].from;
         if (!probe_measure(&m, PROBE_ONE_WAY, size - 1, 0, &below, &e) ||
             !probe_measure(&m, PROBE_ONE_WAY, size, 0, &at, &e))
             break;
         if (at < below)
-            fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is this "
+            fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is "
+                            "this "
                             "intended?\n", file,
                     size - 1, below * 1e6, size, at * 1e6);
     }
@@ -123,8 +129,8 @@ static bool check_database(const char *file, const struct audit_options *o, stru
 }
 
 /* One file of any kind; *report stays NULL where it is no database. */
-static bool check_file(const struct common *c, const char *file, const struct audit_options *audit, struct arena *a,
-                       struct audit_report **report, struct err *e)
+static bool check_file(const struct common *c, const char *file, const struct audit_options *audit,
+                       struct arena *a, struct audit_report **report, struct err *e)
 {
     const struct plan_options o = common_plan(c);
     if (file_kind_of(file, a) == FILE_DATABASE) {
@@ -133,14 +139,16 @@ static bool check_file(const struct common *c, const char *file, const struct au
         return fine;
     }
     const bool model = model_file_is(file);
-    const bool fine = model ? model_file_check(file, c->quiet ? NULL : stderr, e) : plan_check_file(file, &o, e);
+    const bool fine =
+        model ? model_file_check(file, c->quiet ? NULL : stderr, e) : plan_check_file(file, &o, e);
     if (fine && !c->quiet && !c->json) printf("%s: ok\n", file);
     if (fine && !c->quiet && !model) tell_steps_down(file);
     return fine;
 }
 
 /* --again K and --seed S. */
-static bool read_options(const char *again, const char *seed, struct audit_options *o, struct err *e)
+static bool read_options(const char *again, const char *seed, struct audit_options *o,
+                         struct err *e)
 {
     char *end;
     if (again && strcmp(again, "all") == 0) o->again = AUDIT_ALL;
@@ -152,7 +160,8 @@ static bool read_options(const char *again, const char *seed, struct audit_optio
     }
     if (!seed) return true;
     o->seed = strtoull(seed, &end, 10);
-    return (end != seed && !*end && *seed != '-') || err_set(e, ERR_USAGE, "--seed: '%s' is not a whole number", seed);
+    return (end != seed && !*end && *seed != '-') ||
+           err_set(e, ERR_USAGE, "--seed: '%s' is not a whole number", seed);
 }
 
 int cmd_check(int argc, char **argv)
@@ -160,7 +169,8 @@ int cmd_check(int argc, char **argv)
     struct common c;
     struct err e;
     struct audit_options audit = {.seed = 1};
-    const char *again = take_value(&argc, argv, "--again"), *seed = take_value(&argc, argv, "--seed");
+    const char *again = take_value(&argc, argv, "--again"),
+               *seed = take_value(&argc, argv, "--seed");
     common_parse(&c, argc, argv, TAKES_JOBS, "FILE...", doc, 1, 64);
     err_clear(&e);
     if (!read_options(again, seed, &audit, &e)) return common_fail(&c, &e);

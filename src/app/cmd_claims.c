@@ -19,7 +19,8 @@ static const char doc[] =
     "runs are missing; the text names them and the command that makes them.\n"
     "A claim that fails is a result, not an error: the exit status is 0 if all could be judged.";
 
-static bool tell_explanations(const struct common *c, const struct claim_rules *rules, struct store *s, struct err *e)
+static bool tell_explanations(const struct common *c, const struct claim_rules *rules,
+                              struct store *s, struct err *e)
 {
     return explain_claims(c, rules, EXPLAIN_SEED, s, e) && explain_draw(c, s, e) &&
            explanations_print(s, c->json, stdout, e);
@@ -30,7 +31,8 @@ int cmd_claims(int argc, char **argv)
     struct common c;
     bool what_if = take_flag(&argc, argv, "--what-if");
     bool explain = take_flag(&argc, argv, "--explain");
-    common_parse(&c, argc, argv, explain ? TAKES_STORE | TAKES_JOBS | TAKES_DIR : 0, "[DB]", doc, 0, 1);
+    common_parse(&c, argc, argv, explain ? TAKES_STORE | TAKES_JOBS | TAKES_DIR : 0, "[DB]", doc, 0,
+                 1);
     const char *path = c.narg ? c.arg[0] : "paper.db";
     struct err e;
     err_clear(&e);

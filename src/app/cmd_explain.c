@@ -1,4 +1,5 @@
-/* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will cost. */
+/* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will cost.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,10 +90,11 @@ static struct text choice_of(const struct run_spec *s, const char *key)
 
 static void print_run(const struct run_spec *s, const struct run_estimate *r)
 {
-    struct text level = choice_of(s, "machine.network.level"), form = choice_of(s, "kernel.formulation");
-    printf("%-12.12s %-10s %-12s %-14s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n", s->machine.name,
-           s->kernel.name, r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody, s->nrank, r->messages,
-           r->bytes / 1e6, r->flops / 1e6, r->host_s, r->host_bytes / 1e6);
+    struct text level = choice_of(s, "machine.network.level"),
+                form = choice_of(s, "kernel.formulation");
+    printf("%-12.12s %-10s %-12s %-14s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n",
+           s->machine.name, s->kernel.name, r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody,
+           s->nrank, r->messages, r->bytes / 1e6, r->flops / 1e6, r->host_s, r->host_bytes / 1e6);
     text_free(&level);
     text_free(&form);
 }
@@ -101,18 +103,20 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
 {
     struct totals t = {0};
     bool open_level = false;
-    printf("%s\n%d runs\n\n%-12s %-10s %-12s %-14s %8s %8s %12s %12s %12s %10s %10s\n", p->question, p->nrun,
-           "machine", "kernel", "formulation", "level", "n", "P", "messages", "MB sent", "Mflop", "host s", "host MB");
+    printf("%s\n%d runs\n\n%-12s %-10s %-12s %-14s %8s %8s %12s %12s %12s %10s %10s\n", p->question,
+           p->nrun, "machine", "kernel", "formulation", "level", "n", "P", "messages", "MB sent",
+           "Mflop", "host s", "host MB");
     for (int i = 0; i < p->nrun; i++) {
         print_run(&p->run[i], &r[i]);
         add(&t, &r[i]);
         open_level = open_level || p->run[i].machine.network.level == LEVEL_AUTO_TOLERANCE;
     }
     if (open_level)
-        printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the database, or by one that "
-               "is measured then\n");
+        printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the "
+               "database, or by one that is measured then\n");
     if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
-        printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre, r[0].kilogram, r[0].second);
+        printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre,
+               r[0].kilogram, r[0].second);
     printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
@@ -168,7 +172,8 @@ static void read_level(const struct column *c, const void *row, struct column_va
 }
 
 #define SPEC(member) .part = PART(struct planned, spec), .offset = offsetof(struct run_spec, member)
-#define ESTIMATE(member) .part = PART(struct planned, estimate), .offset = offsetof(struct run_estimate, member)
+#define ESTIMATE(member)                                                                           \
+    .part = PART(struct planned, estimate), .offset = offsetof(struct run_estimate, member)
 
 static const struct column planned_column[] = {
     {"bodies", COLUMN_INT64, ESTIMATE(nbody), .doc = "of the model"},
@@ -185,7 +190,8 @@ static const struct column planned_column[] = {
 static const struct column_table planned_columns = COLUMNS(planned_column);
 
 /* `measured` NULL: without --measure. */
-static void print_json(const struct plan *p, const struct run_estimate *r, const struct savings *measured)
+static void print_json(const struct plan *p, const struct run_estimate *r,
+                       const struct savings *measured)
 {
     struct json j = json_make(stdout);
     json_object(&j);
@@ -196,7 +202,8 @@ static void print_json(const struct plan *p, const struct run_estimate *r, const
     json_key_text(&j, "question", p->question);
     json_key(&j, "runs");
     json_array(&j);
-    for (int i = 0; i < p->nrun; i++) columns_json(&planned_columns, &(struct planned){&p->run[i], &r[i]}, &j);
+    for (int i = 0; i < p->nrun; i++)
+        columns_json(&planned_columns, &(struct planned){&p->run[i], &r[i]}, &j);
     json_end(&j);
     if (measured) savings_json(&j, measured);
     json_key(&j, "unused");
@@ -227,7 +234,8 @@ static bool estimate_all(const struct plan *p, struct run_estimate *r, struct er
     for (int i = 0; i < p->nrun; i++)
         if (!p->run[i].refused && !run_explain(&p->run[i], &r[i], e)) return false;
     if (p->nrefused > 0)
-        fprintf(stderr, "mimdsim: %d of %d points cannot run; the first: %s\n", p->nrefused, p->nrun, p->refusal.text);
+        fprintf(stderr, "mimdsim: %d of %d points cannot run; the first: %s\n", p->nrefused,
+                p->nrun, p->refusal.text);
     return true;
 }
 

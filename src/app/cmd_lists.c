@@ -12,7 +12,8 @@ static const char scenarios_help[] =
     "\v--keys: list instead all keys of scenarios, machine files and --set, with meaning, unit "
     "and default, as Markdown.";
 
-/* What only files have, and how their keys are shortened; the settings themselves have their tables. */
+/* What only files have, and how their keys are shortened; the settings themselves have their
+ * tables. */
 static const char keys_of_files[] =
     "## A scenario\n\n"
     "- `schema_version`: 1.\n"
@@ -52,7 +53,8 @@ static void print_keys(const struct common *c)
     for (int i = 0; i < ntable; i++) {
         for (int j = 0; j < table[i]->nfield; j++, n++) {
             struct text t = {0};
-            text_add(&t, "%s%s%s", table[i]->prefix, table[i]->prefix[0] != '\0' ? "." : "", table[i]->field[j].key);
+            text_add(&t, "%s%s%s", table[i]->prefix, table[i]->prefix[0] != '\0' ? "." : "",
+                     table[i]->field[j].key);
             key[n] = arena_text(a, t.s);
             text_free(&t);
             meaning[n] = table[i]->field[j].doc;

@@ -56,11 +56,13 @@ static void print_origin(const struct origin *o, struct arena *a)
 {
     const char *slash = strrchr(o->file, '/');
     const bool segments = o->value[0] == '[' && o->value[1] == '{';
-    printf("%-36s %-22s %-30s %-3s ", o->key, segments ? "by size:" : o->value, parameters_range(o, a), o->evidence);
+    printf("%-36s %-22s %-30s %-3s ", o->key, segments ? "by size:" : o->value,
+           parameters_range(o, a), o->evidence);
     if (o->line) printf("%s:%d", slash ? slash + 1 : o->file, o->line);
     else printf("%s", slash ? slash + 1 : o->file);
     if (*o->source) printf("  %s", o->source);
-    if (*o->validate) printf("; %s%s", strncmp(o->validate, "unused", 6) == 0 ? "" : "validate: ", o->validate);
+    if (*o->validate)
+        printf("; %s%s", strncmp(o->validate, "unused", 6) == 0 ? "" : "validate: ", o->validate);
     putchar('\n');
     if (segments) print_segments(o->value);
 }
@@ -72,8 +74,8 @@ static const struct origin *value_of(const struct shown *m, const char *key)
     return NULL;
 }
 
-/* How far the rate of small dense code is known, and the LINPACK benchmark of order 100 with it: at the least, the
- * stated and the largest rate of the file [flop/s]. */
+/* How far the rate of small dense code is known, and the LINPACK benchmark of order 100 with it: at
+ * the least, the stated and the largest rate of the file [flop/s]. */
 struct sustained {
     double rate[3], linpack[3];
 };
@@ -149,9 +151,10 @@ static void show_one(const struct common *c, const struct shown *m, struct arena
     json_finish(&j);
 }
 
-/* A key with its two values, keys of the object sorted; a machine compared with one of its own name is "NAME (2)". */
-static void difference_json(struct json *j, const char *key, const struct shown *x, const char *xvalue,
-                            const struct shown *y, const char *yvalue)
+/* A key with its two values, keys of the object sorted; a machine compared with one of its own name
+ * is "NAME (2)". */
+static void difference_json(struct json *j, const char *key, const struct shown *x,
+                            const char *xvalue, const struct shown *y, const char *yvalue)
 {
     char second[sizeof y->spec.name + 8];
     bool alike = strcmp(x->spec.name, y->spec.name) == 0;
@@ -171,8 +174,8 @@ static void difference_json(struct json *j, const char *key, const struct shown 
     json_end(j);
 }
 
-static void print_difference(const struct common *c, struct json *j, const char *key, const struct shown *m,
-                             const struct origin *const o[2])
+static void print_difference(const struct common *c, struct json *j, const char *key,
+                             const struct shown *m, const struct origin *const o[2])
 {
     const char *x = o[0] ? o[0]->value : "-", *y = o[1] ? o[1]->value : "-";
     if (strcmp(x, y) == 0) return;
@@ -180,7 +183,8 @@ static void print_difference(const struct common *c, struct json *j, const char 
     else printf("%-36s %-26s %s\n", key, x, y);
 }
 
-/* Values are paired by their names: every machine has the keys of the table, and published figures of its own. */
+/* Values are paired by their names: every machine has the keys of the table, and published figures
+ * of its own. */
 static void compare(const struct common *c, const struct shown m[2])
 {
     struct json j = json_make(stdout);
@@ -205,7 +209,8 @@ static int show(const struct common *c, struct arena *a)
     for (int i = 0; i < c->narg; i++) {
         struct err e;
         err_clear(&e);
-        if (!plan_machine(&m[i].spec, c->arg[i], &o, a, &m[i].origin, &m[i].n, &e)) return common_fail(c, &e);
+        if (!plan_machine(&m[i].spec, c->arg[i], &o, a, &m[i].origin, &m[i].n, &e))
+            return common_fail(c, &e);
     }
     if (c->narg == 1) show_one(c, &m[0], a);
     else compare(c, m);
@@ -215,7 +220,8 @@ static int show(const struct common *c, struct arena *a)
 int cmd_machines(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE, "[NAME]\n--compare NAME OTHER", doc, 0, 2);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE, "[NAME]\n--compare NAME OTHER", doc, 0,
+                 2);
     if (c.compare && c.narg != 2) {
         struct err e;
         err_clear(&e);

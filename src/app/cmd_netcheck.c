@@ -35,10 +35,12 @@ static bool level_of(const char *word, enum network_level *level, struct err *e)
     }
     const char *near = text_nearest(word, name, LEVELS);
     return near ? err_set(e, ERR_USAGE, "there is no level '%s'; did you mean '%s'?", word, near)
-                : err_set(e, ERR_USAGE, "there is no level '%s'; known: loggp, link, packet, flit, auto", word);
+                : err_set(e, ERR_USAGE,
+                          "there is no level '%s'; known: loggp, link, packet, flit, auto", word);
 }
 
-static void print_one(const struct netcheck *n, const struct common *c, double within, struct json *j)
+static void print_one(const struct netcheck *n, const struct common *c, double within,
+                      struct json *j)
 {
     if (c->json) {
         netcheck_json_object(n, within, j);
@@ -50,8 +52,8 @@ static void print_one(const struct netcheck *n, const struct common *c, double w
 }
 
 /* Every file is read before anything is printed, so that a wrong one leaves no half answer. */
-static bool check_files(const struct common *c, const bool *wanted, double within, bool *pass, struct arena *a,
-                        struct err *e)
+static bool check_files(const struct common *c, const bool *wanted, double within, bool *pass,
+                        struct arena *a, struct err *e)
 {
     struct netcheck *n = TAKE(a, c->narg, struct netcheck);
     for (int i = 0; i < c->narg; i++)

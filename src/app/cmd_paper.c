@@ -36,7 +36,8 @@ struct paper {
     struct store *store;
     struct err *e;
     struct claim_rules rules;
-    const struct run_spec *run; /* the runs of all plans while they are made, and how each is executed */
+    const struct run_spec
+        *run; /* the runs of all plans while they are made, and how each is executed */
     struct run_order *order;
     bool paper_only; /* without the scenes */
     int failed;      /* runs that could not be made, or did not end */
@@ -62,7 +63,8 @@ static bool add_plans(struct paper *p)
     struct arena *a = arena_create();
     bool ok = plan_list("scenarios", a, &stem, &title, &n, p->e);
     for (int i = 0; ok && i < n; i++)
-        if (strncmp(stem[i], "fig", 3) == 0 || strncmp(stem[i], "paper-", 6) == 0) ok = add_plan(p, stem[i]);
+        if (strncmp(stem[i], "fig", 3) == 0 || strncmp(stem[i], "paper-", 6) == 0)
+            ok = add_plan(p, stem[i]);
     arena_destroy(a);
     return ok;
 }
@@ -72,8 +74,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     struct paper *p = context;
     p->failed += r->status == RUN_FAILED;
     if (r->status != RUN_OK)
-        fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name, spec->model.nbody,
-                spec->nrank, r->text);
+        fprintf(stderr, "mimdsim: %s: %s, n = %d, P = %d: %s\n", spec->scenario, spec->kernel.name,
+                spec->model.nbody, spec->nrank, r->text);
     return store_put(p->store, spec, &p->order[spec - p->run], r, p->e);
 }
 
@@ -94,7 +96,8 @@ static bool run_plans(struct paper *p)
     p->run = spec;
     bool ok = levels_settle(p->store, spec, p->order, n, p->common->quiet, a, p->e);
     for (int i = 0; i < n && ok; i++) skip[i] = !p->common->force && store_has(p->store, &spec[i]);
-    ok = ok && run_campaign(spec, p->order, n, skip, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    ok = ok && run_campaign(spec, p->order, n, skip, p->common->jobs, p->common->quiet, keep_result,
+                            p, p->e);
     p->run = NULL;
     p->order = NULL;
     arena_destroy(a);
@@ -103,8 +106,8 @@ static bool run_plans(struct paper *p)
 
 static bool has_section(const char *figure)
 {
-    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0 ||
-           strcmp(figure, "explain") == 0;
+    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 ||
+           strcmp(figure, "omissions") == 0 || strcmp(figure, "explain") == 0;
 }
 
 /* A figure that cannot be drawn for want of gnuplot has its CSV; the others go on. */
@@ -130,9 +133,8 @@ static bool draw_all(struct paper *p, struct progress *progress)
             if (!draw(p, p->plan[i].figure[k])) return false;
             progress_show(progress, ++done);
         }
-    return p->common->narg ||
-           (draw(p, "claims") && draw(p, "accuracy") && draw(p, "stability") && draw(p, "omissions") &&
-            draw(p, "explain"));
+    return p->common->narg || (draw(p, "claims") && draw(p, "accuracy") && draw(p, "stability") &&
+                               draw(p, "omissions") && draw(p, "explain"));
 }
 
 static bool draw_figures(struct paper *p)
@@ -159,7 +161,8 @@ static int figure_names(const struct paper *p, const char **name)
     int n = 0;
     name[n++] = "claims";
     for (int i = 0; i < p->nplan; i++)
-        for (int k = 0; k < p->plan[i].nfigure && n < MOST_FIGURES; k++) name[n++] = p->plan[i].figure[k];
+        for (int k = 0; k < p->plan[i].nfigure && n < MOST_FIGURES; k++)
+            name[n++] = p->plan[i].figure[k];
     return n;
 }
 
@@ -167,9 +170,14 @@ static bool write_documents(struct paper *p, double began)
 {
     const char *name[MOST_FIGURES];
     struct arena *a = arena_create();
-    struct document d = {.store = p->store, .name = "paper", .whole = true,
-                         .title = "Parallel multibody dynamics on MIMD machines: the evaluation reproduced",
-                         .data_dir = plan_data_dir(), .figures = p->common->directory, .figure = name};
+    struct document d = {.store = p->store,
+                         .name = "paper",
+                         .whole = true,
+                         .title = "Parallel multibody dynamics on MIMD machines: the evaluation "
+                                  "reproduced",
+                         .data_dir = plan_data_dir(),
+                         .figures = p->common->directory,
+                         .figure = name};
     d.nfigure = figure_names(p, name);
     bool ok = parameters_gather(p->plan, p->nplan, a, &d.parameter, &d.nparameter, p->e);
     d.host_s = host_seconds() - began;
@@ -208,7 +216,8 @@ int cmd_paper(int argc, char **argv)
         fprintf(stderr, "mimdsim: %s, %s/%s in %.1f s\n", p.database, c.directory,
                 c.narg ? "" : ", paper.md, paper.html", host_seconds() - began);
     if (ok && p.failed > 0)
-        fprintf(stderr, "mimdsim: %d runs failed; each is stored with its reason, and tried again next time\n",
+        fprintf(stderr, "mimdsim: %d runs failed; each is stored with its reason, and tried again "
+                        "next time\n",
                 p.failed);
     if (ok) return p.failed > 0 ? err_exit_status(ERR_CHECK) : 0;
     return common_fail(&c, &e);

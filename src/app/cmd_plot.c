@@ -16,7 +16,8 @@ static const char doc[] =
     "the runs it needs.";
 
 /* The pictures that figure `name` stands for. */
-static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j, struct err *e)
+static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j,
+                          struct err *e)
 {
     struct report_drawings d;
     if (!report_drawings_find(s, plan_data_dir(), name, &d, e)) return false;
@@ -95,8 +96,10 @@ static bool is_figure(const char *word)
 /* A figure alone lacks its database; the rest is as everywhere. */
 static struct store *open_database(const struct common *c, struct err *e)
 {
-    if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0) return arguments_database(c, "", e);
-    err_set(e, ERR_USAGE, "'%s' is a figure; the database comes first: `mimdsim plot mimdsim.db %s`", c->arg[0],
+    if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0)
+        return arguments_database(c, "", e);
+    err_set(e, ERR_USAGE,
+            "'%s' is a figure; the database comes first: `mimdsim plot mimdsim.db %s`", c->arg[0],
             c->arg[0]);
     return NULL;
 }
@@ -109,7 +112,8 @@ int cmd_plot(int argc, char **argv)
     err_clear(&e);
     struct store *s = c.narg > 0 ? open_database(&c, &e) : NULL;
     bool ok = s != NULL || c.narg == 0;
-    for (int i = 1; ok && i < c.narg; i++) ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);
+    for (int i = 1; ok && i < c.narg; i++)
+        ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);
     if (ok && c.narg < 2) list_figures(&c);
     else if (ok && (c.json || !c.quiet)) ok = print_pictures(&c, s, &e);
     store_close(s);

@@ -1,4 +1,5 @@
-/* cmd_query.c - mimdsim query: SQL for people without sqlite3 at hand; databases of older versions upgraded. */
+/* cmd_query.c - mimdsim query: SQL for people without sqlite3 at hand; databases of older versions
+ * upgraded. */
 #include "app/arguments.h"
 #include "app/flag.h"
 #include "app/verb.h"
@@ -9,10 +10,12 @@ static const char doc[] =
     "Run one SQL query on the database DB and print its rows.\n\n"
     "Example: mimdsim query mimdsim.db 'SELECT n, P, baseline, speedup FROM v_speedup'\n"
     "         mimdsim query --schema\n\v"
-    "--schema: instead, print every table, view and column of the database with its type and meaning, as Markdown.\n\n"
-    "--upgrade: make DB, which an older version of the program made, a database of this version first. The old one is "
-    "kept beside it. SQL may then be left out. Verbs that only read an older database read a temporary upgraded copy; "
-    "verbs that write to one upgrade it as --upgrade does.";
+    "--schema: instead, print every table, view and column of the database with its type and "
+    "meaning, as Markdown.\n"
+    "\n--upgrade: make DB, which an older version of the program made, a database of this version "
+    "first. The old one is kept beside it. SQL may then be left out. Verbs that only read an older "
+    "database read a temporary upgraded copy; verbs that write to one upgrade it as --upgrade "
+    "does.";
 
 /* Upgrade the database, and say what was done: to people, or as a document when no rows follow. */
 static bool upgrade(const struct common *c, struct err *e)
@@ -37,14 +40,16 @@ int cmd_query(int argc, char **argv)
     struct common c;
     const bool upgrades = take_flag(&argc, argv, "--upgrade");
     const bool schema = take_flag(&argc, argv, "--schema");
-    common_parse(&c, argc, argv, 0, upgrades ? "DB [SQL]" : "DB SQL\n--upgrade DB [SQL]\n--schema", doc,
+    common_parse(&c, argc, argv, 0, upgrades ? "DB [SQL]" : "DB SQL\n--upgrade DB [SQL]\n--schema",
+                 doc,
                  schema     ? 0
                  : upgrades ? 1
                             : 2,
                  schema ? 0 : 2);
     struct err e;
     err_clear(&e);
-    if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE, "--schema stands alone: it writes Markdown");
+    if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE, "--schema stands alone: it writes "
+                                                               "Markdown");
     if (schema) return e.kind == ERR_NONE && store_document(stdout, &e) ? 0 : common_fail(&c, &e);
     bool ok = !upgrades || upgrade(&c, &e);
     struct store *s = ok && c.narg == 2 ? arguments_database(&c, "", &e) : NULL;

@@ -1,4 +1,5 @@
-/* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and HTML. */
+/* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and HTML.
+ */
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,8 +35,8 @@ struct report {
 
 static bool has_section(const char *figure)
 {
-    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 || strcmp(figure, "omissions") == 0 ||
-           strcmp(figure, "explain") == 0;
+    return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 ||
+           strcmp(figure, "omissions") == 0 || strcmp(figure, "explain") == 0;
 }
 
 /* Draw `name`, taken over, if there are rows for it. */
@@ -67,7 +68,8 @@ static bool draw_all(struct report *r)
     return ok;
 }
 
-/* The plan of a scenario, for the numbers of its machine; a file that is not there any more tells nothing. */
+/* The plan of a scenario, for the numbers of its machine; a file that is not there any more tells
+ * nothing. */
 static bool add_plan(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     struct report *r = context;
@@ -98,10 +100,15 @@ static bool write_document(struct report *r, const char *path, const char *stem)
     struct arena *a = arena_create();
     struct text title = {0};
     text_add(&title, "What %s holds", path);
-    struct document d = {.store = r->store, .name = stem, .title = title.s, .data_dir = plan_data_dir(),
-                         .figures = r->common->directory, .nfigure = r->nfigure,
+    struct document d = {.store = r->store,
+                         .name = stem,
+                         .title = title.s,
+                         .data_dir = plan_data_dir(),
+                         .figures = r->common->directory,
+                         .nfigure = r->nfigure,
                          .figure = (const char *const *)r->figure};
-    bool ok = store_select(r->store, "SELECT DISTINCT scenario FROM run ORDER BY 1", 0, NULL, add_plan, r, r->e) &&
+    bool ok = store_select(r->store, "SELECT DISTINCT scenario FROM run ORDER BY 1", 0, NULL,
+                           add_plan, r, r->e) &&
               parameters_gather(r->plan, r->nplan, a, &d.parameter, &d.nparameter, r->e) &&
               document_write(&d, r->e);
     text_free(&title);
@@ -117,7 +124,8 @@ static void tell(const struct common *c, const char *stem)
     if (c->json) json_array(&j);
     for (int i = 0; i < 2; i++) {
         struct text t = {0};
-        text_add(&t, "%.*s%s.%s", slash ? (int)(slash + 1 - c->directory) : 0, c->directory, stem, ending[i]);
+        text_add(&t, "%.*s%s.%s", slash ? (int)(slash + 1 - c->directory) : 0, c->directory, stem,
+                 ending[i]);
         if (c->json) json_text(&j, t.s);
         else puts(t.s);
         text_free(&t);

@@ -45,7 +45,8 @@ static bool is_database(const char *path)
     return yes;
 }
 
-static bool take_first(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool take_first(void *context, int ncolumn, const char *const *name,
+                       const struct store_value *value)
 {
     struct shown *t = context;
     (void)ncolumn;
@@ -65,7 +66,8 @@ static bool from_database(struct shown *t)
     const char *const param[] = {wanted};
     t->store = arguments_database(t->common, "", t->e);
     if (!t->store || (wanted && !arguments_run_number(wanted, t->e)) || !store_query(t->store,
-                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine, n, P), status,"
+                                  "SELECT id, format('%s on %s, n = %d, P = %d', kernel, machine,"
+                                  " n, P), status,"
                                   " text FROM run"
                                   " WHERE id = ifnull(?1, (SELECT min(run_id) FROM span))",
                                   1, param, NULL, take_first, t, t->e))
@@ -87,8 +89,8 @@ static bool from_scenario(struct shown *t)
     if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
     struct run_spec spec = plan.run[0];
     spec.record.spans = true;
-    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name, spec.machine.name,
-             spec.model.nbody, spec.nrank);
+    snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name,
+             spec.machine.name, spec.model.nbody, spec.nrank);
     if (plan.nrun > 1 && !t->common->quiet)
         fprintf(stderr, "mimdsim: the first of %d points: %s\n", plan.nrun, t->title);
     bool ok = run_one(&spec, t->arena, &t->result, t->e);
@@ -117,7 +119,8 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
     if (ok && left_out > 0)
-        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers fail on more than %d\n",
+        fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers "
+                        "fail on more than %d\n",
                 path, (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
     return ok;
 }
@@ -133,14 +136,17 @@ static bool draw_picture(struct shown *t)
                 (long long)t->result.nspan, PICTURE_SPANS);
         return true;
     }
-    bool ok = report_figure_run(t->store, plan_data_dir(), "fig8", t->run_id, "timeline", t->common->directory, t->e);
-    if (ok && !t->common->quiet) fprintf(stderr, "mimdsim: %s/timeline.png\n", t->common->directory);
+    bool ok = report_figure_run(t->store, plan_data_dir(), "fig8", t->run_id, "timeline",
+                                t->common->directory, t->e);
+    if (ok && !t->common->quiet)
+        fprintf(stderr, "mimdsim: %s/timeline.png\n", t->common->directory);
     return ok;
 }
 
 static bool show(struct shown *t)
 {
-    static const char *const ending[] = {[TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
+    static const char *const ending[] = {
+        [TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
     const char *word = t->common->format;
     enum trace_format format;
     if (!word && t->common->json) return write_trace(t, TRACE_CHROME, NULL);
@@ -149,18 +155,21 @@ static bool show(struct shown *t)
                write_trace(t, TRACE_PAJE, "paje") && draw_picture(t);
     if (strcmp(word, "picture") == 0) return draw_picture(t);
     if (!trace_format_find(word, &format))
-        return err_set(t->e, ERR_USAGE, "--format: '%s' is none of picture, text, chrome, paje, csv", word);
+        return err_set(t->e, ERR_USAGE,
+                       "--format: '%s' is none of picture, text, chrome, paje, csv", word);
     return write_trace(t, format, format == TRACE_TEXT ? NULL : ending[format]);
 }
 
 int cmd_timeline(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_DIR | TAKES_FORMAT, "SCENARIO|DB [RUN]", doc, 1, 2);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_DIR | TAKES_FORMAT, "SCENARIO|DB [RUN]", doc, 1,
+                 2);
     struct err e;
     err_clear(&e);
     struct shown t = {.common = &c, .e = &e, .arena = arena_create()};
-    bool ok = (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) && show(&t);
+    bool ok =
+        (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) && show(&t);
     store_close(t.store);
     arena_destroy(t.arena);
     if (!ok) return common_fail(&c, &e);

@@ -1,4 +1,5 @@
-/* cmd_validate.c - mimdsim validate: simulated machines beside published figures, network levels beside references. */
+/* cmd_validate.c - mimdsim validate: simulated machines beside published figures, network levels
+ * beside references. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,14 +37,15 @@ static void print_row(const struct published *p, const struct outcome *o)
 {
     char published[48];
     if (p->low < p->high)
-        snprintf(published, sizeof published, "%.5g (%.4g-%.4g)", p->value / p->scale, p->low / p->scale,
-                 p->high / p->scale);
+        snprintf(published, sizeof published, "%.5g (%.4g-%.4g)", p->value / p->scale,
+                 p->low / p->scale, p->high / p->scale);
     else snprintf(published, sizeof published, "%.6g", p->value / p->scale);
-    printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text, published);
+    printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text,
+           published);
     if (o->measured) printf("%11.5g %-7s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
     else printf("%11s %-7s %9s", "-", p->unit, "");
-    printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict, *p->cause ? ": " : "",
-           o->measured && *o->why ? o->why : p->cause);
+    printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict,
+           *p->cause ? ": " : "", o->measured && *o->why ? o->why : p->cause);
 }
 
 /* Where ranks meet on the wires, what every level of the network makes of it. */
@@ -54,7 +56,9 @@ static void print_levels(const struct published *p, const struct outcome *o)
     for (int i = 0; i < LEVELS; i++) {
         printf("%s %s ", i ? "," : "", validation_level_name(i));
         if (isnan(o->level[i])) printf("-");
-        else printf("%.5g (%+.1f %%)", o->level[i] / p->scale, 100 * (o->level[i] - p->value) / p->value);
+        else
+            printf("%.5g (%+.1f %%)", o->level[i] / p->scale,
+                   100 * (o->level[i] - p->value) / p->value);
     }
     putchar('\n');
 }
@@ -90,8 +94,8 @@ static void read_place(const struct column *c, const void *row, struct column_va
 {
     const struct published *p = point(row)->published;
     (void)c;
-    CHECK(snprintf(v->buffer, sizeof v->buffer, "%s%s%s", p->at_text, *p->at_text ? " " : "", p->id) <
-          (int)sizeof v->buffer);
+    CHECK(snprintf(v->buffer, sizeof v->buffer, "%s%s%s", p->at_text, *p->at_text ? " " : "",
+                   p->id) < (int)sizeof v->buffer);
     set_text(v, v->buffer);
 }
 
@@ -100,7 +104,8 @@ static void read_in_unit(const struct column *c, const void *row, struct column_
 {
     const char *base = c->part == PART(struct point, outcome) ? (const char *)point(row)->outcome
                                                               : (const char *)point(row)->published;
-    const double x = *(const double *)(const void *)(base + c->offset) / point(row)->published->scale;
+    const double x =
+        *(const double *)(const void *)(base + c->offset) / point(row)->published->scale;
     if (!isfinite(x)) return;
     v->kind = VALUE_REAL;
     v->real = x;
@@ -116,26 +121,35 @@ static bool is_contended(const void *row) { return point(row)->outcome->contende
 
 static bool is_measured(const void *row) { return point(row)->outcome->measured; }
 
-#define PUBLISHED(member) .part = PART(struct point, published), .offset = offsetof(struct published, member)
-#define OUTCOME(member) .part = PART(struct point, outcome), .offset = offsetof(struct outcome, member)
+#define PUBLISHED(member)                                                                          \
+    .part = PART(struct point, published), .offset = offsetof(struct published, member)
+#define OUTCOME(member)                                                                            \
+    .part = PART(struct point, outcome), .offset = offsetof(struct outcome, member)
 
 static const struct column point_column[] = {
-    {"at", COLUMN_STRING, PUBLISHED(at_text), .flags = COLUMN_NO_SQL, .doc = "as written in the file"},
-    {"at", COLUMN_STRING, .value = read_place, .flags = COLUMN_NO_JSON, .doc = "the same, and the row of the file"},
-    {"calibrated", COLUMN_STRING, .value = read_use, .flags = COLUMN_NO_SQL, .doc = "whether the file was fitted"},
+    {"at", COLUMN_STRING, PUBLISHED(at_text), .flags = COLUMN_NO_SQL,
+     .doc = "as written in the file"},
+    {"at", COLUMN_STRING, .value = read_place, .flags = COLUMN_NO_JSON,
+     .doc = "the same, and the row of the file"},
+    {"calibrated", COLUMN_STRING, .value = read_use, .flags = COLUMN_NO_SQL,
+     .doc = "whether the file was fitted"},
     {"cause", COLUMN_STRING, PUBLISHED(cause), .doc = "of an error that is explained"},
     {"class", COLUMN_STRING, PUBLISHED(evidence), .doc = "evidence: P, PR, D or E"},
-    {"high", COLUMN_REAL, PUBLISHED(high), .value = read_in_unit, .flags = COLUMN_NO_SQL, .doc = "largest published"},
+    {"high", COLUMN_REAL, PUBLISHED(high), .value = read_in_unit, .flags = COLUMN_NO_SQL,
+     .doc = "largest published"},
     {"id", COLUMN_STRING, PUBLISHED(id), .flags = COLUMN_NO_SQL, .doc = "row of the file"},
     {"levels", COLUMN_STRING, .json = write_levels, .known = is_contended, .flags = COLUMN_NO_SQL,
      .doc = "what each level of the network makes of it"},
-    {"low", COLUMN_REAL, PUBLISHED(low), .value = read_in_unit, .flags = COLUMN_NO_SQL, .doc = "least published"},
+    {"low", COLUMN_REAL, PUBLISHED(low), .value = read_in_unit, .flags = COLUMN_NO_SQL,
+     .doc = "least published"},
     {"subject", COLUMN_STRING, PUBLISHED(machine), .key = "machine", .doc = "the machine"},
-    {"reference", COLUMN_REAL, PUBLISHED(value), .value = read_in_unit, .key = "published", .doc = "what is published"},
+    {"reference", COLUMN_REAL, PUBLISHED(value), .value = read_in_unit, .key = "published",
+     .doc = "what is published"},
     {"quantity", COLUMN_STRING, .value = read_quantity, .doc = "what was measured"},
-    {"relative_error", COLUMN_REAL, OUTCOME(error), .known = is_measured, .doc = "of the simulated value"},
-    {"value", COLUMN_REAL, OUTCOME(value), .value = read_in_unit, .known = is_measured, .flags = COLUMN_NO_JSON,
-     .doc = "what the simulated machine does"},
+    {"relative_error", COLUMN_REAL, OUTCOME(error), .known = is_measured,
+     .doc = "of the simulated value"},
+    {"value", COLUMN_REAL, OUTCOME(value), .value = read_in_unit, .known = is_measured,
+     .flags = COLUMN_NO_JSON, .doc = "what the simulated machine does"},
     {"simulated", COLUMN_REAL, OUTCOME(value), .value = read_in_unit, .flags = COLUMN_NO_SQL,
      .doc = "what the simulated machine does"},
     {"source", COLUMN_STRING, PUBLISHED(source), .doc = "where it is published"},
@@ -150,7 +164,8 @@ static bool keep(struct store *s, const struct published *p, const struct outcom
 {
     static const char *const name[] = {"suite"};
     const struct store_value value[] = {store_text("machines")};
-    return store_insert_row(s, "check_point", 1, name, value, &point_columns, &(struct point){p, o}, e);
+    return store_insert_row(s, "check_point", 1, name, value, &point_columns, &(struct point){p, o},
+                            e);
 }
 
 /* The points shown so far. */
@@ -196,28 +211,30 @@ static const struct column_table summary_columns = COLUMNS(summary_column);
 static void print_group(const char *name, const struct validation_group *g)
 {
     if (g->n == 0) return;
-    printf("%-26s %3d points: median |error| %.1f %%, mean %.1f %%, worst %+.1f %% (%s); %d above %.0f %%, %d of them "
-           "without a cause\n",
+    printf("%-26s %3d points: median |error| %.1f %%, mean %.1f %%, worst %+.1f %% (%s); %d above "
+           "%.0f %%, %d of them without a cause\n",
            name, g->n, 100 * g->median, 100 * g->mean, 100 * g->worst, g->worst_id, g->above,
            100 * VALIDATION_UNEXPLAINED, g->unnamed);
 }
 
 static void print_summary(const struct validation_summary *s)
 {
-    printf("\n%d points: %d fail, %d explained, %d not testable; %d estimates (class E) are in no line below\n",
+    printf("\n%d points: %d fail, %d explained, %d not testable; %d estimates (class E) are in no "
+           "line below\n",
            s->shown, s->failed, s->explained, s->untested, s->estimated);
     print_group("used for calibration", &s->calibrated);
     print_group("not used for calibration", &s->held);
 }
 
 /* The points, contention where a single machine was asked for, and the summary. */
-static void print_table(const struct common *c, const struct table *t, const struct contention *row, int nrow,
-                        const struct validation_summary *s)
+static void print_table(const struct common *c, const struct table *t, const struct contention *row,
+                        int nrow, const struct validation_summary *s)
 {
     struct json j = json_make(stdout);
     if (!c->json)
-        printf("%-6s %-17s %-13s %8s %20s %11s %-7s %9s %-3s %-5s %s\n", "id", "machine", "quantity", "at", "published",
-               "simulated", "unit", "error", "ev.", "cal.", "verdict, cause");
+        printf("%-6s %-17s %-13s %8s %20s %11s %-7s %9s %-3s %-5s %s\n", "id", "machine",
+               "quantity", "at", "published", "simulated", "unit", "error", "ev.", "cal.",
+               "verdict, cause");
     for (int i = 0; i < t->n && !c->json; i++) {
         print_row(t->row[i], &t->outcome[i]);
         print_levels(t->row[i], &t->outcome[i]);
@@ -241,8 +258,8 @@ static void print_table(const struct common *c, const struct table *t, const str
 }
 
 /* Every row of the machine named, or of all, measured and kept. */
-static bool go_through(const struct common *c, const struct published *p, int n, struct store *s, struct arena *a,
-                       struct table *t, struct err *e)
+static bool go_through(const struct common *c, const struct published *p, int n, struct store *s,
+                       struct arena *a, struct table *t, struct err *e)
 {
     const char *name = c->arg[0];
     t->row = TAKE(a, n + 1, const struct published *);
@@ -256,8 +273,10 @@ static bool go_through(const struct common *c, const struct published *p, int n,
     return true;
 }
 
-/* A machine without published figures is said to have none; a name that is no machine is refused by plan_machine. */
-static bool known_machine(const char *name, const struct published *p, int n, struct arena *a, struct err *e)
+/* A machine without published figures is said to have none; a name that is no machine is refused by
+ * plan_machine. */
+static bool known_machine(const char *name, const struct published *p, int n, struct arena *a,
+                          struct err *e)
 {
     struct machine_spec m;
     struct plan_options none = {0};
@@ -292,8 +311,8 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     return true;
 }
 
-/* One table a file: mean of |error| in percent, in brackets the worst with its sign, and how many cases the level could
- * run where not all; a dash where none. */
+/* One table a file: mean of |error| in percent, in brackets the worst with its sign, and how many
+ * cases the level could run where not all; a dash where none. */
 static void network_table(const struct netcheck *n)
 {
     const char *slash = strrchr(n->path, '/');
@@ -305,15 +324,18 @@ static void network_table(const struct netcheck *n)
     for (int g = 0; g <= n->nrow; g++) {
         const char *group = g < n->nrow ? n->row[g].group : NULL;
         bool seen = group && !n->row[g].counted;
-        for (int k = 0; group && k < g && !seen; k++) seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
+        for (int k = 0; group && k < g && !seen; k++)
+            seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
         if (seen) continue;
         int cases = 0;
-        for (int k = 0; k < n->nrow; k++) cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
+        for (int k = 0; k < n->nrow; k++)
+            cases += n->row[k].counted && (!group || strcmp(n->row[k].group, group) == 0);
         printf("| %s | %d |", group ? group : "all", cases);
         for (int l = 0; l < LEVELS; l++) {
             struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
             if (t.cases == 0) printf(" - |");
-            else if (t.skipped) printf(" %.1f (%+.0f), %d cases |", 100 * t.mean, 100 * t.worst, t.cases);
+            else if (t.skipped)
+                printf(" %.1f (%+.0f), %d cases |", 100 * t.mean, 100 * t.worst, t.cases);
             else printf(" %.1f (%+.0f) |", 100 * t.mean, 100 * t.worst);
         }
         putchar('\n');
@@ -323,7 +345,8 @@ static void network_table(const struct netcheck *n)
 
 static bool validate_network(const struct common *c, struct arena *a, struct err *e)
 {
-    static const char *const file[] = {"makespan", "makespan_sensitivity", "collectives", "hand_cases", "latency_load"};
+    static const char *const file[] = {"makespan", "makespan_sensitivity", "collectives",
+                                       "hand_cases", "latency_load"};
     const char *path[64];
     int n = 0;
     for (int i = 1; i < c->narg; i++) path[n++] = c->arg[i];
@@ -360,7 +383,8 @@ int cmd_validate(int argc, char **argv)
     int failed = 0;
     struct arena *a = arena_create();
     bool network = strcmp(c.arg[0], "network") == 0;
-    bool ok = network || c.narg == 1 || err_set(&e, ERR_USAGE, "unexpected argument '%s'", c.arg[1]);
+    bool ok =
+        network || c.narg == 1 || err_set(&e, ERR_USAGE, "unexpected argument '%s'", c.arg[1]);
     ok = ok && (network ? validate_network(&c, a, &e) : validate_machines(&c, a, &failed, &e));
     arena_destroy(a);
     if (!ok) return common_fail(&c, &e);

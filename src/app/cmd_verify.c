@@ -1,4 +1,5 @@
-/* cmd_verify.c - mimdsim verify: every algorithm against reference vectors computed by other people's programs. */
+/* cmd_verify.c - mimdsim verify: every algorithm against reference vectors computed by other
+ * people's programs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,22 +10,18 @@
 #include "study/verify.h"
 
 static const char doc[] =
-    "Run every applicable serial and parallel algorithm, with every solver and several numbers of ranks, on reference "
-    "vectors (dynref-1 JSON). The tolerance of each number takes into account how much rounding "
-    "of the inputs changes it.\n\n"
-    "Example: mimdsim verify tests/data/vectors/*.json\n"
-    "\vVerdicts: pass; rounding: the error exceeds the tolerance in working precision, but not in "
-    "quad precision; "
-    "algorithm-fails: it does in quad precision too, although the reference value is confirmed "
-    "and the algorithm is correct "
-    "for the same scene with equal masses (the text names an alternative); fail; not-applicable.\n\n"
-    "Exit status: 1 if a row fails or no algorithm passes for a quantity, with --strict also for "
-    "algorithm-fails; 65 "
-    "for a file with an unknown key, a missing result, or the name of a URDF file that does not "
-    "exist.\n\n"
-    "Relative tolerances: 1e-12 for inverse and 1e-10 for forward dynamics (single precision: "
-    "1e-4 and 1e-3), multiplied by "
-    "the condition of each number. Nothing in the file changes them.";
+    "Run every applicable serial and parallel algorithm, with every solver and several numbers of "
+    "ranks, on reference vectors (dynref-1 JSON). The tolerance of each number takes into account "
+    "how much rounding of the inputs changes it.\n"
+    "\nExample: mimdsim verify tests/data/vectors/*.json\n\vVerdicts: pass; rounding: the error "
+    "exceeds the tolerance in working precision, but not in quad precision; algorithm-fails: it "
+    "does in quad precision too, although the reference value is confirmed and the algorithm is "
+    "correct for the same scene with equal masses (the text names an alternative); fail; "
+    "not-applicable.\n\nExit status: 1 if a row fails or no algorithm passes for a quantity, with "
+    "--strict also for algorithm-fails; 65 for a file with an unknown key, a missing result, or "
+    "the name of a URDF file that does not exist.\n\nRelative tolerances: 1e-12 for inverse and "
+    "1e-10 for forward dynamics (single precision: 1e-4 and 1e-3), multiplied by the condition of "
+    "each number. Nothing in the file changes them.";
 
 enum {
     KEY_TOLERANCE = 0x200,
@@ -138,8 +135,8 @@ static void print_all(const struct request *r, const struct verify_report *repor
     verify_print_summary(stdout, report, r->nfile);
 }
 
-/* A file that cannot be used is a failed case without rows; the others are verified all the same. Returns the exit
- * status of the first such file, 0: none. */
+/* A file that cannot be used is a failed case without rows; the others are verified all the same.
+ * Returns the exit status of the first such file, 0: none. */
 static int verify_all(const struct request *r, struct verify_report *report, struct arena *a)
 {
     struct progress p = progress_make("cases", r->nfile, r->common.quiet);
@@ -150,9 +147,15 @@ static int verify_all(const struct request *r, struct verify_report *report, str
         if (!verify_file(r->file[i], &r->options, a, &report[i], &e)) {
             const char *text = arena_text(a, e.text);
             err_print(&e);
-            report[i] = (struct verify_report){.path = r->file[i], .name = r->file[i], .group = "",
-                                               .peer_id_name = "", .peer_fd_name = "", .floor_id = NAN,
-                                               .floor_fd = NAN, .peer_id = NAN, .peer_fd = NAN};
+            report[i] = (struct verify_report){.path = r->file[i],
+                                               .name = r->file[i],
+                                               .group = "",
+                                               .peer_id_name = "",
+                                               .peer_fd_name = "",
+                                               .floor_id = NAN,
+                                               .floor_fd = NAN,
+                                               .peer_id = NAN,
+                                               .peer_fd = NAN};
             snprintf(report[i].text, sizeof report[i].text, "cannot be used: %s", text);
             if (status == 0) status = err_exit_status(e.kind);
         }
@@ -175,9 +178,11 @@ static bool any_failed(const struct request *r, const struct verify_report *repo
 
 int cmd_verify(int argc, char **argv)
 {
-    struct request r = {.options = {.parallel = true}, .file = calloc((size_t)argc, sizeof *r.file)};
+    struct request r = {.options = {.parallel = true},
+                        .file = calloc((size_t)argc, sizeof *r.file)};
     CHECK(r.file);
-    static const struct argp argp = {.options = options, .parser = parse, .args_doc = "FILE.json...", .doc = doc};
+    static const struct argp argp = {
+        .options = options, .parser = parse, .args_doc = "FILE.json...", .doc = doc};
     argp_parse(&argp, argc, argv, 0, NULL, &r);
     struct arena *a = arena_create();
     struct verify_report *report = TAKE(a, r.nfile, struct verify_report);

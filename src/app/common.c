@@ -40,7 +40,8 @@ struct parse {
     struct err error;
 };
 
-/* Say what is wrong with the command line; argp then ends the process, unless a document is wanted first. */
+/* Say what is wrong with the command line; argp then ends the process, unless a document is wanted
+ * first. */
 static error_t refuse(struct argp_state *state, const char *format, const char *arg)
 {
     struct parse *p = state->input;
@@ -53,7 +54,8 @@ static error_t refuse(struct argp_state *state, const char *format, const char *
 
 static void add_set(struct common *c, const char *text, struct argp_state *state)
 {
-    if (c->nset == COMMON_MOST_SETS) argp_error(state, "more than %d times --set", COMMON_MOST_SETS);
+    if (c->nset == COMMON_MOST_SETS)
+        argp_error(state, "more than %d times --set", COMMON_MOST_SETS);
     c->set[c->nset++] = text;
 }
 
@@ -61,7 +63,8 @@ static error_t set_jobs(struct common *c, const char *arg, struct argp_state *st
 {
     char *end;
     long n = strtol(arg, &end, 10);
-    if (*end || end == arg || n < 1 || n > 256) return refuse(state, "--jobs: '%s' is not a number from 1 to 256", arg);
+    if (*end || end == arg || n < 1 || n > 256)
+        return refuse(state, "--jobs: '%s' is not a number from 1 to 256", arg);
     c->jobs = (int)n;
     return 0;
 }
@@ -142,15 +145,18 @@ static void print_error(const struct err *e)
     json_finish(&j);
 }
 
-/* The first word of the command line that looks like a long option and is none, NULL: all are. A value is skipped. */
+/* The first word of the command line that looks like a long option and is none, NULL: all are. A
+ * value is skipped. */
 static const char *unknown_option(int argc, char **argv, const struct argp_option *option)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
         if (strncmp(argv[i], "--", 2) != 0) continue;
         size_t length = strcspn(argv[i] + 2, "=");
         const struct argp_option *o = option;
-        while (o->name && strncmp(o->name, argv[i] + 2, length) != 0) o++; /* the beginning of a name will do */
-        bool ours = o->name || strncmp("help", argv[i] + 2, length) == 0 || strncmp("usage", argv[i] + 2, length) == 0;
+        while (o->name && strncmp(o->name, argv[i] + 2, length) != 0)
+            o++; /* the beginning of a name will do */
+        bool ours = o->name || strncmp("help", argv[i] + 2, length) == 0 ||
+                    strncmp("usage", argv[i] + 2, length) == 0;
         if (!ours) return argv[i];
         if (o->name && o->arg && argv[i][2 + length] == '\0') i++;
     }
@@ -158,7 +164,8 @@ static const char *unknown_option(int argc, char **argv, const struct argp_optio
 }
 
 /* argp would name the option, but not the one that may have been meant. */
-static void refuse_option(const char *verb, const char *word, const struct argp_option *option, bool document)
+static void refuse_option(const char *verb, const char *word, const struct argp_option *option,
+                          bool document)
 {
     const char *name[sizeof option_table / sizeof *option_table], *given;
     int n = 0;
@@ -168,8 +175,8 @@ static void refuse_option(const char *verb, const char *word, const struct argp_
     given = text_nearest(text + 2, name, n);
     struct err e;
     err_clear(&e);
-    err_set(&e, ERR_USAGE, "unknown option '%s'%s%s%s; `%s --help` lists them", text, given ? "; did you mean '--" : "",
-            given ? given : "", given ? "'?" : "", verb);
+    err_set(&e, ERR_USAGE, "unknown option '%s'%s%s%s; `%s --help` lists them", text,
+            given ? "; did you mean '--" : "", given ? given : "", given ? "'?" : "", verb);
     if (document) print_error(&e);
     err_print(&e);
     exit(err_exit_status(ERR_USAGE));
@@ -179,15 +186,16 @@ bool common_wants_json(int argc, char **argv)
 {
     bool wants = false;
     for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-?") == 0 || strcmp(argv[i], "--usage") == 0)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-?") == 0 ||
+            strcmp(argv[i], "--usage") == 0)
             return false;
         wants = wants || strcmp(argv[i], "--json") == 0;
     }
     return wants;
 }
 
-void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args, const char *doc, int least,
-                  int most)
+void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args,
+                  const char *doc, int least, int most)
 {
     memset(c, 0, sizeof *c);
     c->verb = argv[0];
@@ -204,15 +212,19 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     const char *unknown = unknown_option(argc, argv, option);
     if (unknown) refuse_option(argv[0], unknown, option, document);
     if (argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p) == 0) return;
-    err_set(&p.error, ERR_USAGE, "unknown option, or one without its value; `%s --help` lists them", argv[0]);
+    err_set(&p.error, ERR_USAGE, "unknown option, or one without its value; `%s --help` lists them",
+            argv[0]);
     print_error(&p.error);
     exit(err_exit_status(ERR_USAGE));
 }
 
 struct plan_options common_plan(const struct common *c)
 {
-    return (struct plan_options){
-        .machine = c->machine, .nset = c->nset, .set = c->set, .nkernel = c->kernel.n, .kernel = c->kernel.name};
+    return (struct plan_options){.machine = c->machine,
+                                 .nset = c->nset,
+                                 .set = c->set,
+                                 .nkernel = c->kernel.n,
+                                 .kernel = c->kernel.name};
 }
 
 int common_fail(const struct common *c, const struct err *e)
@@ -222,7 +234,8 @@ int common_fail(const struct common *c, const struct err *e)
     return err_exit_status(e->kind);
 }
 
-void common_print_pairs(const struct common *c, int n, const char *const *name, const char *const *title)
+void common_print_pairs(const struct common *c, int n, const char *const *name,
+                        const char *const *title)
 {
     struct json j = json_make(stdout);
     if (c->json) json_array(&j);

@@ -11,13 +11,15 @@ static bool measure(const struct machine_spec *m, struct contention *row)
         struct err why;
         err_clear(&why);
         at.network.level = (enum network_level)i;
-        if (!probe_measure(&at, row->quantity, row->ranks, 0, &row->level[i], &why)) row->level[i] = NAN;
+        if (!probe_measure(&at, row->quantity, row->ranks, 0, &row->level[i], &why))
+            row->level[i] = NAN;
         any = any || isfinite(row->level[i]);
     }
     return any;
 }
 
-int contention_measure(const char *machine, struct contention row[CONTENTION_ROWS], struct arena *a, struct err *e)
+int contention_measure(const char *machine, struct contention row[CONTENTION_ROWS], struct arena *a,
+                       struct err *e)
 {
     static const enum probe_quantity pattern[CONTENTION_ROWS] = {PROBE_EXCHANGE, PROBE_HALVES};
     struct machine_spec m;

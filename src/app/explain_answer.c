@@ -8,15 +8,15 @@
 #include "base/text.h"
 #include "base/units.h"
 
-/* --- confirming -----------------------------------------------------------------------------------------------------
- */
+/* --- confirming ------------------------------------------------------------------------------- */
 
 struct confirmed {
     bool asked, agrees;
     int nrun;
 };
 
-/* The study's own runs at the answer; where they say no, a little further from the nominal point. */
+/* The study's own runs at the answer; where they say no, a little further from the nominal point.
+ */
 static bool confirm(struct explain_bench *b, struct explain_search *s, struct confirmed *c)
 {
     enum { MOVES = 6 };
@@ -39,8 +39,7 @@ static bool confirm(struct explain_bench *b, struct explain_search *s, struct co
     return true;
 }
 
-/* --- sentences ------------------------------------------------------------------------------------------------------
- */
+/* --- sentences -------------------------------------------------------------------------------- */
 
 static int changes(const struct explain_search *s, const double *u)
 {
@@ -90,7 +89,8 @@ static void add_single(const struct explain_search *s, struct text *t)
     text_add(t, ".");
 }
 
-static void add_holds(const struct explain_search *s, const char *variant, const struct confirmed *c, struct text *t)
+static void add_holds(const struct explain_search *s, const char *variant,
+                      const struct confirmed *c, struct text *t)
 {
     text_add(t, "%s holds for '%s' if ", s->goal.subject->name, variant);
     add_changes(s, s->best.u, !s->best.grade.holds, t);
@@ -107,7 +107,8 @@ static void add_tried(const struct explain_search *s, struct text *t)
 {
     text_add(t, "%d points", s->goal.subject->npoint);
     if (s->goal.starts)
-        text_add(t, " (each parameter alone to the ends of its range, and a simplex search from several starts)");
+        text_add(t, " (each parameter alone to the ends of its range, and a simplex search from "
+                    "several starts)");
 }
 
 static void add_not_found(const struct explain_search *s, const char *variant, struct text *t)
@@ -123,43 +124,47 @@ static void add_not_found(const struct explain_search *s, const char *variant, s
 
 static void add_never(const struct explain_search *s, const char *never, struct text *t)
 {
-    text_add(t, "%s cannot hold for any values of the parameters: %s. ", s->goal.subject->name, never);
+    text_add(t, "%s cannot hold for any values of the parameters: %s. ", s->goal.subject->name,
+             never);
     if (s->best.grade.holds)
         text_add(t, "But it holds, if "), add_changes(s, s->best.u, !s->best.grade.holds, t),
             text_add(t, ": the reason is wrong.");
     else text_add(t, "None of %d points contradicts this.", s->goal.subject->npoint);
 }
 
-/* --- rows -----------------------------------------------------------------------------------------------------------
- */
+/* --- rows ------------------------------------------------------------------------------------- */
 
-static bool keep(struct explain_bench *b, const struct explain_search *s, const char *goal, const char *verdict,
-                 const char *variant, const struct confirmed *c, const char *sentence)
+static bool keep(struct explain_bench *b, const struct explain_search *s, const char *goal,
+                 const char *verdict, const char *variant, const struct confirmed *c,
+                 const char *sentence)
 {
-    static const char *const name[] = {"subject", "goal",   "verdict", "variant",   "operators", "settings", "distance",
-                                       "value",   "margin", "points",  "confirmed", "study",     "sentence"};
+    static const char *const name[] = {"subject",   "goal",     "verdict", "variant", "operators",
+                                       "settings",  "distance", "value",   "margin",  "points",
+                                       "confirmed", "study",    "sentence"};
     struct text settings = {0};
     const struct explain_grade *g = &s->best.grade;
     explain_space_settings(&s->goal.subject->space, s->best.u, &settings);
-    const struct store_value value[] = {store_text(s->goal.subject->name),
-                                        store_text(goal),
-                                        store_text(verdict),
-                                        store_text(variant),
-                                        store_text(s->goal.operators == OPERATORS_DENSE ? "dense" : "structured"),
-                                        store_text(settings.s ? settings.s : ""),
-                                        g->holds ? store_real(g->distance) : store_null(),
-                                        store_real(g->value),
-                                        store_real(g->margin),
-                                        store_int(s->goal.subject->npoint),
-                                        c->asked ? store_int(c->agrees) : store_null(),
-                                        c->asked ? store_int(c->nrun) : store_null(),
-                                        store_text(sentence)};
+    const struct store_value value[] = {
+        store_text(s->goal.subject->name),
+        store_text(goal),
+        store_text(verdict),
+        store_text(variant),
+        store_text(s->goal.operators == OPERATORS_DENSE ? "dense" : "structured"),
+        store_text(settings.s ? settings.s : ""),
+        g->holds ? store_real(g->distance) : store_null(),
+        store_real(g->value),
+        store_real(g->margin),
+        store_int(s->goal.subject->npoint),
+        c->asked ? store_int(c->agrees) : store_null(),
+        c->asked ? store_int(c->nrun) : store_null(),
+        store_text(sentence)};
     bool ok = store_insert(b->store, "explain_answer", 13, name, value, b->e);
     text_free(&settings);
     return ok;
 }
 
-bool explain_answer(struct explain_bench *b, struct explain_search *s, const char *goal, const char *never)
+bool explain_answer(struct explain_bench *b, struct explain_search *s, const char *goal,
+                    const char *never)
 {
     struct confirmed c = {0};
     struct text variant = {0}, sentence = {0};
@@ -185,7 +190,9 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
 {
     struct confirmed c = {0};
     struct text t = {0}, variant = {0};
-    if (without) text_add(&t, "No point was found at which all claims hold, as there is none for %s alone. ", without);
+    if (without)
+        text_add(&t, "No point was found at which all claims hold, as there is none for %s alone. ",
+                 without);
     if (!s) {
         text_free(&t);
         return true;
@@ -206,7 +213,8 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
                               : ", but %d full runs at that point contradict this",
                      c.nrun);
     } else {
-        text_add(&t, ", were not found to hold together at any of %d points; at the nearest, for '%s', %s fails with ",
+        text_add(&t, ", were not found to hold together at any of %d points; at the nearest, for "
+                     "'%s', %s fails with ",
                  s->goal.subject->npoint, variant.s, s->goal.subject->rule[s->best.grade.rule]->id);
         add_value(s, &t);
         text_add(&t, ", if ");
@@ -219,8 +227,7 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
     return ok;
 }
 
-/* --- maps -----------------------------------------------------------------------------------------------------------
- */
+/* --- maps ------------------------------------------------------------------------------------- */
 
 /* Axes by what they change in the answer, then by how near they bring the claim alone. */
 static void two_axes(const struct explain_search *s, int axis[2])
@@ -243,7 +250,8 @@ static double shown(const struct explain_space *space, const double *u, int i)
     return factor ? exp(u[i]) : explain_space_value(space, u, i, 0);
 }
 
-/* "node.flop_rate over nominal (55 Mflop/s)": without commas, at which a cell of a CSV ends for gnuplot. */
+/* "node.flop_rate over nominal (55 Mflop/s)": without commas, at which a cell of a CSV ends for
+ * gnuplot. */
 static void axis_label(const struct explain_space *space, int i, struct text *t)
 {
     const struct explain_axis *a = &space->axis[i];
@@ -267,12 +275,13 @@ static struct store_value bound(const struct explain_axis *a, double value)
     return known ? store_real(value / a->nominal[0]) : store_null();
 }
 
-static bool keep_cell(struct explain_bench *b, const struct explain_search *s, const struct map_frame *f, int i, int j,
-                      const double *u)
+static bool keep_cell(struct explain_bench *b, const struct explain_search *s,
+                      const struct map_frame *f, int i, int j, const double *u)
 {
-    static const char *const name[] = {
-        "subject", "i",     "j",      "x_key",     "y_key",     "x_label",  "y_label",  "x",       "y",       "x_low",
-        "x_high",  "y_low", "y_high", "x_nominal", "y_nominal", "x_answer", "y_answer", "variant", "point_id"};
+    static const char *const name[] = {"subject",  "i",        "j",       "x_key",     "y_key",
+                                       "x_label",  "y_label",  "x",       "y",         "x_low",
+                                       "x_high",   "y_low",    "y_high",  "x_nominal", "y_nominal",
+                                       "x_answer", "y_answer", "variant", "point_id"};
     static const double nothing[EXPLAIN_MOST_AXES] = {0};
     const struct explain_space *space = &s->goal.subject->space;
     const struct explain_point *p = explain_known(s->goal.subject, s->goal.operators, u);
@@ -325,7 +334,8 @@ static void map_point(const struct explain_search *s, const int *axis, int i, in
 }
 
 /* The points of a map that are not known yet. */
-static int missing_points(const struct explain_search *s, const int *axis, struct explain_request *request)
+static int missing_points(const struct explain_search *s, const int *axis,
+                          struct explain_request *request)
 {
     int n = 0, size = map_size(s, axis);
     for (int k = 0; k < size * size; k++) {
@@ -339,7 +349,8 @@ static int missing_points(const struct explain_search *s, const int *axis, struc
     return n;
 }
 
-static bool keep_map(struct explain_bench *b, const struct explain_search *s, const struct map_frame *f)
+static bool keep_map(struct explain_bench *b, const struct explain_search *s,
+                     const struct map_frame *f)
 {
     double u[EXPLAIN_MOST_AXES];
     bool ok = store_begin(b->store, b->e);
@@ -361,7 +372,8 @@ bool explain_map(struct explain_bench *b, const struct explain_search *s)
     if (s->goal.subject->space.n < 2) return true;
     two_axes(s, f.axis);
     for (int k = 0; k < 2; k++) axis_label(&s->goal.subject->space, f.axis[k], &f.label[k]);
-    explain_variant(s->goal.subject->rule[0], s->best.grade.baseline, s->goal.operators, &f.variant);
+    explain_variant(s->goal.subject->rule[0], s->best.grade.baseline, s->goal.operators,
+                    &f.variant);
     bool ok = explain_make(b, request, missing_points(s, f.axis, request)) && keep_map(b, s, &f);
     for (int k = 0; k < 2; k++) text_free(&f.label[k]);
     text_free(&f.variant);

@@ -1,4 +1,5 @@
-/* explain_claims.c - which claims fail, searches for each and for all together, answers; see explain_claims.h. */
+/* explain_claims.c - which claims fail, searches for each and for all together, answers; see
+ * explain_claims.h. */
 #include "app/explain_claims.h"
 
 #include <math.h>
@@ -34,10 +35,10 @@ struct inquest {
     int nsearch;
 };
 
-/* --- which claims ---------------------------------------------------------------------------------------------------
- */
+/* --- which claims ----------------------------------------------------------------------------- */
 
-static bool take_verdict(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool take_verdict(void *context, int ncolumn, const char *const *name,
+                         const char *const *value)
 {
     struct inquest *q = context;
     (void)ncolumn;
@@ -52,8 +53,8 @@ static bool take_verdict(void *context, int ncolumn, const char *const *name, co
 
 static bool find_failing(struct inquest *q)
 {
-    if (!store_select(q->bench.store, "SELECT id, verdict FROM claim WHERE variant = ''", 0, NULL, take_verdict, q,
-                      q->bench.e))
+    if (!store_select(q->bench.store, "SELECT id, verdict FROM claim WHERE variant = ''", 0, NULL,
+                      take_verdict, q, q->bench.e))
         return false;
     for (int i = 0; i < q->rules->n && i < MOST_CLAIMS; i++) {
         const struct claim_rule *rule = &q->rules->rule[i];
@@ -65,8 +66,7 @@ static bool find_failing(struct inquest *q)
     return true;
 }
 
-/* --- searches -------------------------------------------------------------------------------------------------------
- */
+/* --- searches --------------------------------------------------------------------------------- */
 
 /* More starts where the runs of a point are small. */
 static int starts_of(const struct explain_subject *s)
@@ -78,21 +78,22 @@ static int starts_of(const struct explain_subject *s)
     return starts < 2 ? 2 : starts > EXPLAIN_STARTS ? EXPLAIN_STARTS : starts;
 }
 
-static void add_search(struct inquest *q, struct explain_subject *s, enum operators operators, bool own, int starts,
-                       int steps)
+static void add_search(struct inquest *q, struct explain_subject *s, enum operators operators,
+                       bool own, int starts, int steps)
 {
     if (!s->has[operators]) return;
-    q->search[q->nsearch++] = (struct explain_search){.goal = {.subject = s,
-                                                               .operators = operators,
-                                                               .own = own,
-                                                               .seed = q->seed,
-                                                               .starts = starts,
-                                                               .steps = steps,
-                                                               .dear = starts_of(s) == EXPLAIN_STARTS && own}};
+    q->search[q->nsearch++] =
+        (struct explain_search){.goal = {.subject = s,
+                                         .operators = operators,
+                                         .own = own,
+                                         .seed = q->seed,
+                                         .starts = starts,
+                                         .steps = steps,
+                                         .dear = starts_of(s) == EXPLAIN_STARTS && own}};
 }
 
-/* The claim as it is judged; then with either style of operators and any baseline. A claim that is known never to hold
- * is looked at along each axis alone, as a check of the reason. */
+/* The claim as it is judged; then with either style of operators and any baseline. A claim that is
+ * known never to hold is looked at along each axis alone, as a check of the reason. */
 static void add_searches(struct inquest *q, struct inquiry *c)
 {
     enum { STEPS = 60 };
@@ -102,8 +103,8 @@ static void add_searches(struct inquest *q, struct inquiry *c)
     c->first = q->nsearch;
     add_search(q, &c->subject, own, true, starts, STEPS);
     add_search(q, &c->subject, own, false, starts ? 1 : 0, STEPS);
-    add_search(q, &c->subject, own == OPERATORS_DENSE ? OPERATORS_STRUCTURED : OPERATORS_DENSE, false, starts ? 1 : 0,
-               STEPS);
+    add_search(q, &c->subject, own == OPERATORS_DENSE ? OPERATORS_STRUCTURED : OPERATORS_DENSE,
+               false, starts ? 1 : 0, STEPS);
     c->ngoal = q->nsearch - c->first;
 }
 
@@ -114,8 +115,7 @@ static bool search_claims(struct inquest *q)
     return explain_search_all(&q->bench, q->search, q->nsearch);
 }
 
-/* --- answers --------------------------------------------------------------------------------------------------------
- */
+/* --- answers ---------------------------------------------------------------------------------- */
 
 /* The best of a claim's searches with any operators and baseline. */
 static struct explain_search *best_of(struct explain_search *search, int n)
@@ -131,19 +131,22 @@ static bool answer_claim(struct inquest *q, struct inquiry *c)
     struct explain_search *own = &q->search[c->first], *any = best_of(own, c->ngoal);
     if (!explain_answer(&q->bench, own, "own", c->rule->never)) return false;
     c->shown = own->best.grade.holds || !any->best.grade.holds ? own : any;
-    if (any != own && any->best.grade.holds && !explain_answer(&q->bench, any, "any", c->rule->never)) return false;
+    if (any != own && any->best.grade.holds &&
+        !explain_answer(&q->bench, any, "any", c->rule->never))
+        return false;
     return explain_map(&q->bench, c->shown);
 }
 
-/* --- all together ---------------------------------------------------------------------------------------------------
- */
+/* --- all together ----------------------------------------------------------------------------- */
 
 /* Where the searches of single claims ended, as one point: of each axis the largest change. */
 static void merge(const struct inquest *q, const struct explain_subject *s, double *u)
 {
     for (int k = 0; k < q->n; k++) {
         const struct explain_search *x = q->claim[k].shown;
-        if (!x || !x->best.grade.holds || strcmp(x->goal.subject->space.machine, s->space.machine) != 0) continue;
+        if (!x || !x->best.grade.holds ||
+            strcmp(x->goal.subject->space.machine, s->space.machine) != 0)
+            continue;
         for (int i = 0; i < s->space.n; i++)
             if (!s->space.axis[i].dear && fabs(x->best.u[i]) > fabs(u[i])) u[i] = x->best.u[i];
     }
@@ -188,14 +191,14 @@ static bool answer_together(struct inquest *q)
                                         .nfrom = 1};
         merge(q, all, s->goal.from[0]);
     }
-    ok = ok && (nsearch == 0 || (explain_search_all(&q->bench, search, nsearch) &&
-                                 explain_answer_together(&q->bench, best_of(search, nsearch), without.s)));
+    ok = ok && (nsearch == 0 ||
+                (explain_search_all(&q->bench, search, nsearch) &&
+                 explain_answer_together(&q->bench, best_of(search, nsearch), without.s)));
     text_free(&without);
     return ok;
 }
 
-/* --- the whole ------------------------------------------------------------------------------------------------------
- */
+/* --- the whole -------------------------------------------------------------------------------- */
 
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -209,7 +212,8 @@ static void identity(const struct inquest *q, char hex[65])
 {
     struct text all = {0};
     text_add(&all, "%llu\n", (unsigned long long)q->seed);
-    for (int i = 0; i < q->n; i++) text_add(&all, "%s %s\n", q->claim[i].rule->id, q->claim[i].subject.identity);
+    for (int i = 0; i < q->n; i++)
+        text_add(&all, "%s %s\n", q->claim[i].rule->id, q->claim[i].subject.identity);
     for (int i = 0; i < q->rules->n && i < MOST_CLAIMS; i++)
         text_add(&all, "%d%s\n", q->judged[i], q->rules->rule[i].sql);
     digest_sha256_hex(all.s, all.length, hex);
@@ -221,8 +225,8 @@ static bool is_stored(struct inquest *q, const char *hex)
     char stored[65] = "";
     struct err ignored;
     err_clear(&ignored);
-    return store_select(q->bench.store, "SELECT value FROM meta WHERE key = 'explain'", 0, NULL, take_text, stored,
-                        &ignored) &&
+    return store_select(q->bench.store, "SELECT value FROM meta WHERE key = 'explain'", 0, NULL,
+                        take_text, stored, &ignored) &&
            strcmp(stored, hex) == 0;
 }
 
@@ -239,7 +243,8 @@ static bool clear_answers(struct inquest *q)
     if (!store_begin(q->bench.store, q->bench.e)) return false;
     bool ok = store_delete(q->bench.store, "meta", "key", store_text("explain"), q->bench.e);
     for (int i = 0; ok && i <= q->rules->n; i++) {
-        struct store_value subject = store_text(i < q->rules->n ? q->rules->rule[i].id : "together");
+        struct store_value subject =
+            store_text(i < q->rules->n ? q->rules->rule[i].id : "together");
         ok = store_delete(q->bench.store, "explain_answer", "subject", subject, q->bench.e) &&
              store_delete(q->bench.store, "explain_map", "subject", subject, q->bench.e);
     }
@@ -255,7 +260,8 @@ static bool inquire(struct inquest *q)
     if (!find_failing(q)) return false;
     identity(q, hex);
     if (!q->bench.common->force && is_stored(q, hex)) return true;
-    if (!store_note_build(q->bench.store, q->bench.e) || !clear_answers(q) || !search_claims(q)) return false;
+    if (!store_note_build(q->bench.store, q->bench.e) || !clear_answers(q) || !search_claims(q))
+        return false;
     for (int i = 0; i < q->n; i++)
         if (!answer_claim(q, &q->claim[i])) return false;
     if (!answer_together(q)) return false;
@@ -263,8 +269,8 @@ static bool inquire(struct inquest *q)
     return keep_meta(q, "explain_s", took) && keep_meta(q, "explain", hex);
 }
 
-bool explain_claims(const struct common *c, const struct claim_rules *rules, uint64_t seed, struct store *s,
-                    struct err *e)
+bool explain_claims(const struct common *c, const struct claim_rules *rules, uint64_t seed,
+                    struct store *s, struct err *e)
 {
     struct inquest q = {.rules = rules, .seed = seed};
     q.bench = (struct explain_bench){.common = c, .store = s, .arena = arena_create(), .e = e};
@@ -277,7 +283,9 @@ bool explain_draw(const struct common *c, struct store *s, struct err *e)
 {
     struct err own;
     err_clear(&own);
-    if (report_figure(s, plan_data_dir(), "explain", c->directory, &own) || own.kind == ERR_NO_INPUT) return true;
+    if (report_figure(s, plan_data_dir(), "explain", c->directory, &own) ||
+        own.kind == ERR_NO_INPUT)
+        return true;
     if (own.kind != ERR_UNAVAILABLE) return *e = own, false;
     err_print(&own);
     return true;

@@ -11,8 +11,7 @@
 #include "base/text.h"
 #include "run/run.h"
 
-/* --- the cache ------------------------------------------------------------------------------------------------------
- */
+/* --- the cache -------------------------------------------------------------------------------- */
 
 static uint64_t key_of(const struct explain_subject *s, enum operators operators, const double *u)
 {
@@ -45,13 +44,13 @@ static void remember(struct explain_subject *s, struct explain_point *p, struct 
     s->npoint++;
 }
 
-const struct explain_point *explain_known(const struct explain_subject *s, enum operators operators, const double *u)
+const struct explain_point *explain_known(const struct explain_subject *s, enum operators operators,
+                                          const double *u)
 {
     return s->capacity ? *slot_of(s, key_of(s, operators, u)) : NULL;
 }
 
-/* --- subjects -------------------------------------------------------------------------------------------------------
- */
+/* --- subjects --------------------------------------------------------------------------------- */
 
 /* The runs of "SCENARIO KEY=VALUE ...", appended to *spec; their texts live in the arena. */
 static bool read_runs(struct explain_bench *b, const char *line, struct run_spec **spec, int *n)
@@ -60,9 +59,11 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     const char *word[MOST_WORDS];
     int nword = 0;
     char *rest = arena_text(b->arena, line), *save = NULL;
-    for (char *w = strtok_r(rest, " ", &save); w && nword < MOST_WORDS; w = strtok_r(NULL, " ", &save))
+    for (char *w = strtok_r(rest, " ", &save); w && nword < MOST_WORDS;
+         w = strtok_r(NULL, " ", &save))
         word[nword++] = w;
-    if (nword == 0) return err_set(b->e, ERR_DATA, "a line -- explore: or -- study: of a claim names no scenario");
+    if (nword == 0) return err_set(b->e, ERR_DATA, "a line -- explore: or -- study: of a claim "
+                                                   "names no scenario");
     struct plan plan = {0};
     struct plan_options o = {.nset = nword - 1, .set = word + 1};
     if (!plan_read(&plan, word[0], &o, b->e)) return false;
@@ -85,7 +86,8 @@ static void drop_doubles(struct run_spec *spec, int *n)
     int kept = 0;
     for (int i = 0; i < *n; i++) {
         bool seen = false;
-        for (int k = 0; k < kept; k++) seen = seen || strcmp(spec[k].config_hash, spec[i].config_hash) == 0;
+        for (int k = 0; k < kept; k++)
+            seen = seen || strcmp(spec[k].config_hash, spec[i].config_hash) == 0;
         if (!seen) spec[kept++] = spec[i];
     }
     *n = kept;
@@ -95,8 +97,8 @@ static bool one_machine(const struct explain_subject *s, struct err *e)
 {
     for (int i = 1; i < s->nspec; i++)
         if (strcmp(s->spec[i].machine.name, s->spec[0].machine.name) != 0)
-            return err_set(e, ERR_DATA, "claim %s explores two machines, %s and %s", s->name, s->spec[0].machine.name,
-                           s->spec[i].machine.name);
+            return err_set(e, ERR_DATA, "claim %s explores two machines, %s and %s", s->name,
+                           s->spec[0].machine.name, s->spec[i].machine.name);
     return true;
 }
 
@@ -114,12 +116,15 @@ static bool read_subject(struct explain_subject *s, struct explain_bench *b)
 {
     for (int i = 0; i < s->nrule; i++) {
         if (s->rule[i]->nexplore == 0)
-            return err_set(b->e, ERR_DATA, "claim %s has no line -- explore: and cannot be explained", s->rule[i]->id);
+            return err_set(b->e, ERR_DATA,
+                           "claim %s has no line -- explore: and cannot be explained",
+                           s->rule[i]->id);
         for (int k = 0; k < s->rule[i]->nexplore; k++)
             if (!read_runs(b, s->rule[i]->explore[k], &s->spec, &s->nspec)) return false;
     }
     drop_doubles(s->spec, &s->nspec);
-    for (int i = 0; i < s->nspec; i++) s->has[s->spec[i].kernel.operators == OPERATORS_DENSE] = true;
+    for (int i = 0; i < s->nspec; i++)
+        s->has[s->spec[i].kernel.operators == OPERATORS_DENSE] = true;
     return one_machine(s, b->e);
 }
 
@@ -132,8 +137,7 @@ static void identify(struct explain_subject *s)
     text_free(&all);
 }
 
-/* --- stored points --------------------------------------------------------------------------------------------------
- */
+/* --- stored points ---------------------------------------------------------------------------- */
 
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
@@ -171,7 +175,8 @@ static void add_verdict(struct explain_point *p, const struct explain_verdict *v
 }
 
 /* (point id, key, claim, variant, value, margin, holds), ordered by point. */
-static bool load_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool load_row(void *context, int ncolumn, const char *const *name,
+                     const struct store_value *value)
 {
     struct loading *l = context;
     struct arena *a = l->bench->arena;
@@ -183,7 +188,8 @@ static bool load_row(void *context, int ncolumn, const char *const *name, const 
         l->point->key = strtoull(value[1].text, NULL, 16);
         remember(l->subject, l->point, a);
     }
-    struct explain_verdict v = {.rule = value[2].kind == STORE_TEXT ? rule_of(l->subject, value[2].text) : -1};
+    struct explain_verdict v = {
+        .rule = value[2].kind == STORE_TEXT ? rule_of(l->subject, value[2].text) : -1};
     if (v.rule < 0) return true;
     v.variant = arena_text(a, value[3].text);
     v.value = value[4].kind == STORE_REAL ? value[4].real : NAN;
@@ -194,7 +200,8 @@ static bool load_row(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-static bool take_id(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool take_id(void *context, int ncolumn, const char *const *name,
+                    const struct store_value *value)
 {
     (void)ncolumn;
     (void)name;
@@ -223,16 +230,20 @@ static bool load(struct explain_subject *s, struct explain_bench *b)
     char stored[65] = "";
     text_add(&meta, "explain.%s", s->name);
     const char *const key[] = {meta.s}, *const subject[] = {s->name};
-    bool ok = store_select(b->store, "SELECT value FROM meta WHERE key = ?1", 1, key, take_text, stored, b->e);
+    bool ok = store_select(b->store, "SELECT value FROM meta WHERE key = ?1", 1, key, take_text,
+                           stored, b->e);
     if (ok && (b->common->force || strcmp(stored, s->identity) != 0)) ok = forget(s, b, meta.s);
     text_free(&meta);
     struct loading l = {s, b, NULL};
     return ok &&
            store_query(b->store,
-                       "SELECT p.id, p.key, j.claim, j.variant, j.value, j.margin, j.holds FROM explain_point p"
-                       " LEFT JOIN explain_judged j ON j.point_id = p.id WHERE p.subject = ?1 ORDER BY p.id",
+                       "SELECT p.id, p.key, j.claim, j.variant, j.value, j.margin, j.holds"
+                       " FROM explain_point p"
+                       " LEFT JOIN explain_judged j ON j.point_id = p.id WHERE p.subject = ?1"
+                       " ORDER BY p.id",
                        1, subject, NULL, load_row, &l, b->e) &&
-           store_query(b->store, "SELECT max(id) FROM explain_point", 0, NULL, NULL, take_id, &b->last_id, b->e);
+           store_query(b->store, "SELECT max(id) FROM explain_point", 0, NULL, NULL, take_id,
+                       &b->last_id, b->e);
 }
 
 bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, const char *name,
@@ -242,13 +253,14 @@ bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, co
     *s = (struct explain_subject){.name = arena_text(b->arena, name), .nrule = nrule};
     memcpy(s->rule, rule, (size_t)nrule * sizeof *rule);
     grow(s, b->arena);
-    if (!read_subject(s, b) || !explain_space_make(&s->space, s->spec[0].machine.name, b->arena, b->e)) return false;
+    if (!read_subject(s, b) ||
+        !explain_space_make(&s->space, s->spec[0].machine.name, b->arena, b->e))
+        return false;
     identify(s);
     return load(s, b);
 }
 
-/* --- making points --------------------------------------------------------------------------------------------------
- */
+/* --- making points ---------------------------------------------------------------------------- */
 
 /* One batch: the runs of all its points, point by point. */
 struct batch {
@@ -281,10 +293,12 @@ static bool keep_verdicts(struct batch *t)
     struct explain_subject *s = t->request[t->of[t->kept - 1]].subject;
     for (int i = 0; i < t->point->nverdict; i++) {
         const struct explain_verdict *v = &t->point->verdict[i];
-        const struct store_value value[] = {store_int(t->point->id), store_text(s->rule[v->rule]->id),
-                                            store_text(v->variant),  store_real(v->value),
-                                            store_real(v->margin),   v->told ? store_int(v->holds) : store_null()};
-        if (!store_insert(t->bench->store, "explain_judged", 6, name, value, t->bench->e)) return false;
+        const struct store_value value[] = {
+            store_int(t->point->id), store_text(s->rule[v->rule]->id),
+            store_text(v->variant),  store_real(v->value),
+            store_real(v->margin),   v->told ? store_int(v->holds) : store_null()};
+        if (!store_insert(t->bench->store, "explain_judged", 6, name, value, t->bench->e))
+            return false;
     }
     return true;
 }
@@ -298,14 +312,15 @@ static bool keep_point(struct batch *t)
     struct text settings = {0};
     snprintf(key, sizeof key, "%016" PRIx64, t->point->key);
     explain_space_settings(&q->subject->space, q->u, &settings);
-    const struct store_value value[] = {store_int(t->point->id),
-                                        store_text(q->subject->name),
-                                        store_text(key),
-                                        store_text(q->operators == OPERATORS_DENSE ? "dense" : "structured"),
-                                        store_text(settings.s ? settings.s : ""),
-                                        store_real(explain_space_distance(&q->subject->space, q->u)),
-                                        store_int(explain_space_published(&q->subject->space, q->u)),
-                                        store_text(t->runs.s)};
+    const struct store_value value[] = {
+        store_int(t->point->id),
+        store_text(q->subject->name),
+        store_text(key),
+        store_text(q->operators == OPERATORS_DENSE ? "dense" : "structured"),
+        store_text(settings.s ? settings.s : ""),
+        store_real(explain_space_distance(&q->subject->space, q->u)),
+        store_int(explain_space_published(&q->subject->space, q->u)),
+        store_text(t->runs.s)};
     struct err *e = t->bench->e;
     bool ok = store_begin(t->bench->store, e);
     if (ok) {
@@ -336,7 +351,8 @@ static bool finish_point(struct batch *t)
     p->operators = q->operators;
     memcpy(p->u, q->u, sizeof p->u);
     for (int i = 0; i < q->subject->nrule; i++)
-        if (!claims_judge(q->subject->rule[i], t->passing, "explored", judge_variant, t, b->e)) return false;
+        if (!claims_judge(q->subject->rule[i], t->passing, "explored", judge_variant, t, b->e))
+            return false;
     if (!empty(t->passing, b->e)) return false;
     if (t->keep) {
         p->id = ++b->last_id;
@@ -363,7 +379,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
 }
 
 /* The runs of `from` with these operators, at a point. */
-static void add_runs(struct batch *t, int request, const struct run_spec *from, int n, struct arena *a)
+static void add_runs(struct batch *t, int request, const struct run_spec *from, int n,
+                     struct arena *a)
 {
     const struct explain_request *q = &t->request[request];
     for (int i = 0; i < n; i++) {
@@ -377,7 +394,8 @@ static void add_runs(struct batch *t, int request, const struct run_spec *from, 
 static bool run_batch(struct batch *t)
 {
     t->of[t->nspec] = -1;
-    bool ok = run_campaign(t->spec, NULL, t->nspec, NULL, t->bench->common->jobs, true, keep_result, t, t->bench->e);
+    bool ok = run_campaign(t->spec, NULL, t->nspec, NULL, t->bench->common->jobs, true, keep_result,
+                           t, t->bench->e);
     store_close(t->passing);
     text_free(&t->runs);
     return ok;
@@ -391,14 +409,16 @@ bool explain_make(struct explain_bench *b, const struct explain_request *request
     for (int i = 0; i < n; i++) most += request[i].subject->nspec;
     t.spec = TAKE(a, most, struct run_spec);
     t.of = TAKE(a, most, int);
-    for (int i = 0; i < n; i++) add_runs(&t, i, request[i].subject->spec, request[i].subject->nspec, a);
+    for (int i = 0; i < n; i++)
+        add_runs(&t, i, request[i].subject->spec, request[i].subject->nspec, a);
     bool ok = run_batch(&t);
     arena_destroy(a);
     return ok;
 }
 
 /* The runs of the command that the rule needs: "mimdsim paper fig6". */
-static bool read_study(struct explain_bench *b, const struct claim_rule *rule, struct run_spec **spec, int *n)
+static bool read_study(struct explain_bench *b, const struct claim_rule *rule,
+                       struct run_spec **spec, int *n)
 {
     static const char *const verb[] = {"mimdsim paper ", "mimdsim run "};
     for (int i = 0; i < 2; i++)
@@ -407,8 +427,8 @@ static bool read_study(struct explain_bench *b, const struct claim_rule *rule, s
     return true;
 }
 
-bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators, const double *u,
-                     struct explain_point *out, int *nrun)
+bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators,
+                     const double *u, struct explain_point *out, int *nrun)
 {
     struct explain_request q = {.subject = s, .operators = operators};
     struct batch t = {.bench = b, .request = &q};

@@ -12,8 +12,7 @@
 #include "base/progress.h"
 #include "base/random.h"
 
-/* --- choices --------------------------------------------------------------------------------------------------------
- */
+/* --- choices ---------------------------------------------------------------------------------- */
 
 static const char *const baselines[EXPLAIN_BASELINES] = {
     "fastest serial", "rnea+aba", "rnea+crba", "rnea+cfa-paper", "rnea+cfa-direct", "parallel code on one processor"};
@@ -54,8 +53,7 @@ void explain_variant(const struct claim_rule *rule, const char *baseline, enum o
     if (rule->designated[end]) text_add(out, operators == OPERATORS_DENSE ? "dense" : "structured");
 }
 
-/* --- grades ---------------------------------------------------------------------------------------------------------
- */
+/* --- grades ----------------------------------------------------------------------------------- */
 
 static const struct explain_verdict *verdict_of(const struct explain_point *p, int rule, const char *variant)
 {
@@ -117,8 +115,7 @@ struct explain_grade explain_grade_point(const struct explain_goal *g, const str
     return best;
 }
 
-/* --- one look at a point --------------------------------------------------------------------------------------------
- */
+/* --- one look at a point ---------------------------------------------------------------------- */
 
 /* What a round of one search asks for. */
 struct round {
@@ -166,8 +163,7 @@ static bool look(struct round *r, double *u, struct explain_grade *grade)
     return true;
 }
 
-/* --- one axis alone -------------------------------------------------------------------------------------------------
- */
+/* --- one axis alone --------------------------------------------------------------------------- */
 
 /* What the end of axis i alone does to the margin. */
 static void weigh(struct explain_search *s, int i, double end, const struct explain_grade *grade)
@@ -254,8 +250,7 @@ static bool scan(struct round *r)
     return all;
 }
 
-/* --- simplexes ------------------------------------------------------------------------------------------------------
- */
+/* --- simplexes -------------------------------------------------------------------------------- */
 
 /* Where it holds the distance counts, elsewhere how far it is from holding: any point that holds is better than all
  * that do not. */
@@ -383,8 +378,7 @@ static bool beside(struct round *r)
     return all;
 }
 
-/* --- taking back ----------------------------------------------------------------------------------------------------
- */
+/* --- taking back ------------------------------------------------------------------------------ */
 
 /* The change of axis i spread over the others, where that holds, too: as long a way with fewer changes. */
 static bool hand_over(struct round *r, double *u, int i, bool *changed)
@@ -447,8 +441,7 @@ static bool polish(struct round *r, const double *from)
     return true;
 }
 
-/* --- all searches ---------------------------------------------------------------------------------------------------
- */
+/* --- all searches ----------------------------------------------------------------------------- */
 
 /* Stage k begins: from where it does is settled by what was known then, once for all rounds. */
 static const double *stage(struct explain_search *s, int k)

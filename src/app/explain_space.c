@@ -1,5 +1,5 @@
-/* explain_space.c - the table of what may change, and points of that space as settings, runs and words; see
- * explain_space.h. */
+/* explain_space.c - the table of what may change, and points of that space as settings, runs and
+ * words; see explain_space.h. */
 #include "app/explain_space.h"
 
 #include <math.h>
@@ -11,8 +11,9 @@
 #include "plan/plan.h"
 #include "spec/identity.h"
 
-/* One row a parameter. `reach` is the largest u either way: a factor of ten, others' traffic up to 90 %, computations
- * longer by up to 100 % at random. The paper says nothing of any of them; its machines were shared with others. */
+/* One row a parameter. `reach` is the largest u either way: a factor of ten, others' traffic up to
+ * 90 %, computations longer by up to 100 % at random. The paper says nothing of any of them; its
+ * machines were shared with others. */
 static const struct explain_axis table[] = {
     {.words = "the code runs at", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"node.flop_rate"}, .most = 2.3026},
     {.words = "the serial code runs at",
@@ -58,8 +59,7 @@ static const struct explain_axis table[] = {
      .most = 0.6931},
 };
 
-/* --- the axes of a machine ------------------------------------------------------------------------------------------
- */
+/* --- the axes of a machine -------------------------------------------------------------------- */
 
 static const struct origin *origin_of(const struct origin *o, int n, const char *key)
 {
@@ -90,8 +90,8 @@ static void widen(double *low, double *high, const struct origin *other)
 static bool is_software(const char *key) { return strncmp(key, "software.", 9) == 0; }
 
 /* One row of the table for this machine; false when it has no number to change. */
-static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, const struct origin *o, int n,
-                      const struct origin *mpich, int nmpich)
+static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, const struct origin *o,
+                      int n, const struct origin *mpich, int nmpich)
 {
     if (!x->after) x->after = "";
     x->least = x->map == EXPLAIN_FACTOR || x->map == EXPLAIN_RELATIVE ? -x->most : 0;
@@ -126,15 +126,16 @@ bool explain_space_make(struct explain_space *s, const char *name, struct arena 
     return true;
 }
 
-/* --- numbers --------------------------------------------------------------------------------------------------------
- */
+/* --- numbers ---------------------------------------------------------------------------------- */
 
-/* x > 0 with three significant digits: the double that its decimal text reads back to, as 10^k is exact up to k = 22.
+/* x > 0 with three significant digits: the double that its decimal text reads back to, as 10^k is
+ * exact up to k = 22.
  */
 static double three_digits(double x)
 {
-    static const double ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    static const double ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     int k = 2 - (int)floor(log10(x));
     if (abs(k) > 22) return x;
     return k >= 0 ? round(x * ten[k]) / ten[k] : round(x / ten[-k]) * ten[-k];
@@ -191,20 +192,21 @@ double explain_space_distance(const struct explain_space *s, const double *u)
     return sum;
 }
 
-/* --- settings, runs, words ------------------------------------------------------------------------------------------
- */
+/* --- settings, runs, words -------------------------------------------------------------------- */
 
 void explain_space_settings(const struct explain_space *s, const double *u, struct text *out)
 {
     char number[64];
     for (int i = 0; i < s->n; i++)
         for (int k = 0; u[i] != 0 && k < s->axis[i].nkey; k++) {
-            units_print(explain_space_value(s, u, i, k), s->axis[i].field[k]->unit, number, sizeof number);
+            units_print(explain_space_value(s, u, i, k), s->axis[i].field[k]->unit, number,
+                        sizeof number);
             text_add(out, "%smachine.%s=%s", out->length ? ", " : "", s->axis[i].key[k], number);
         }
 }
 
-void explain_space_apply(const struct explain_space *s, const double *u, struct run_spec *run, struct arena *a)
+void explain_space_apply(const struct explain_space *s, const double *u, struct run_spec *run,
+                         struct arena *a)
 {
     for (int i = 0; i < s->n; i++)
         for (int k = 0; u[i] != 0 && k < s->axis[i].nkey; k++) {
@@ -234,7 +236,8 @@ bool explain_space_published(const struct explain_space *s, const double *u)
     return true;
 }
 
-void explain_space_phrase(const struct explain_space *s, const double *u, int i, bool brief, struct text *out)
+void explain_space_phrase(const struct explain_space *s, const double *u, int i, bool brief,
+                          struct text *out)
 {
     const struct explain_axis *x = &s->axis[i];
     char number[64], low[64], high[64];
@@ -253,6 +256,6 @@ void explain_space_phrase(const struct explain_space *s, const double *u, int i,
     units_print(x->high[0], unit, high, sizeof high);
     if (x->high[0] <= x->low[0]) text_add(out, ", no published range)");
     else
-        text_add(out, ", %s the published range of %s to %s)", axis_published(s, u, i) ? "within" : "outside", low,
-                 high);
+        text_add(out, ", %s the published range of %s to %s)",
+                 axis_published(s, u, i) ? "within" : "outside", low, high);
 }

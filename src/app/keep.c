@@ -9,10 +9,13 @@ bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err 
     static const char *const name[] = {"scenario"};
     const struct store_value value[] = {store_text(r->scenario)};
     if (!store_begin(s, e)) return false;
-    bool ok = store_note_build(s, e) && store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
-              store_delete(s, "ladder_choice", "scenario", store_text(r->scenario), e) && ladder_store(s, r, e);
+    bool ok = store_note_build(s, e) &&
+              store_delete(s, "ladder", "scenario", store_text(r->scenario), e) &&
+              store_delete(s, "ladder_choice", "scenario", store_text(r->scenario), e) &&
+              ladder_store(s, r, e);
     for (int i = 0; ok && i < r->nchoice; i++)
-        ok = store_insert_row(s, "ladder_choice", 1, name, value, &accuracy_choice_columns, &r->choice[i], e);
+        ok = store_insert_row(s, "ladder_choice", 1, name, value, &accuracy_choice_columns,
+                              &r->choice[i], e);
     if (ok) return store_commit(s, e);
     store_rollback(s);
     return false;
@@ -28,7 +31,8 @@ static bool store_row(struct store *s, const struct stability_report *r, int i, 
 bool keep_stability(struct store *s, const struct stability_report *r, struct err *e)
 {
     if (!store_begin(s, e)) return false;
-    bool ok = store_note_build(s, e) && store_delete(s, "stability", "suite", store_text(r->suite), e);
+    bool ok =
+        store_note_build(s, e) && store_delete(s, "stability", "suite", store_text(r->suite), e);
     for (int i = 0; ok && i < r->nrow; i++) ok = store_row(s, r, i, e);
     if (ok) return store_commit(s, e);
     store_rollback(s);
@@ -39,7 +43,7 @@ bool keep_draw(const struct common *c, struct store *s, const char *figure, stru
 {
     if (!report_figure(s, plan_data_dir(), figure, c->directory, e)) return false;
     if (!c->quiet)
-        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory, figure,
-                c->database);
+        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory,
+                figure, c->database);
     return true;
 }

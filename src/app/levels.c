@@ -16,7 +16,8 @@ bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *
     static const char *const name[] = {"scenario", "ordinal"};
     for (int i = 0; i < r->nrung; i++) {
         const struct store_value value[] = {store_text(r->scenario), store_int(i)};
-        if (!store_insert_row(s, "ladder", 2, name, value, &accuracy_rung_columns, &r->rung[i], e)) return false;
+        if (!store_insert_row(s, "ladder", 2, name, value, &accuracy_rung_columns, &r->rung[i], e))
+            return false;
     }
     return true;
 }
@@ -45,13 +46,16 @@ static bool find_known(struct store *s, const char *family, struct known *k, str
 {
     k->n = 0;
     return store_select(s,
-                        "SELECT method, max(relative_error), at FROM ladder WHERE ladder = 'network' AND quantity ="
-                        " 'makespan' AND family = ?1 AND relative_error IS NOT NULL GROUP BY method ORDER BY method",
+                        "SELECT method, max(relative_error), at FROM ladder"
+                        " WHERE ladder = 'network' AND quantity ="
+                        " 'makespan' AND family = ?1 AND relative_error IS NOT NULL GROUP BY method"
+                        " ORDER BY method",
                         1, &family, add_known, k, e);
 }
 
 /* Climb the network ladder of the runs of one family and keep it. */
-static bool measure(struct store *s, const struct run_spec *run, int nrun, const char *family, struct err *e)
+static bool measure(struct store *s, const struct run_spec *run, int nrun, const char *family,
+                    struct err *e)
 {
     struct run_spec *alike = calloc((size_t)nrun, sizeof *alike);
     struct arena *a = arena_create();
@@ -80,7 +84,8 @@ struct settled {
 };
 
 /* Settle that of run[which]; x->family is known. */
-static bool settle(struct store *s, const struct run_spec *run, int nrun, int which, struct settled *x, struct err *e)
+static bool settle(struct store *s, const struct run_spec *run, int nrun, int which,
+                   struct settled *x, struct err *e)
 {
     const double tolerance = x->tolerance = run[which].machine.network.tolerance;
     struct known k;
@@ -92,7 +97,8 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
     }
     int best = level_cheapest(k.level, k.n, tolerance);
     if (best < 0)
-        return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be within %.3g %%",
+        return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be "
+                                      "within %.3g %%",
                        run[which].kernel.name, run[which].machine.name, 100 * tolerance);
     x->taken = k.level[best];
     return true;
@@ -103,14 +109,15 @@ static void say(const struct run_spec *run, struct settled *x)
 {
     if (x->said) return;
     x->said = true;
-    fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% permitted)\n",
+    fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% "
+                    "permitted)\n",
             run->kernel.name, run->machine.name, x->taken.level, x->taken.at, 100 * x->taken.error,
             x->stored ? "stored" : "measured now", 100 * x->tolerance);
 }
 
 /* The number among `known` (*n) of what run[which] takes, settled now if it is new; -1: failed. */
-static int settle_run(struct store *s, const struct run_spec *run, int nrun, int which, struct settled *known, int *n,
-                      struct err *e)
+static int settle_run(struct store *s, const struct run_spec *run, int nrun, int which,
+                      struct settled *known, int *n, struct err *e)
 {
     struct settled *mine = &known[*n];
     level_family(&run[which], mine->family);
@@ -122,8 +129,8 @@ static int settle_run(struct store *s, const struct run_spec *run, int nrun, int
     return at;
 }
 
-bool levels_settle(struct store *s, struct run_spec *run, struct run_order *order, int nrun, bool quiet,
-                   struct arena *a, struct err *e)
+bool levels_settle(struct store *s, struct run_spec *run, struct run_order *order, int nrun,
+                   bool quiet, struct arena *a, struct err *e)
 {
     struct settled *known = calloc((size_t)nrun + 1, sizeof *known);
     int *taken = calloc((size_t)nrun + 1, sizeof *taken), n = 0;

@@ -14,12 +14,17 @@ enum { MOST_VERBS = 64 };
 
 static void print_help(FILE *out)
 {
-    fprintf(out, "Usage: mimdsim VERB [OPTION...] [ARGUMENT...]\n"
-                 "Predict how a parallel algorithm will run on a machine you do not have.\n\n"
-                 "  mimdsim run scenarios/speedup-t3e.yaml     run a scenario, store it, print the table\n"
-                 "  mimdsim plot mimdsim.db fig6               draw a figure from the database\n\n");
-    for (const struct verb *v = verb_list; v->name; v++) fprintf(out, "  %-11s %s\n", v->name, v->title);
-    fprintf(out, "\n'mimdsim VERB --help' describes a verb, with an example. Exit statuses: mimdsim(1).\n");
+    fprintf(
+        out,
+        "Usage: mimdsim VERB [OPTION...] [ARGUMENT...]\n"
+        "Predict how a parallel algorithm will run on a machine you do not have.\n\n"
+        "  mimdsim run scenarios/speedup-t3e.yaml     run a scenario, store it, print the "
+        "table\n  mimdsim plot mimdsim.db fig6               draw a figure from the database\n\n");
+    for (const struct verb *v = verb_list; v->name; v++)
+        fprintf(out, "  %-11s %s\n", v->name, v->title);
+    fprintf(
+        out,
+        "\n'mimdsim VERB --help' describes a verb, with an example. Exit statuses: mimdsim(1).\n");
 }
 
 static void print_version(void)
@@ -30,8 +35,8 @@ static void print_version(void)
 #else
     static const char sanitizers[] = "";
 #endif
-    printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s%s\n", b.version, b.git, b.compiler, b.flags, run_fibers(),
-           sanitizers);
+    printf("mimdsim %s (%s)\nbuilt by %s %s; fibers by %s%s\n", b.version, b.git, b.compiler,
+           b.flags, run_fibers(), sanitizers);
 }
 
 static int unknown_verb(int argc, char **argv)
@@ -79,7 +84,8 @@ int main(int argc, char **argv)
         print_help(stderr);
         return err_exit_status(ERR_USAGE);
     }
-    bool help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0;
+    bool help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+                strcmp(argv[1], "help") == 0;
     if (help && argc < 3) {
         print_help(stdout);
         return finish(0);

@@ -39,8 +39,8 @@ const char *parameters_range(const struct origin *o, struct arena *a)
     return s;
 }
 
-bool parameters_gather(const struct plan *plan, int nplan, struct arena *a, const struct document_parameter **out,
-                       int *n, struct err *e)
+bool parameters_gather(const struct plan *plan, int nplan, struct arena *a,
+                       const struct document_parameter **out, int *n, struct err *e)
 {
     const char *name[MOST_MACHINES];
     struct origin *origin[MOST_MACHINES];

@@ -11,7 +11,8 @@
 
 enum { COLUMNS = 14, MOST_SETS = 8 };
 
-static const char header[] = "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
+static const char header[] =
+    "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
 
 /* What a unit is a unit of. */
 enum dimension { TIME, SIZE, RATE, FLOPS };
@@ -125,11 +126,12 @@ static bool read_unit(struct published *p, struct err *e)
         if (strcmp(p->unit, name[i]) != 0) continue;
         p->scale = units[i].scale;
         return units[i].of == dimension_of(p->quantity) ||
-               err_set(e, ERR_DATA, "%s: '%s' is no unit of %s", p->id, p->unit, probe_name(p->quantity));
+               err_set(e, ERR_DATA, "%s: '%s' is no unit of %s", p->id, p->unit,
+                       probe_name(p->quantity));
     }
     const char *near = text_nearest(p->unit, name, n);
-    return err_set(e, ERR_DATA, "unknown unit '%s'%s%s%s", p->unit, near ? "; did you mean '" : "", near ? near : "",
-                   near ? "'?" : "");
+    return err_set(e, ERR_DATA, "unknown unit '%s'%s%s%s", p->unit, near ? "; did you mean '" : "",
+                   near ? near : "", near ? "'?" : "");
 }
 
 static bool read_quantity(struct published *p, const char *s, struct err *e)
@@ -139,23 +141,25 @@ static bool read_quantity(struct published *p, const char *s, struct err *e)
     p->quantity = probe_find(s);
     if (p->quantity != PROBE_QUANTITIES) return true;
     const char *near = text_nearest(s, name, PROBE_QUANTITIES);
-    return err_set(e, ERR_DATA, "no quantity is called '%s'%s%s%s", s, near ? "; did you mean '" : "", near ? near : "",
-                   near ? "'?" : "");
+    return err_set(e, ERR_DATA, "no quantity is called '%s'%s%s%s", s,
+                   near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-/* What every row has: a name, a known class of evidence, a source, a value that lies in its own range. */
+/* What every row has: a name, a known class of evidence, a source, a value that lies in its own
+ * range. */
 static bool check_row(const struct published *p, struct err *e)
 {
     static const char *const class[] = {"P", "PR", "D", "E"};
     bool known = false;
     for (int i = 0; i < 4; i++) known = known || strcmp(p->evidence, class[i]) == 0;
     if (!*p->id || !*p->machine) return err_set(e, ERR_DATA, "a row without id or machine");
-    if (!known) return err_set(e, ERR_DATA, "%s: class '%s'; expected P, PR, D or E", p->id, p->evidence);
+    if (!known)
+        return err_set(e, ERR_DATA, "%s: class '%s'; expected P, PR, D or E", p->id, p->evidence);
     if (!*p->source) return err_set(e, ERR_DATA, "%s: no source is given", p->id);
     if (p->value <= 0) return err_set(e, ERR_DATA, "%s: the value is not above 0", p->id);
     return (p->low <= p->value && p->value <= p->high) ||
-           err_set(e, ERR_DATA, "%s: the value %g is not within its range, %g to %g", p->id, p->value / p->scale,
-                   p->low / p->scale, p->high / p->scale);
+           err_set(e, ERR_DATA, "%s: the value %g is not within its range, %g to %g", p->id,
+                   p->value / p->scale, p->low / p->scale, p->high / p->scale);
 }
 
 /* "+40 %: reason": the error that the reason explains. */
@@ -163,7 +167,8 @@ static void read_missed(struct published *p)
 {
     char *end;
     const double percent = strtod(p->cause, &end);
-    const bool named = (*p->cause == '+' || *p->cause == '-') && strncmp(end, " %: ", 4) == 0 && percent > -100;
+    const bool named =
+        (*p->cause == '+' || *p->cause == '-') && strncmp(end, " %: ", 4) == 0 && percent > -100;
     p->missed = named && isfinite(percent) ? percent / 100 : NAN;
 }
 
@@ -182,7 +187,8 @@ static bool take_ranks(struct published *p, struct err *e)
     if (!ranks) return true;
     long n = strtol(ranks + 1, &end, 10);
     if (end == ranks + 1 || *end || n < 1 || n > 1 << 24)
-        return err_set(e, ERR_DATA, "%s: '%s'; expected bytes@ranks such as 1024@16", p->id, p->at_text);
+        return err_set(e, ERR_DATA, "%s: '%s'; expected bytes@ranks such as 1024@16", p->id,
+                       p->at_text);
     p->ranks = (int)n;
     return true;
 }
@@ -202,8 +208,8 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
     char at[32];
     snprintf(at, sizeof at, "%.*s", (int)strcspn(p->at_text, "@"), p->at_text);
     if (!*cell[4] || !number(at, 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
-        !number(cell[5], p->scale, p->value, &p->low) || !number(cell[6], p->scale, p->value, &p->high) ||
-        !number(cell[10], p->scale, 0, &p->add))
+        !number(cell[5], p->scale, p->value, &p->low) ||
+        !number(cell[6], p->scale, p->value, &p->high) || !number(cell[10], p->scale, 0, &p->add))
         return err_set(e, ERR_DATA, "%s: not a number, or below 0", cell[0]);
     read_missed(p);
     return split_sets(p, cell[11], a, e) && check_row(p, e) && check_cause(p, e);
@@ -212,11 +218,13 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
 static bool is_new(const struct published *row, int n, struct err *e)
 {
     for (int i = 0; i < n; i++)
-        if (strcmp(row[i].id, row[n].id) == 0) return err_set(e, ERR_DATA, "%s: a second row of this id", row[n].id);
+        if (strcmp(row[i].id, row[n].id) == 0)
+            return err_set(e, ERR_DATA, "%s: a second row of this id", row[n].id);
     return true;
 }
 
-static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n, struct err *e)
+static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n,
+                       struct err *e)
 {
     int line = 0;
     for (char *next; *s; s = next) {
@@ -227,8 +235,10 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
         next += *next == '\n';
         s[length] = '\0';
         line++;
-        bool ok = line == 1 ? strcmp(s, header) == 0 || err_set(e, ERR_DATA, "the header is not '%s'", header)
-                            : split_row(s, cell) || err_set(e, ERR_DATA, "expected %d cells, or one less", COLUMNS);
+        bool ok = line == 1 ? strcmp(s, header) == 0 ||
+                                  err_set(e, ERR_DATA, "the header is not '%s'", header)
+                            : split_row(s, cell) ||
+                                  err_set(e, ERR_DATA, "expected %d cells, or one less", COLUMNS);
         if (ok && line > 1) ok = record(&row[*n], cell, a, e) && is_new(row, *n, e) && ++*n;
         if (ok) continue;
         text_copy(e->file, sizeof e->file, path);
@@ -238,7 +248,8 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
     return true;
 }
 
-bool published_read(const char *path, struct arena *a, struct published **row, int *n, struct err *e)
+bool published_read(const char *path, struct arena *a, struct published **row, int *n,
+                    struct err *e)
 {
     struct text t = {0};
     if (!text_read_file(&t, path, e)) return false;

@@ -8,23 +8,39 @@
 enum { MOST_SWEPT = 64 };
 
 /* Swept keys that have a column in every table. */
-static const char *const always[] = {"machine.name",  "kernel.name", "kernel.formulation", "kernel.solver",
-                                     "machine.network.level", "model.n",     "ranks"};
-static const char *const fixed[] = {"machine", "kernel",      "formulation", "solver",         "message",     "level",
-                                    "n",       "P",           "rep",         "makespan_us",    "digest",      "status",
-                                    "speedup_vs_fastest_serial", "speedup_vs_itself", "relative_error", "measured_us"};
+static const char *const always[] = {"machine.name",  "kernel.name",           "kernel.formulation",
+                                     "kernel.solver", "machine.network.level", "model.n",
+                                     "ranks"};
+static const char *const fixed[] = {"machine",
+                                    "kernel",
+                                    "formulation",
+                                    "solver",
+                                    "message",
+                                    "level",
+                                    "n",
+                                    "P",
+                                    "rep",
+                                    "makespan_us",
+                                    "digest",
+                                    "status",
+                                    "speedup_vs_fastest_serial",
+                                    "speedup_vs_itself",
+                                    "relative_error",
+                                    "measured_us"};
 
 static const char first_sql[] =
     "SELECT r.machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation,"
     " iif(r.nu > 0, r.solver, NULL) AS solver,"
-    " iif(%s, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message'), NULL) AS message,"
+    " iif(%s, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message'),"
+    " NULL) AS message,"
     " r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P";
 
 static const char last_sql[] =
     ", iif(r.status IN ('ok', 'invalid'), r.makespan_ps / 1e6, NULL) AS makespan_us,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
     "   AS speedup_vs_fastest_serial,"
-    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'parallel code on one processor')"
+    " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id"
+    " AND s.baseline = 'parallel code on one processor')"
     "   AS speedup_vs_itself,"
     " (SELECT max(e.relative_error) FROM error_check e WHERE e.run_id = r.id) AS relative_error,"
     " r.measured_s * 1e6 AS measured_us, r.digest, r.status"
@@ -53,7 +69,8 @@ static const char *short_name(const struct plan *p, int at)
         do name--;
         while (name > key && name[-1] != '.');
         bool taken = is_one_of(name, fixed, sizeof fixed / sizeof *fixed);
-        for (int i = 0; i < p->nswept; i++) taken = taken || (i != at && ends_in(p->swept[i].key, name));
+        for (int i = 0; i < p->nswept; i++)
+            taken = taken || (i != at && ends_in(p->swept[i].key, name));
         if (!taken) break;
     }
     return name;
@@ -64,14 +81,16 @@ static void add_column(struct text *sql, const struct plan *p, int at)
     const char *key = p->swept[at].key, *name = short_name(p, at);
     if (strcmp(key, "n_over_p") == 0) text_add(sql, ", r.n / r.P AS n_over_p");
     else
-        text_add(sql, ", (SELECT %s FROM v_setting v WHERE v.run_id = r.id AND v.key = '%s') AS \"%s\"",
+        text_add(sql, ", (SELECT %s FROM v_setting v WHERE v.run_id = r.id AND v.key = '%s')"
+                      " AS \"%s\"",
                  p->swept[at].number ? "CAST(value AS NUMERIC)" : "value", key, name);
 }
 
 static void make_sql(const struct plan *p, struct text *sql)
 {
     bool message = false, repeated = false;
-    for (int i = 0; i < p->nswept; i++) message = message || strcmp(p->swept[i].key, "kernel.message") == 0;
+    for (int i = 0; i < p->nswept; i++)
+        message = message || strcmp(p->swept[i].key, "kernel.message") == 0;
     for (int i = 0; i < p->nrun; i++) repeated = repeated || p->run[i].rep > 0;
     text_add(sql, first_sql, message ? "1" : "r.measured_s IS NOT NULL");
     for (int i = 0; i < p->nswept && i < MOST_SWEPT; i++)
@@ -85,8 +104,8 @@ bool run_table_print(struct store *s, const struct plan *p, bool json, FILE *out
 {
     struct text keys = {0}, sql = {0};
     for (int i = 0; i < p->nrun; i++)
-        text_add(&keys, "%s[\"%s\",%lld,%d]", i ? "," : "[", p->run[i].config_hash, (long long)p->run[i].seed,
-                 p->run[i].rep);
+        text_add(&keys, "%s[\"%s\",%lld,%d]", i ? "," : "[", p->run[i].config_hash,
+                 (long long)p->run[i].seed, p->run[i].rep);
     text_add(&keys, "]");
     make_sql(p, &sql);
     const char *param = keys.s;

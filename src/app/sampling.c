@@ -1,4 +1,5 @@
-/* sampling.c - drawing parameters, running the samples as one campaign, judging each; see sampling.h. */
+/* sampling.c - drawing parameters, running the samples as one campaign, judging each; see
+ * sampling.h. */
 #include "app/sampling.h"
 
 #include <math.h>
@@ -71,8 +72,8 @@ static bool add_machine(struct sampler *p, const char *machine)
         const struct field *f = field_find_full(full.s, &table);
         text_free(&full);
         if (f && is_drawn(&origin[i], f))
-            u[p->nuncertain++] =
-                (struct uncertain){arena_text(p->arena, machine), origin[i].key, f, origin[i].min, origin[i].max};
+            u[p->nuncertain++] = (struct uncertain){arena_text(p->arena, machine), origin[i].key, f,
+                                                    origin[i].min, origin[i].max};
     }
     return true;
 }
@@ -94,11 +95,12 @@ static bool find_scenes(struct sampler *p)
         plan_free(&plan);
         if (!add_machine(p, scene->machine)) return false;
     }
-    return p->nscene > 0 || err_set(p->e, ERR_NO_INPUT, "there is no scenario sample-*.yaml to sample with");
+    return p->nscene > 0 || err_set(p->e, ERR_NO_INPUT, "there is no scenario sample-*.yaml to "
+                                                        "sample with");
 }
 
-/* Log-uniform; uniform from a range that begins at 0. Every parameter has a stream of its own, so a new one does not
- * change the others' draws. */
+/* Log-uniform; uniform from a range that begins at 0. Every parameter has a stream of its own, so a
+ * new one does not change the others' draws. */
 static double draw(const struct uncertain *u, int sample)
 {
     uint64_t name = DIGEST_START;
@@ -137,7 +139,8 @@ static bool read_plans(struct sampler *p)
     p->drawn = TAKE(p->arena, size_sum(size_product(p->nsample, p->nuncertain), 1), double);
     p->plan = TAKE(p->arena, size_product(p->nsample, p->nscene), struct plan);
     for (int s = 0; s < p->nsample; s++)
-        for (int i = 0; i < p->nuncertain; i++) p->drawn[s * p->nuncertain + i] = draw(&p->uncertain[i], s);
+        for (int i = 0; i < p->nuncertain; i++)
+            p->drawn[s * p->nuncertain + i] = draw(&p->uncertain[i], s);
     for (int s = 0; s < p->nsample; s++)
         for (int k = 0; k < p->nscene; k++) {
             if (!read_plan(p, s, k)) return false;
@@ -160,7 +163,8 @@ static void identity(const struct sampler *p, char hex[65])
 {
     struct text all = {0};
     for (int i = 0; i < p->nspec; i++) text_add(&all, "%s\n", p->spec[i].config_hash);
-    for (int i = 0; i < p->rules->n; i++) text_add(&all, "%s\n%s\n", p->rules->rule[i].id, p->rules->rule[i].sql);
+    for (int i = 0; i < p->rules->n; i++)
+        text_add(&all, "%s\n%s\n", p->rules->rule[i].id, p->rules->rule[i].sql);
     digest_sha256_hex(all.s, all.length, hex);
     text_free(&all);
 }
@@ -178,8 +182,8 @@ static bool are_stored(const struct sampler *p, const char *hex)
     char stored[65] = "";
     struct err ignored;
     err_clear(&ignored);
-    return store_select(p->store, "SELECT value FROM meta WHERE key = 'samples'", 0, NULL, take_text, stored,
-                        &ignored) &&
+    return store_select(p->store, "SELECT value FROM meta WHERE key = 'samples'", 0, NULL,
+                        take_text, stored, &ignored) &&
            strcmp(stored, hex) == 0;
 }
 
@@ -200,7 +204,9 @@ static bool keep_settings(struct sampler *p, int sample)
 
 static bool finish_sample(struct sampler *p, int sample)
 {
-    if (!store_commit(p->passing, p->e) || !claims_sample(p->rules, p->passing, p->store, sample, p->e)) return false;
+    if (!store_commit(p->passing, p->e) ||
+        !claims_sample(p->rules, p->passing, p->store, sample, p->e))
+        return false;
     store_close(p->passing);
     p->passing = NULL;
     return true;
@@ -227,7 +233,8 @@ static bool clear_tables(struct sampler *p)
     for (int i = 0; ok && i < p->rules->n; i++)
         ok = store_delete(p->store, "claim_sample", "id", store_text(p->rules->rule[i].id), p->e);
     for (int i = 0; ok && i < p->nsample; i++)
-        ok = store_delete(p->store, "sample_setting", "sample", store_int(i), p->e) && keep_settings(p, i);
+        ok = store_delete(p->store, "sample_setting", "sample", store_int(i), p->e) &&
+             keep_settings(p, i);
     if (ok) return store_commit(p->store, p->e);
     store_rollback(p->store);
     return false;
@@ -246,19 +253,25 @@ static bool run_samples(struct sampler *p)
     identity(p, hex);
     if (!p->common->force && are_stored(p, hex)) return true;
     if (!p->common->quiet)
-        fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample, p->nuncertain,
-                p->nspec);
+        fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample,
+                p->nuncertain, p->nspec);
     double began = host_seconds();
     char took[32];
-    bool ok = clear_tables(p) &&
-              run_campaign(p->spec, NULL, p->nspec, NULL, p->common->jobs, p->common->quiet, keep_result, p, p->e);
+    bool ok = clear_tables(p) && run_campaign(p->spec, NULL, p->nspec, NULL, p->common->jobs,
+                                              p->common->quiet, keep_result, p, p->e);
     snprintf(took, sizeof took, "%.2f", host_seconds() - began);
     return ok && keep_meta(p, "samples_s", took) && keep_meta(p, "samples", hex);
 }
 
-bool sampling_run(const struct common *c, const struct claim_rules *rules, int nsample, struct store *s, struct err *e)
+bool sampling_run(const struct common *c, const struct claim_rules *rules, int nsample,
+                  struct store *s, struct err *e)
 {
-    struct sampler p = {.common = c, .rules = rules, .store = s, .e = e, .arena = arena_create(), .nsample = nsample};
+    struct sampler p = {.common = c,
+                        .rules = rules,
+                        .store = s,
+                        .e = e,
+                        .arena = arena_create(),
+                        .nsample = nsample};
     bool ok = find_scenes(&p) && read_plans(&p) && run_samples(&p);
     for (int i = 0; p.plan && i < p.nsample * p.nscene; i++) plan_free(&p.plan[i]);
     store_close(p.passing);

@@ -1,4 +1,5 @@
-/* scenes.c - see scenes.h. One after the other: times that are measured side by side disturb each other. */
+/* scenes.c - see scenes.h. One after the other: times that are measured side by side disturb each
+ * other. */
 #include "app/scenes.h"
 
 #include <stdlib.h>
@@ -8,7 +9,8 @@
 #include "base/progress.h"
 #include "study/savings.h"
 
-static const char *const scene[] = {"speedup-t3e", "free-floating", "tree-humanoid", "four-bar", "stiff-polymer"};
+static const char *const scene[] = {"speedup-t3e", "free-floating", "tree-humanoid", "four-bar",
+                                    "stiff-polymer"};
 enum { SCENES = sizeof scene / sizeof *scene };
 
 static bool note_row(void *context, int ncolumn, const char *const *name, const char *const *value)
@@ -21,8 +23,8 @@ static bool note_row(void *context, int ncolumn, const char *const *name, const 
 }
 
 /* Whether `sql` with this scene has no row yet, or is to be measured in any case. */
-static bool is_wanted(const struct common *c, struct store *s, const char *sql, const char *name, bool *wanted,
-                      struct err *e)
+static bool is_wanted(const struct common *c, struct store *s, const char *sql, const char *name,
+                      bool *wanted, struct err *e)
 {
     bool stored = false;
     bool ok = store_select(s, sql, 1, &name, note_row, &stored, e);
@@ -30,10 +32,12 @@ static bool is_wanted(const struct common *c, struct store *s, const char *sql, 
     return ok;
 }
 
-static bool ladders(const struct common *c, const struct plan *p, struct store *s, const char *name, struct err *e)
+static bool ladders(const struct common *c, const struct plan *p, struct store *s, const char *name,
+                    struct err *e)
 {
     bool wanted;
-    if (!is_wanted(c, s, "SELECT 1 FROM ladder_choice WHERE scenario = ?1", name, &wanted, e)) return false;
+    if (!is_wanted(c, s, "SELECT 1 FROM ladder_choice WHERE scenario = ?1", name, &wanted, e))
+        return false;
     if (!wanted) return true;
     struct arena *a = arena_create();
     struct accuracy_report r;
@@ -43,10 +47,12 @@ static bool ladders(const struct common *c, const struct plan *p, struct store *
 }
 
 /* p NULL: the built-in suite. */
-static bool grades(const struct common *c, const struct plan *p, struct store *s, const char *name, struct err *e)
+static bool grades(const struct common *c, const struct plan *p, struct store *s, const char *name,
+                   struct err *e)
 {
     bool wanted;
-    if (!is_wanted(c, s, "SELECT 1 FROM stability WHERE suite = ?1", name, &wanted, e)) return false;
+    if (!is_wanted(c, s, "SELECT 1 FROM stability WHERE suite = ?1", name, &wanted, e))
+        return false;
     if (!wanted) return true;
     struct arena *a = arena_create();
     struct stability_report r;
@@ -56,10 +62,12 @@ static bool grades(const struct common *c, const struct plan *p, struct store *s
     return ok;
 }
 
-static bool savings(const struct common *c, const struct plan *p, struct store *s, const char *name, struct err *e)
+static bool savings(const struct common *c, const struct plan *p, struct store *s, const char *name,
+                    struct err *e)
 {
     bool wanted;
-    if (!is_wanted(c, s, "SELECT 1 FROM omission WHERE scenario = ?1", name, &wanted, e)) return false;
+    if (!is_wanted(c, s, "SELECT 1 FROM omission WHERE scenario = ?1", name, &wanted, e))
+        return false;
     if (!wanted) return true;
     struct run_estimate *r = calloc((size_t)p->nrun + 1, sizeof *r);
     struct savings *all = calloc(1, sizeof *all);
@@ -80,8 +88,8 @@ bool scenes_measure(const struct common *c, struct store *s, struct err *e)
     for (int i = 0; ok && i < SCENES; i++) {
         struct plan p = {0};
         struct plan_options o = common_plan(c);
-        ok = plan_read(&p, scene[i], &o, e) && ladders(c, &p, s, scene[i], e) && grades(c, &p, s, scene[i], e) &&
-             savings(c, &p, s, scene[i], e);
+        ok = plan_read(&p, scene[i], &o, e) && ladders(c, &p, s, scene[i], e) &&
+             grades(c, &p, s, scene[i], e) && savings(c, &p, s, scene[i], e);
         plan_free(&p);
         progress_show(&progress, i + 1);
     }

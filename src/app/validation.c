@@ -9,7 +9,8 @@
 
 static bool is_cut(const struct published *p)
 {
-    return p->quantity == PROBE_BISECTION || p->quantity == PROBE_GLOBAL || p->quantity == PROBE_WIRE;
+    return p->quantity == PROBE_BISECTION || p->quantity == PROBE_GLOBAL ||
+           p->quantity == PROBE_WIRE;
 }
 
 static double tolerance_of(const struct published *p)
@@ -20,15 +21,17 @@ static double tolerance_of(const struct published *p)
     return recalled ? 0.2 : 0.1;
 }
 
-/* Whether the error is the one that the row's cause explains. A cause without one explains nothing that was measured.
+/* Whether the error is the one that the row's cause explains. A cause without one explains nothing
+ * that was measured.
  */
 static bool cause_fits(const struct published *p, struct outcome *o)
 {
     char error[32];
-    if (isfinite(p->missed) && fabs((1 + o->error) / (1 + p->missed) - 1) <= o->tolerance) return true;
+    if (isfinite(p->missed) && fabs((1 + o->error) / (1 + p->missed) - 1) <= o->tolerance)
+        return true;
     snprintf(error, sizeof error, "%+.3g %%", 100 * p->missed);
-    snprintf(o->why, sizeof o->why, "the cause explains %s, not %+.3g %%", isfinite(p->missed) ? error : "no error",
-             100 * o->error);
+    snprintf(o->why, sizeof o->why, "the cause explains %s, not %+.3g %%",
+             isfinite(p->missed) ? error : "no error", 100 * o->error);
     return false;
 }
 
@@ -60,7 +63,8 @@ void validation_levels_json(const double level[LEVELS], double scale, struct jso
     json_end(j);
 }
 
-static void measure_levels(const struct published *p, const struct machine_spec *m, struct outcome *o)
+static void measure_levels(const struct published *p, const struct machine_spec *m,
+                           struct outcome *o)
 {
     o->contended = true;
     for (int i = 0; i < LEVELS; i++) {
@@ -68,13 +72,15 @@ static void measure_levels(const struct published *p, const struct machine_spec 
         struct err why;
         err_clear(&why);
         at.network.level = (enum network_level)i;
-        if (probe_measure(&at, p->quantity, p->at, p->ranks, &o->level[i], &why)) o->level[i] += p->add;
+        if (probe_measure(&at, p->quantity, p->at, p->ranks, &o->level[i], &why))
+            o->level[i] += p->add;
         else o->level[i] = NAN;
     }
 }
 
 /* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
-bool validation_measure(const struct published *p, struct outcome *o, struct arena *a, struct err *e)
+bool validation_measure(const struct published *p, struct outcome *o, struct arena *a,
+                        struct err *e)
 {
     struct machine_spec m;
     struct plan_options options = {.nset = p->nset, .set = p->set};
@@ -97,8 +103,8 @@ static int ascending(const void *x, const void *y)
 }
 
 /* The points of one use; `size` is scratch of n. */
-static struct validation_group group(const struct published *const *p, const struct outcome *o, int n,
-                                     enum published_use use, double *size)
+static struct validation_group group(const struct published *const *p, const struct outcome *o,
+                                     int n, enum published_use use, double *size)
 {
     struct validation_group g = {.worst_id = ""};
     for (int i = 0; i < n; i++) {
@@ -119,7 +125,8 @@ static struct validation_group group(const struct published *const *p, const str
     return g;
 }
 
-struct validation_summary validation_summarize(const struct published *const *p, const struct outcome *o, int n)
+struct validation_summary validation_summarize(const struct published *const *p,
+                                               const struct outcome *o, int n)
 {
     struct validation_summary s = {.shown = n};
     struct arena *a = arena_create();

@@ -1,7 +1,8 @@
-/* data_dir.c - machines/ and scenarios/ beside the build tree's binary, installed, or the user's own.
+/* data_dir.c - machines/ and scenarios/ beside the build tree's binary, installed, or the user's
+ * own.
  *
- * What was found is remembered in the environment as MIMDSIM_DATA, so that programs started from here look in the
- * same place. */
+ * What was found is remembered in the environment as MIMDSIM_DATA, so that programs started from
+ * here look in the same place. */
 #include "plan/data_dir.h"
 
 #include <dirent.h>
@@ -24,7 +25,8 @@ static bool holds_data(const char *dir)
     return access(path, R_OK | X_OK) == 0;
 }
 
-/* The running binary's folder or one or two above it (src/mimdsim of a build in or below the source tree). */
+/* The running binary's folder or one or two above it (src/mimdsim of a build in or below the source
+ * tree). */
 static bool beside_binary(char dir[PATH_LENGTH])
 {
     ssize_t n = readlink("/proc/self/exe", dir, PATH_LENGTH - 1);
@@ -82,12 +84,14 @@ const char *data_dir_stem(const char *path, struct arena *a)
     const char *slash = strrchr(path, '/');
     char *stem = arena_text(a, slash != NULL ? slash + 1 : path);
     char *dot = strrchr(stem, '.');
-    if (dot != NULL && dot != stem && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0)) *dot = '\0';
+    if (dot != NULL && dot != stem && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0))
+        *dot = '\0';
     return stem;
 }
 
 /* DIR/[WHAT/]NAME[.yaml] when it is there, in `a`; `dir` "" is the working directory. */
-static const char *probe(const char *dir, const char *what, const char *name, const char *ending, struct arena *a)
+static const char *probe(const char *dir, const char *what, const char *name, const char *ending,
+                         struct arena *a)
 {
     char path[2 * PATH_LENGTH];
     int n = snprintf(path, sizeof path, "%s%s%s%s%s%s", dir, dir[0] != '\0' ? "/" : "", what,
@@ -96,7 +100,8 @@ static const char *probe(const char *dir, const char *what, const char *name, co
     return arena_text(a, path);
 }
 
-/* The name of a file in WHAT/ that `name` may have meant, NULL when none is near; `name` itself when there is one. */
+/* The name of a file in WHAT/ that `name` may have meant, NULL when none is near; `name` itself
+ * when there is one. */
 static const char *nearest_name(const char *what, const char *name, struct arena *a)
 {
     int n;
@@ -104,16 +109,18 @@ static const char *nearest_name(const char *what, const char *name, struct arena
     return text_nearest(name, names, n);
 }
 
-static const char *find_path(const char *what, const char *name, const char *near, struct arena *a, struct err *e)
+static const char *find_path(const char *what, const char *name, const char *near, struct arena *a,
+                             struct err *e)
 {
     const char *path = name[0] == '/' || near == NULL ? NULL : probe(near, "", name, "", a);
-    if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0')) path = probe("", "", name, "", a);
+    if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0'))
+        path = probe("", "", name, "", a);
     if (path != NULL) return path;
     const char *meant = nearest_name(what, data_dir_stem(name, a), a);
     if (meant == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);
     else
-        err_set(e, ERR_NO_INPUT, "no file '%s'; did you mean '%s', the %.*s of that name?", name, meant,
-                (int)strlen(what) - 1, what);
+        err_set(e, ERR_NO_INPUT, "no file '%s'; did you mean '%s', the %.*s of that name?", name,
+                meant, (int)strlen(what) - 1, what);
     return NULL;
 }
 
@@ -122,22 +129,26 @@ static void not_found(const char *what, const char *name, struct arena *a, struc
     const char *near = nearest_name(what, name, a);
     int singular = (int)strlen(what) - 1;
     if (name[0] != '\0' && access(name, F_OK) == 0)
-        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; to mean the file or folder here write './%s', and a %.*s ends in .yaml",
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; to mean the file or folder here write './%s', and "
+                                 "a %.*s ends in .yaml",
                 singular, what, name, name, singular, what);
-    else if (near != NULL) err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
+    else if (near != NULL)
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s'; did you mean '%s'?", singular, what, name, near);
     else
-        err_set(e, ERR_NO_INPUT, "no %.*s '%s' in %s/%s; `mimdsim %s` lists them", singular, what, name,
-                plan_data_dir(), what, what);
+        err_set(e, ERR_NO_INPUT, "no %.*s '%s' in %s/%s; `mimdsim %s` lists them", singular, what,
+                name, plan_data_dir(), what, what);
 }
 
-const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a, struct err *e)
+const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a,
+                          struct err *e)
 {
     char user[PATH_LENGTH];
     if (is_path(name)) return find_path(what, name, near, a, e);
     const char *path = near != NULL && name[0] != '\0' ? probe(near, "", name, ".yaml", a) : NULL;
     if (path == NULL && name[0] != '\0') path = probe(plan_data_dir(), what, name, ".yaml", a);
     user_dir(user, sizeof user);
-    if (path == NULL && user[0] != '\0' && name[0] != '\0') path = probe(user, what, name, ".yaml", a);
+    if (path == NULL && user[0] != '\0' && name[0] != '\0')
+        path = probe(user, what, name, ".yaml", a);
     if (path == NULL) not_found(what, name, a, e);
     return path;
 }
@@ -158,7 +169,9 @@ static int add_names(const char *dir, const char *what, const char **names, int 
     for (struct dirent *entry; n < MAX_NAMES && (entry = readdir(d)) != NULL;) {
         size_t length = strlen(entry->d_name);
         size_t end = strlen(ending);
-        if (entry->d_name[0] == '.' || length <= end || strcmp(entry->d_name + length - end, ending) != 0) continue;
+        if (entry->d_name[0] == '.' || length <= end ||
+            strcmp(entry->d_name + length - end, ending) != 0)
+            continue;
         char *stem = arena_text(a, entry->d_name);
         stem[length - end] = '\0';
         names[n++] = stem;
@@ -181,13 +194,14 @@ const char **data_dir_names(const char *what, struct arena *a, int *n)
     return names;
 }
 
-bool data_dir_has_figure(const char *name, const char *file, int line, struct arena *a, struct err *e)
+bool data_dir_has_figure(const char *name, const char *file, int line, struct arena *a,
+                         struct err *e)
 {
     int n;
     const char **names = data_dir_names("plots", a, &n);
     for (int i = 0; i < n; i++)
         if (strcmp(names[i], name) == 0) return true;
     const char *near = text_nearest(name, names, n);
-    return err_set_at(e, ERR_DATA, file, line, "no figure '%.80s'%s%s%s; `mimdsim plot` lists them", name,
-                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return err_set_at(e, ERR_DATA, file, line, "no figure '%.80s'%s%s%s; `mimdsim plot` lists them",
+                      name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }

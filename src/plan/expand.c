@@ -1,7 +1,8 @@
 /* expand.c - from settings and axes to runs: each with its machine, its P and n, and its identity.
  *
- * A run starts as a copy of what holds for all runs on its machine, so a large sweep costs a copy and a few settings
- * a run; the texts of a struct that did not change since the run before are not printed again (identity.h). */
+ * A run starts as a copy of what holds for all runs on its machine, so a large sweep costs a copy
+ * and a few settings a run; the texts of a struct that did not change since the run before are not
+ * printed again (identity.h). */
 #include "plan/expand.h"
 
 #include <string.h>
@@ -33,7 +34,8 @@ struct expansion {
     struct machine_changes changes;
 };
 
-/* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries. */
+/* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries.
+ */
 static int lists_of(const struct expansion *x, const struct setting_list **list)
 {
     const struct scenario *s = x->scenario;
@@ -45,7 +47,8 @@ static int lists_of(const struct expansion *x, const struct setting_list **list)
 }
 
 /* The last setting that matches, NULL when there is none. */
-static const struct setting *last_of(const struct expansion *x, bool (*matches)(const struct setting *))
+static const struct setting *last_of(const struct expansion *x,
+                                     bool (*matches)(const struct setting *))
 {
     const struct setting_list *list[SCENARIO_MAX_AXES + 2];
     int n = lists_of(x, list);
@@ -86,7 +89,8 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     s->next = x->starts;
     x->starts = s;
     text_copy(s->run.scenario, sizeof s->run.scenario, x->scenario->stem);
-    for (int i = 0; i < x->scenario->base.n; i++) setting_apply(&x->scenario->base.at[i], &s->run, a);
+    for (int i = 0; i < x->scenario->base.n; i++)
+        setting_apply(&x->scenario->base.at[i], &s->run, a);
     return s;
 }
 
@@ -94,7 +98,8 @@ static struct start *start_of(struct expansion *x)
 {
     const struct setting *machine = last_of(x, is_machine);
     if (machine == NULL) {
-        err_set_at(x->err, ERR_DATA, x->scenario->path, 1, "machine is missing; expected one of `mimdsim machines`");
+        err_set_at(x->err, ERR_DATA, x->scenario->path, 1, "machine is missing; expected one of "
+                                                           "`mimdsim machines`");
         return NULL;
     }
     for (struct start *s = x->starts; s != NULL; s = s->next)
@@ -105,22 +110,26 @@ static struct start *start_of(struct expansion *x)
 /* P and n where one follows from the other. */
 static bool resolve_sizes(struct expansion *x, struct run_spec *run)
 {
-    const struct setting *ranks = last_of(x, is_ranks), *ratio = last_of(x, is_ratio), *bodies = last_of(x, is_bodies);
+    const struct setting *ranks = last_of(x, is_ranks), *ratio = last_of(x, is_ratio),
+                         *bodies = last_of(x, is_bodies);
     if (ranks == NULL)
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
-                          "ranks is missing; expected a number, a list, or 'n' for one rank per body");
+                          "ranks is missing; expected a number, a list, or 'n' for one rank per "
+                          "body");
     if (ratio != NULL && bodies != NULL)
         return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line,
-                          "n_over_p determines n already; remove '%s' (line %d)", bodies->key, bodies->line);
+                          "n_over_p determines n already; remove '%s' (line %d)", bodies->key,
+                          bodies->line);
     if (ratio != NULL && ranks->kind == SETTING_RANKS_ARE_N)
-        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as numbers, not 'n'");
+        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as "
+                                                                      "numbers, not 'n'");
     if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
     if (ratio == NULL) return true;
     int64_t n = (int64_t)ratio->number * run->nrank;
     if (n > MAX_BODIES)
         return err_set_at(x->err, ERR_CONFIG, ratio->file, ratio->line,
-                          "n_over_p %d times %d ranks gives more than %d bodies", ratio->number, run->nrank,
-                          MAX_BODIES);
+                          "n_over_p %d times %d ranks gives more than %d bodies", ratio->number,
+                          run->nrank, MAX_BODIES);
     run->model.nbody = (int)n;
     return true;
 }
@@ -130,11 +139,13 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
     const struct setting *ranks = last_of(x, is_ranks);
     const struct machine_spec *m = &run->machine;
     int64_t n = machine_spec_processors(m);
-    if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL) ranks = last_of(x, is_bodies);
+    if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL)
+        ranks = last_of(x, is_bodies);
     if (!machine_file_check(m, ranks->file, ranks->line, x->err)) return false;
     if (m->placement.kind == PLACEMENT_LIST && m->placement.nlist < run->nrank)
         return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
-                          "%d ranks, but machine.placement.list names %d processors", run->nrank, m->placement.nlist);
+                          "%d ranks, but machine.placement.list names %d processors", run->nrank,
+                          m->placement.nlist);
     if (run->nrank > n)
         return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
                           "%d ranks, but machine '%s' has %lld processors; reduce ranks or enlarge "
@@ -144,7 +155,8 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
         run->model.nbody < run->nrank)
         return err_set_at(
             x->err, ERR_CONFIG, ranks->file, ranks->line,
-            "%d ranks for %d bodies: each rank needs at least one body; `only: n >= ranks` excludes such points",
+            "%d ranks for %d bodies: each rank needs at least one body; `only: n >= ranks` "
+            "excludes such points",
             run->nrank, run->model.nbody);
     return true;
 }
@@ -165,8 +177,10 @@ static bool resolve_path(struct expansion *x, struct run_spec *run)
     bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
     if (!from_file) return true;
     if (m->path[0] == '\0')
-        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path is missing: the file of the model");
-    snprintf(path, sizeof path, "%s/%s", x->scenario->dir[0] != '\0' ? x->scenario->dir : ".", m->path);
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path is missing: the file "
+                                                                  "of the model");
+    snprintf(path, sizeof path, "%s/%s", x->scenario->dir[0] != '\0' ? x->scenario->dir : ".",
+             m->path);
     struct err ignored;
     err_clear(&ignored);
     bool relative = m->path[0] != '/' && text_read_file(&file, path, &ignored);
@@ -175,12 +189,14 @@ static bool resolve_path(struct expansion *x, struct run_spec *run)
     text_free(&file);
     if (!relative) return true;
     if (strlen(path) >= sizeof run->model.path)
-        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path: '%.80s' is too long", path);
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path: '%.80s' is too long",
+                          path);
     text_copy(run->model.path, sizeof run->model.path, path);
     return true;
 }
 
-/* A point that cannot run keeps its place in the plan, with the reason: the others are not its business. */
+/* A point that cannot run keeps its place in the plan, with the reason: the others are not its
+ * business. */
 static void note_refusal(struct expansion *x, struct run_spec *run)
 {
     struct err why, *others = x->err;
@@ -264,7 +280,8 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     int ntable;
     for (int i = 0; i < s->naxis; i++) n = n > MAX_RUNS ? n : n * s->axis[i].npoint;
     if (n > MAX_RUNS)
-        return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller", MAX_RUNS);
+        return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller",
+                          MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
     x.identity = identity_create(table, ntable);
     bool fine = expand_points(&x, n);

@@ -1,4 +1,5 @@
-/* file_kind.c - see file_kind.h. Content decides, not the ending, save for robots and cases, which other rooms read. */
+/* file_kind.c - see file_kind.h. Content decides, not the ending, save for robots and cases, which
+ * other rooms read. */
 #include "plan/file_kind.h"
 
 #include <stdio.h>
@@ -19,7 +20,8 @@ static bool is_database(const char *path)
 {
     char head[16] = "";
     FILE *f = fopen(path, "rb");
-    bool yes = f != NULL && fread(head, 1, sizeof head, f) == sizeof head && memcmp(head, "SQLite format 3", 16) == 0;
+    bool yes = f != NULL && fread(head, 1, sizeof head, f) == sizeof head &&
+               memcmp(head, "SQLite format 3", 16) == 0;
     if (f != NULL) fclose(f);
     return yes;
 }
@@ -31,11 +33,14 @@ static bool has_any(const struct yaml_node *root, const char *const *key, int n)
     return false;
 }
 
-/* A machine file describes a machine and asks no question. One with keys of both is told of the key that is wrong. */
+/* A machine file describes a machine and asks no question. One with keys of both is told of the key
+ * that is wrong. */
 enum file_kind file_kind_of_tree(const struct yaml_node *root)
 {
-    static const char *const scenario_keys[] = {"question", "machine", "kernel", "ranks", "sweep", "model"};
-    static const char *const machine_keys[] = {"topology", "network", "node", "software", "base", "title"};
+    static const char *const scenario_keys[] = {"question", "machine", "kernel",
+                                                "ranks",    "sweep",   "model"};
+    static const char *const machine_keys[] = {"topology", "network", "node",
+                                               "software", "base",    "title"};
     if (root == NULL || root->kind != YAML_MAPPING) return FILE_UNKNOWN;
     bool asks = has_any(root, scenario_keys, 6), describes = has_any(root, machine_keys, 6);
     if (asks == describes) return FILE_UNKNOWN;
@@ -70,8 +75,11 @@ enum file_kind file_kind_of(const char *name, struct arena *a)
 bool file_kind_refuse(const char *name, enum file_kind wanted, struct err *e)
 {
     static const char *const word[] = {
-        [FILE_SCENARIO] = "a scenario", [FILE_MACHINE] = "a machine",   [FILE_DATABASE] = "a database",
-        [FILE_ROBOT] = "a robot",       [FILE_CASES] = "a file of reference cases",
+        [FILE_SCENARIO] = "a scenario",
+        [FILE_MACHINE] = "a machine",
+        [FILE_DATABASE] = "a database",
+        [FILE_ROBOT] = "a robot",
+        [FILE_CASES] = "a file of reference cases",
     };
     struct arena *a = arena_create();
     enum file_kind kind = file_kind_of(name, a);
@@ -81,13 +89,18 @@ bool file_kind_refuse(const char *name, enum file_kind wanted, struct err *e)
     struct text use = {0};
     if (kind == FILE_SCENARIO) text_add(&use, "`mimdsim run %s` runs it", name);
     if (kind == FILE_MACHINE)
-        text_add(&use, "`mimdsim machines %s` shows it, `mimdsim run SCENARIO --machine %s` uses it", name, name);
+        text_add(&use,
+                 "`mimdsim machines %s` shows it, `mimdsim run SCENARIO --machine %s` uses it",
+                 name, name);
     if (kind == FILE_DATABASE)
-        text_add(&use, "`mimdsim plot %s` lists the figures that can be drawn from it, `mimdsim run "
+        text_add(&use, "`mimdsim plot %s` lists the figures that can be drawn from it, `mimdsim "
+                       "run "
                        "SCENARIO -o %s` adds to it", name,
                  name);
-    if (kind == FILE_ROBOT) text_add(&use, "a scenario names it by `model: {generator: urdf, path: %s}`", name);
-    if (kind == FILE_CASES) text_add(&use, "`mimdsim verify %s` or `mimdsim netcheck %s` takes it", name, name);
+    if (kind == FILE_ROBOT)
+        text_add(&use, "a scenario names it by `model: {generator: urdf, path: %s}`", name);
+    if (kind == FILE_CASES)
+        text_add(&use, "`mimdsim verify %s` or `mimdsim netcheck %s` takes it", name, name);
     err_set(e, ERR_USAGE, "%s is %s, not %s: %s", name, word[kind], word[wanted], use.s);
     text_free(&use);
     return true;

@@ -1,4 +1,5 @@
-/* machine_changes.c - how the machine of a run differs from the shipped one; see machine_changes.h. */
+/* machine_changes.c - how the machine of a run differs from the shipped one; see machine_changes.h.
+ */
 #include "plan/machine_changes.h"
 
 #include <string.h>
@@ -13,7 +14,8 @@
 /* One shipped machine. */
 struct shipped_machine {
     const char *name;
-    const char *text; /* "machine.key = value" lines without the network level; NULL: none is shipped */
+    const char
+        *text; /* "machine.key = value" lines without the network level; NULL: none is shipped */
     char hash[65];    /* SHA-256 of `text`, "" when there is none */
     struct shipped_machine *next;
 };
@@ -50,7 +52,8 @@ static struct shipped_machine *read_shipped(const char *name, struct arena *a)
     err_clear(&ignored);
     s->name = arena_text(a, name);
     text_add(&path, "%s/machines/%s.yaml", plan_data_dir(), name);
-    if (!strchr(name, '/') && access(path.s, R_OK) == 0 && machine_file_read(&file, path.s, NULL, a, &ignored)) {
+    if (!strchr(name, '/') && access(path.s, R_OK) == 0 &&
+        machine_file_read(&file, path.s, NULL, a, &ignored)) {
         describe(&file.spec, &text);
         s->text = arena_text(a, text.s);
         digest_sha256_hex(text.s, text.length, s->hash);
@@ -60,7 +63,8 @@ static struct shipped_machine *read_shipped(const char *name, struct arena *a)
     return s;
 }
 
-/* The rest of the line of `text` that begins with the `n` letters at `key`; NULL when there is none. */
+/* The rest of the line of `text` that begins with the `n` letters at `key`; NULL when there is
+ * none. */
 static const char *line_of(const char *text, const char *key, size_t n)
 {
     for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
@@ -84,7 +88,8 @@ static void add_differences(struct text *out, const char *own, const char *shipp
 {
     static const char prefix[] = "machine.";
     for (const char *line = own; *line;) {
-        const char *end = strchrnul(line, '\n'), *equals = memmem(line, (size_t)(end - line), " = ", 3);
+        const char *end = strchrnul(line, '\n'),
+                   *equals = memmem(line, (size_t)(end - line), " = ", 3);
         if (equals) {
             const char *key = line + strlen(prefix), *value = equals + 3;
             size_t length = (size_t)(end - value);

@@ -1,4 +1,5 @@
-/* machine_file.c - machines/NAME.yaml: plain values or {value, min, max, class, source}, on top of a base. */
+/* machine_file.c - machines/NAME.yaml: plain values or {value, min, max, class, source}, on top of
+ * a base. */
 #include "plan/machine_file.h"
 
 #include <string.h>
@@ -31,34 +32,39 @@ static bool is_evidence(const char *s)
 }
 
 /* `published`: the entry is a published figure, which says what validate does with it. */
-static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf, bool published,
-                          struct err *e)
+static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf,
+                          bool published, struct err *e)
 {
     for (const struct yaml_node *n = leaf->child; n != NULL; n = n->next) {
         static const char *const known[] = {"value", "min", "max", "class", "source", "validate"};
         bool is_known = false;
-        for (int i = 0; i < 5 + published; i++) is_known = is_known || strcmp(n->key, known[i]) == 0;
+        for (int i = 0; i < 5 + published; i++)
+            is_known = is_known || strcmp(n->key, known[i]) == 0;
         if (!is_known)
-            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: unknown key '%.80s'; expected value, min, max, %s",
-                              key, n->key, published ? "class, source or validate" : "class or source");
+            return err_set_at(e, ERR_DATA, v->file, n->line,
+                              "%s: unknown key '%.80s'; expected "
+                              "value, min, max, %s",
+                              key, n->key,
+                              published ? "class, source or validate" : "class or source");
         if (strcmp(n->key, "value") == 0) continue;
         if (n->kind != YAML_SCALAR)
-            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' must be a single value", key, n->key);
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' must be a single value", key,
+                              n->key);
         if (strcmp(n->key, "class") == 0) v->evidence = n->text;
         if (strcmp(n->key, "source") == 0) v->source = n->text;
         if (strcmp(n->key, "validate") == 0) v->validate = n->text;
     }
     if (!is_evidence(v->evidence) && v->evidence[0] != '\0')
         return err_set_at(e, ERR_DATA, v->file, v->line,
-                          "%s: class '%.20s'; expected P (published), PR (published, recalled), D (derived) or "
-                          "E (estimated)",
+                          "%s: class '%.20s'; expected P (published), PR (published, recalled), D "
+                          "(derived) or E (estimated)",
                           key, v->evidence);
     return true;
 }
 
 /* The published range of a number; it has to hold the value. */
-static bool read_range(struct machine_value *v, const struct field *f, const char *key, const struct yaml_node *leaf,
-                       const struct machine_spec *spec, struct err *e)
+static bool read_range(struct machine_value *v, const struct field *f, const char *key,
+                       const struct yaml_node *leaf, const struct machine_spec *spec, struct err *e)
 {
     static const char *const names[] = {"min", "max"};
     double *const bound[] = {&v->min, &v->max}, value = 0;
@@ -75,23 +81,26 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     for (int i = 0; i < 2; i++) {
         const struct yaml_node *n = yaml_node_child(leaf, names[i]);
         if (n != NULL && !units_parse(n->text, f->unit, bound[i], why, (int)sizeof why))
-            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i], n->text, why);
+            return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i],
+                              n->text, why);
     }
     if (v->min > value || v->max < value)
-        return err_set_at(e, ERR_DATA, v->file, v->line, "%s: the value is outside its own range min .. max", key);
+        return err_set_at(e, ERR_DATA, v->file, v->line,
+                          "%s: the value is outside its own range min .. max", key);
     if (v->min == v->max) v->min = v->max = 0;
     return true;
 }
 
-/* What one segment says of its evidence, added to *class and *source; *class names each class once. */
-static bool add_evidence(const struct yaml_node *n, const char *key, const char *file, struct text *class,
-                         struct text *source, struct err *e)
+/* What one segment says of its evidence, added to *class and *source; *class names each class once.
+ */
+static bool add_evidence(const struct yaml_node *n, const char *key, const char *file,
+                         struct text *class, struct text *source, struct err *e)
 {
     const struct yaml_node *from = yaml_node_child(n, "from"), *c = yaml_node_child(n, "class");
     const struct yaml_node *s = yaml_node_child(n, "source");
     if (c != NULL && (c->text == NULL || !is_evidence(c->text)))
-        return err_set_at(e, ERR_DATA, file, c->line, "%s: class '%.20s'; expected P, PR, D or E", key,
-                          c->text != NULL ? c->text : "");
+        return err_set_at(e, ERR_DATA, file, c->line, "%s: class '%.20s'; expected P, PR, D or E",
+                          key, c->text != NULL ? c->text : "");
     if (c != NULL && (class->s == NULL || strstr(class->s, c->text) == NULL))
         text_add(class, "%s%s", class->s != NULL ? "/" : "", c->text);
     if (s != NULL && s->text != NULL)
@@ -100,9 +109,11 @@ static bool add_evidence(const struct yaml_node *n, const char *key, const char 
     return true;
 }
 
-/* Class and source of each segment of `leaf` go to *v; returns the leaf without them, NULL when a class is none. */
-static const struct yaml_node *take_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf,
-                                             const char *file, struct arena *a, struct err *e)
+/* Class and source of each segment of `leaf` go to *v; returns the leaf without them, NULL when a
+ * class is none. */
+static const struct yaml_node *take_evidence(struct machine_value *v, const char *key,
+                                             const struct yaml_node *leaf, const char *file,
+                                             struct arena *a, struct err *e)
 {
     struct text class = {0}, source = {0};
     struct yaml_node *bare = TAKE(a, 1, struct yaml_node), **tail = &bare->child;
@@ -115,7 +126,8 @@ static const struct yaml_node *take_evidence(struct machine_value *v, const char
         copy->child = copy->next = NULL;
         tail = &copy->next;
         for (const struct yaml_node *k = n->child; k != NULL; k = k->next) {
-            if (k->key != NULL && (strcmp(k->key, "class") == 0 || strcmp(k->key, "source") == 0)) continue;
+            if (k->key != NULL && (strcmp(k->key, "class") == 0 || strcmp(k->key, "source") == 0))
+                continue;
             *end = TAKE(a, 1, struct yaml_node);
             **end = *k;
             (*end)->next = NULL;
@@ -130,17 +142,19 @@ static const struct yaml_node *take_evidence(struct machine_value *v, const char
     return fine ? bare : NULL;
 }
 
-static bool read_leaf(void *context, const char *full, const struct yaml_node *leaf, const char *file, struct arena *a,
-                      struct err *e)
+static bool read_leaf(void *context, const char *full, const struct yaml_node *leaf,
+                      const char *file, struct arena *a, struct err *e)
 {
     struct reader *r = context;
     const char *key = full + strlen("machine.");
     int row = strncmp(full, "machine.", 8) == 0 ? field_find(&machine_table, key) : -1;
-    if (row < 0 || strcmp(key, "name") == 0) return setting_unknown("machine", full, file, leaf->line, e);
+    if (row < 0 || strcmp(key, "name") == 0)
+        return setting_unknown("machine", full, file, leaf->line, e);
     const struct field *f = &machine_table.field[row];
     struct machine_value *v = &r->machine->value[row];
     if (v->line != 0 && strcmp(v->file, file) == 0)
-        return err_set_at(e, ERR_DATA, file, leaf->line, "duplicate key '%s'; first given in line %d", key, v->line);
+        return err_set_at(e, ERR_DATA, file, leaf->line,
+                          "duplicate key '%s'; first given in line %d", key, v->line);
     struct machine_value fresh = {.file = file, .line = leaf->line, .evidence = "", .source = ""};
     if (f->kind == FIELD_SEGMENTS && leaf->kind == YAML_SEQUENCE &&
         (leaf = take_evidence(&fresh, key, leaf, file, a, e)) == NULL)
@@ -158,18 +172,22 @@ static bool read_leaf(void *context, const char *full, const struct yaml_node *l
 }
 
 /* Figures that are known of the machine and that no run uses: any name, value as text. */
-static bool read_published(struct machine_file *m, const struct yaml_node *list, const char *file, struct arena *a,
-                           struct err *e)
+static bool read_published(struct machine_file *m, const struct yaml_node *list, const char *file,
+                           struct arena *a, struct err *e)
 {
     if (list->kind != YAML_MAPPING)
-        return err_set_at(e, ERR_DATA, file, list->line, "published: expected 'name: {value, class, source}' lines");
+        return err_set_at(e, ERR_DATA, file, list->line, "published: expected 'name: {value, "
+                                                         "class, source}' lines");
     for (const struct yaml_node *n = list->child; n != NULL; n = n->next) {
         int i = 0;
         while (i < m->npublished && strcmp(m->published[i].name, n->key) != 0) i++;
-        if (i == MAX_PUBLISHED) return err_set_at(e, ERR_DATA, file, n->line, "more than %d published figures", i);
-        struct machine_value v = {.file = file, .line = n->line, .evidence = "", .source = "", .validate = ""};
+        if (i == MAX_PUBLISHED)
+            return err_set_at(e, ERR_DATA, file, n->line, "more than %d published figures", i);
+        struct machine_value v = {
+            .file = file, .line = n->line, .evidence = "", .source = "", .validate = ""};
         v.text = setting_value(n->key, n, file, a, e);
-        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, true, e))) return false;
+        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, true, e)))
+            return false;
         m->published[i] = (struct machine_published){.name = n->key, .value = v};
         if (i == m->npublished) m->npublished++;
     }
@@ -179,21 +197,25 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
 static bool check_version(const struct yaml_node *root, const char *file, struct err *e)
 {
     const struct yaml_node *n = yaml_node_child(root, "schema_version");
-    if (n == NULL) return err_set_at(e, ERR_DATA, file, 1, "schema_version is missing; expected 'schema_version: 1'");
+    if (n == NULL) return err_set_at(e, ERR_DATA, file, 1, "schema_version is missing; expected "
+                                                           "'schema_version: 1'");
     if (n->text != NULL && strcmp(n->text, "1") == 0) return true;
-    return err_set_at(e, ERR_DATA, file, n->line, "schema_version: '%.20s'; this program reads version 1",
+    return err_set_at(e, ERR_DATA, file, n->line, "schema_version: '%.20s'; this program reads "
+                                                  "version 1",
                       n->text != NULL ? n->text : "");
 }
 
-static bool read_title(struct machine_file *m, const struct yaml_node *n, const char *file, struct arena *a,
-                       struct err *e)
+static bool read_title(struct machine_file *m, const struct yaml_node *n, const char *file,
+                       struct arena *a, struct err *e)
 {
     int row = field_find(&machine_table, "title");
     char why[256];
-    if (n->text == NULL || !field_set(&machine_table.field[row], &m->spec, n->text, a, why, (int)sizeof why))
-        return err_set_at(e, ERR_DATA, file, n->line, "title: %s", n->text == NULL ? "expected one line of text" : why);
-    m->value[row] =
-        (struct machine_value){.text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
+    if (n->text == NULL ||
+        !field_set(&machine_table.field[row], &m->spec, n->text, a, why, (int)sizeof why))
+        return err_set_at(e, ERR_DATA, file, n->line, "title: %s",
+                          n->text == NULL ? "expected one line of text" : why);
+    m->value[row] = (struct machine_value){
+        .text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
     return true;
 }
 
@@ -209,7 +231,8 @@ static bool read_tree(struct reader *r, struct yaml_node *root, struct arena *a,
         if (strcmp(n->key, known[0]) == 0 || strcmp(n->key, known[1]) == 0)
             ;
         else if (strcmp(n->key, "title") == 0) ok = read_title(r->machine, n, r->path, a, e);
-        else if (strcmp(n->key, "published") == 0) ok = read_published(r->machine, n, r->path, a, e);
+        else if (strcmp(n->key, "published") == 0)
+            ok = read_published(r->machine, n, r->path, a, e);
         else *tail = n, tail = &n->next;
         if (!ok) return false;
     }
@@ -218,19 +241,22 @@ static bool read_tree(struct reader *r, struct yaml_node *root, struct arena *a,
 }
 
 /* Base first, then the file itself. `chain` holds the files that led here. */
-static bool read_chain(struct machine_file *m, const char *path, const char **chain, int depth, struct arena *a,
-                       struct err *e)
+static bool read_chain(struct machine_file *m, const char *path, const char **chain, int depth,
+                       struct arena *a, struct err *e)
 {
     for (int i = 0; i < depth; i++)
         if (strcmp(chain[i], path) == 0)
-            return err_set_at(e, ERR_DATA, chain[depth - 1], 0, "base: %s is based on itself", data_dir_stem(path, a));
-    if (depth == MAX_BASES) return err_set_at(e, ERR_DATA, path, 0, "a chain of more than %d base files", depth);
+            return err_set_at(e, ERR_DATA, chain[depth - 1], 0, "base: %s is based on itself",
+                              data_dir_stem(path, a));
+    if (depth == MAX_BASES)
+        return err_set_at(e, ERR_DATA, path, 0, "a chain of more than %d base files", depth);
     struct yaml_node *root = yaml_tree_read(path, a, e);
     if (root == NULL) return false;
     chain[depth] = path;
     const struct yaml_node *base = yaml_node_child(root, "base");
     if (base != NULL) {
-        if (base->text == NULL) return err_set_at(e, ERR_DATA, path, base->line, "base: expected a machine's name");
+        if (base->text == NULL)
+            return err_set_at(e, ERR_DATA, path, base->line, "base: expected a machine's name");
         struct err why;
         err_clear(&why);
         const char *below = data_dir_find("machines", base->text, data_dir_of(path, a), a, &why);
@@ -245,12 +271,13 @@ static bool check_complete(const struct machine_file *m, struct err *e)
 {
     for (int i = 0; i < machine_table.nfield; i++)
         if (machine_table.field[i].fallback == NULL && m->value[i].line == 0)
-            return err_set_at(e, ERR_DATA, m->path, 0, "%s is missing: %s", machine_table.field[i].key,
-                              machine_table.field[i].doc);
+            return err_set_at(e, ERR_DATA, m->path, 0, "%s is missing: %s",
+                              machine_table.field[i].key, machine_table.field[i].doc);
     return true;
 }
 
-bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a, struct err *e)
+bool machine_file_read(struct machine_file *m, const char *name, const char *near, struct arena *a,
+                       struct err *e)
 {
     const char *chain[MAX_BASES];
     *m = (struct machine_file){.path = data_dir_find("machines", name, near, a, e)};
@@ -259,8 +286,10 @@ bool machine_file_read(struct machine_file *m, const char *name, const char *nea
     m->value = TAKE(a, machine_table.nfield, struct machine_value);
     m->published = TAKE(a, MAX_PUBLISHED, struct machine_published);
     for (int i = 0; i < machine_table.nfield; i++)
-        m->value[i] = (struct machine_value){
-            .text = machine_table.field[i].fallback, .file = "default", .evidence = "", .source = ""};
+        m->value[i] = (struct machine_value){.text = machine_table.field[i].fallback,
+                                             .file = "default",
+                                             .evidence = "",
+                                             .source = ""};
     if (!read_chain(m, m->path, chain, 0, a, e) || !check_complete(m, e)) return false;
     text_copy(m->spec.name, sizeof m->spec.name, data_dir_stem(m->path, a));
     int dims = field_find(&machine_table, "topology.dims");
@@ -272,17 +301,21 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
     const struct topology_spec *t = &m->topology;
     const int expected = topology_family_dims(t->family);
     if (expected != 0 && t->ndim != expected)
-        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims has %d numbers; its family takes %d",
+        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims has %d numbers; "
+                                                     "its family takes %d",
                           m->name, t->ndim, expected);
     int64_t n = machine_spec_processors(m);
     if (n < 1 || n > 1 << 24)
-        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims gives %s than %d processors", m->name,
+        return err_set_at(e, ERR_CONFIG, file, line,
+                          "machine %s: topology.dims gives %s than %d processors", m->name,
                           n < 1 ? "less" : "more", n < 1 ? 1 : 1 << 24);
     for (int i = 0; i < t->nlink; i++)
         if (t->link[i][0] >= t->dims[0] || t->link[i][1] >= t->dims[0])
-            return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.links names router %d; there are %d",
+            return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.links names router "
+                                                         "%d; there are %d",
                               m->name, t->link[i][t->link[i][0] < t->dims[0]], t->dims[0]);
     if (topology_has(t->family, TOPOLOGY_LISTED) && t->nlink == 0 && t->dims[0] > 1)
-        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: family 'graph' needs topology.links", m->name);
+        return err_set_at(e, ERR_CONFIG, file, line,
+                          "machine %s: family 'graph' needs topology.links", m->name);
     return true;
 }

@@ -1,4 +1,5 @@
-/* plan.c - the face of the room: a scenario to runs, a machine to values with their origins, lists, checks. */
+/* plan.c - the face of the room: a scenario to runs, a machine to values with their origins, lists,
+ * checks. */
 #include "plan/plan.h"
 
 #include <string.h>
@@ -10,7 +11,8 @@
 #include "plan/scenario_file.h"
 #include "spec/spec_fields.h"
 
-static bool kernels_exist(const struct setting_list *list, const struct plan_options *o, struct err *e)
+static bool kernels_exist(const struct setting_list *list, const struct plan_options *o,
+                          struct err *e)
 {
     for (int i = 0; i < list->n; i++) {
         const struct setting *s = &list->at[i];
@@ -19,8 +21,9 @@ static bool kernels_exist(const struct setting_list *list, const struct plan_opt
         if (known) continue;
         const char *near = text_nearest(s->text, o->kernel, o->nkernel);
         return err_set_at(e, ERR_DATA, s->file, s->line,
-                          "no kernel is called '%.80s'%s%s%s; `mimdsim kernels` lists them", s->text,
-                          near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+                          "no kernel is called '%.80s'%s%s%s; `mimdsim kernels` lists them",
+                          s->text, near ? "; did you mean '" : "", near ? near : "",
+                          near ? "'?" : "");
     }
     return true;
 }
@@ -40,7 +43,8 @@ static bool is_number(const struct setting *s)
 {
     if (s->kind != SETTING_FIELD) return s->kind == SETTING_N_OVER_P;
     enum field_kind kind = s->field->kind;
-    bool plain = kind == FIELD_REAL || kind == FIELD_INT || kind == FIELD_INT64 || kind == FIELD_SEED;
+    bool plain =
+        kind == FIELD_REAL || kind == FIELD_INT || kind == FIELD_INT64 || kind == FIELD_SEED;
     return plain && s->field->unit == UNIT_NONE;
 }
 
@@ -49,7 +53,8 @@ static void add_swept(struct plan *p, const struct setting_list *list)
     for (int i = 0; i < list->n; i++) {
         int k = 0;
         while (k < p->nswept && strcmp(p->swept[k].key, list->at[i].key) != 0) k++;
-        if (k == p->nswept) p->swept[p->nswept++] = (struct plan_swept){list->at[i].key, is_number(&list->at[i])};
+        if (k == p->nswept)
+            p->swept[p->nswept++] = (struct plan_swept){list->at[i].key, is_number(&list->at[i])};
     }
 }
 
@@ -63,7 +68,8 @@ static void list_swept(struct plan *p, const struct scenario *s)
         for (int j = 0; j < s->axis[i].npoint; j++) add_swept(p, &s->axis[i].point[j]);
 }
 
-static bool fill(struct plan *p, const struct scenario *s, const struct plan_options *o, struct err *e)
+static bool fill(struct plan *p, const struct scenario *s, const struct plan_options *o,
+                 struct err *e)
 {
     if (!all_kernels_exist(s, o, e)) return false;
     text_copy(p->name, sizeof p->name, s->stem);
@@ -120,7 +126,8 @@ static bool set_machine(struct machine_file *m, const char *set, struct arena *a
     const char *equals = strchr(set, '='), *full;
     struct setting s;
     struct run_spec run;
-    if (equals == NULL || equals == set) return err_set(e, ERR_USAGE, "--set '%.80s': expected key=value", set);
+    if (equals == NULL || equals == set)
+        return err_set(e, ERR_USAGE, "--set '%.80s': expected key=value", set);
     char *name = arena_text(a, set);
     name[equals - set] = '\0';
     full = setting_key(name);
@@ -154,20 +161,22 @@ static int list_origins(const struct machine_file *m, struct origin *list, struc
     for (int i = 0; i < machine_table.nfield; i++) {
         struct text t = {0};
         field_print(&machine_table.field[i], &m->spec, &t);
-        list[n++] = origin_make(machine_table.field[i].key, arena_text(a, t.s != NULL ? t.s : ""), &m->value[i]);
+        list[n++] = origin_make(machine_table.field[i].key, arena_text(a, t.s != NULL ? t.s : ""),
+                                &m->value[i]);
         text_free(&t);
     }
     for (int i = 0; i < m->npublished; i++) {
         struct text t = {0};
         text_add(&t, "published.%s", m->published[i].name);
-        list[n++] = origin_make(arena_text(a, t.s), m->published[i].value.text, &m->published[i].value);
+        list[n++] =
+            origin_make(arena_text(a, t.s), m->published[i].value.text, &m->published[i].value);
         text_free(&t);
     }
     return n;
 }
 
-bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o, struct arena *a,
-                  struct origin **origin, int *norigin, struct err *e)
+bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o,
+                  struct arena *a, struct origin **origin, int *norigin, struct err *e)
 {
     struct machine_file file;
     if (!machine_file_read(&file, name, NULL, a, e)) {
@@ -192,12 +201,14 @@ static const char *title_of(const char *what, const char *name, struct arena *a)
     const char *path = data_dir_find(what, name, NULL, a, &e);
     struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, &e) : NULL;
     const struct yaml_node *n = NULL;
-    if (root != NULL) n = yaml_node_child(root, strcmp(what, "machines") == 0 ? "title" : "question");
+    if (root != NULL)
+        n = yaml_node_child(root, strcmp(what, "machines") == 0 ? "title" : "question");
     if (n != NULL && n->text != NULL) return n->text;
     return root != NULL ? "" : arena_text(a, e.text);
 }
 
-bool plan_list(const char *what, struct arena *a, const char ***stem, const char ***title, int *n, struct err *e)
+bool plan_list(const char *what, struct arena *a, const char ***stem, const char ***title, int *n,
+               struct err *e)
 {
     *stem = data_dir_names(what, a, n);
     *title = TAKE(a, *n + 1, const char *);

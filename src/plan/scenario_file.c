@@ -1,6 +1,8 @@
-/* scenario_file.c - scenarios/NAME.yaml: which keys there are at the top, lists as axes, and --set on top.
+/* scenario_file.c - scenarios/NAME.yaml: which keys there are at the top, lists as axes, and --set
+ * on top.
  *
- * A list where a single value belongs is an axis of the sweep; the first axis in the file changes slowest. */
+ * A list where a single value belongs is an axis of the sweep; the first axis in the file changes
+ * slowest. */
 #include "plan/scenario_file.h"
 
 #include <stdio.h>
@@ -14,8 +16,8 @@ static bool is_list_field(const char *key)
     const struct field_table *t;
     const struct field *f = field_find_full(key, &t);
     if (f == NULL) return false;
-    return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST || f->kind == FIELD_PAIR_LIST ||
-           f->kind == FIELD_SEGMENTS;
+    return f->kind == FIELD_INTS || f->kind == FIELD_REALS || f->kind == FIELD_INT_LIST ||
+           f->kind == FIELD_PAIR_LIST || f->kind == FIELD_SEGMENTS;
 }
 
 static bool is_pair_list(const char *key)
@@ -26,16 +28,17 @@ static bool is_pair_list(const char *key)
 }
 
 /* Add a setting; a key may be given only once in a list. */
-static bool add_setting(struct setting_list *list, const char *key, const char *text, const char *file, int line,
-                        struct arena *a, struct err *e)
+static bool add_setting(struct setting_list *list, const char *key, const char *text,
+                        const char *file, int line, struct arena *a, struct err *e)
 {
     struct setting s;
     if (!setting_make(&s, key, text, file, line, a, e)) return false;
     for (int i = 0; i < list->n; i++)
         if (strcmp(list->at[i].key, s.key) == 0)
-            return err_set_at(e, ERR_DATA, file, line, "duplicate key '%s'; first given in line %d", s.key,
-                              list->at[i].line);
-    if (list->n == SCENARIO_MAX_SETTINGS) return err_set_at(e, ERR_DATA, file, line, "too many settings");
+            return err_set_at(e, ERR_DATA, file, line, "duplicate key '%s'; first given in line %d",
+                              s.key, list->at[i].line);
+    if (list->n == SCENARIO_MAX_SETTINGS)
+        return err_set_at(e, ERR_DATA, file, line, "too many settings");
     if ((list->n & (list->n - 1)) == 0) { /* full: room for twice as many */
         struct setting *at = TAKE(a, size_sum(size_product(2, list->n), 1), struct setting);
         if (list->n > 0) memcpy(at, list->at, (size_t)list->n * sizeof *at);
@@ -47,20 +50,23 @@ static bool add_setting(struct setting_list *list, const char *key, const char *
 
 /* ---- axes */
 
-static bool add_leaf(void *context, const char *key, const struct yaml_node *leaf, const char *file, struct arena *a,
-                     struct err *e)
+static bool add_leaf(void *context, const char *key, const struct yaml_node *leaf, const char *file,
+                     struct arena *a, struct err *e)
 {
     const char *text = setting_value(key, leaf, file, a, e);
     return text != NULL && add_setting(context, key, text, file, leaf->line, a, e);
 }
 
-/* One point: a value of the axis's own key, or a mapping of settings below the group that the axis names. */
-static bool read_point(struct setting_list *point, const char *key, const char *group, const struct yaml_node *node,
-                       const char *file, struct arena *a, struct err *e)
+/* One point: a value of the axis's own key, or a mapping of settings below the group that the axis
+ * names. */
+static bool read_point(struct setting_list *point, const char *key, const char *group,
+                       const struct yaml_node *node, const char *file, struct arena *a,
+                       struct err *e)
 {
     if (node->kind == YAML_MAPPING) {
         if (group == NULL)
-            return err_set_at(e, ERR_DATA, file, node->line, "sweep: '%s' takes values, not settings", key);
+            return err_set_at(e, ERR_DATA, file, node->line,
+                              "sweep: '%s' takes values, not settings", key);
         return setting_walk(node, group, file, add_leaf, point, a, e);
     }
     if (key == NULL)
@@ -72,24 +78,29 @@ static bool read_point(struct setting_list *point, const char *key, const char *
     return text != NULL && add_setting(point, key, text, file, node->line, a, e);
 }
 
-/* The group below which an axis's mappings set: kernel, model, machine; all for `variant`; NULL: values only. */
+/* The group below which an axis's mappings set: kernel, model, machine; all for `variant`; NULL:
+ * values only. */
 static const char *axis_group(const char *name)
 {
     if (strcmp(name, "variant") == 0) return "";
-    bool group = strcmp(name, "kernel") == 0 || strcmp(name, "model") == 0 || strcmp(name, "machine") == 0;
+    bool group =
+        strcmp(name, "kernel") == 0 || strcmp(name, "model") == 0 || strcmp(name, "machine") == 0;
     return group ? name : NULL;
 }
 
-static bool add_axis(struct scenario *s, const char *name, const struct yaml_node *list, struct arena *a, struct err *e)
+static bool add_axis(struct scenario *s, const char *name, const struct yaml_node *list,
+                     struct arena *a, struct err *e)
 {
-    const char *group = axis_group(name), *full = setting_key(name), *key = setting_is_key(full) ? full : NULL;
+    const char *group = axis_group(name), *full = setting_key(name),
+               *key = setting_is_key(full) ? full : NULL;
     if (key == NULL && group == NULL) return setting_unknown("", name, s->path, list->line, e);
     if (list->kind != YAML_SEQUENCE || list->nchild == 0)
-        return err_set_at(e, ERR_DATA, s->path, list->line, "sweep: '%s' needs a list such as [2, 4, 8]", name);
+        return err_set_at(e, ERR_DATA, s->path, list->line,
+                          "sweep: '%s' needs a list such as [2, 4, 8]", name);
     for (int i = 0; i < s->naxis; i++)
         if (strcmp(s->axis[i].key, full) == 0)
-            return err_set_at(e, ERR_DATA, s->path, list->line, "duplicate key '%s'; first swept in line %d", full,
-                              s->axis[i].line);
+            return err_set_at(e, ERR_DATA, s->path, list->line,
+                              "duplicate key '%s'; first swept in line %d", full, s->axis[i].line);
     if (s->naxis == SCENARIO_MAX_AXES || list->nchild > SCENARIO_MAX_POINTS)
         return err_set_at(e, ERR_DATA, s->path, list->line, "too large a sweep");
     struct axis *x = &s->axis[s->naxis++];
@@ -117,7 +128,8 @@ static bool refuse(struct top *t, const struct yaml_node *n, const char *expecte
 
 static bool read_version(struct top *t, const struct yaml_node *n)
 {
-    return (n->text != NULL && strcmp(n->text, "1") == 0) || refuse(t, n, "this program reads version 1");
+    return (n->text != NULL && strcmp(n->text, "1") == 0) ||
+           refuse(t, n, "this program reads version 1");
 }
 
 static bool read_question(struct top *t, const struct yaml_node *n)
@@ -129,9 +141,11 @@ static bool read_question(struct top *t, const struct yaml_node *n)
 
 static bool read_repetitions(struct top *t, const struct yaml_node *n)
 {
-    static const struct field count = {.key = "repetitions", .kind = FIELD_INT, .min = 1, .max = 100000};
+    static const struct field count = {
+        .key = "repetitions", .kind = FIELD_INT, .min = 1, .max = 100000};
     char why[256] = "expected a whole number";
-    if (n->text != NULL && field_set(&count, &t->scenario->repetitions, n->text, NULL, why, (int)sizeof why))
+    if (n->text != NULL &&
+        field_set(&count, &t->scenario->repetitions, n->text, NULL, why, (int)sizeof why))
         return true;
     return refuse(t, n, why);
 }
@@ -142,7 +156,8 @@ static bool read_figures(struct top *t, const struct yaml_node *n)
     if (n->kind != YAML_SEQUENCE) return refuse(t, n, "expected a list such as [fig5, fig6]");
     s->figure = TAKE(t->arena, n->nchild + 1, const char *);
     for (const struct yaml_node *f = n->child; f != NULL; f = f->next) {
-        if (f->text == NULL || f->text[0] == '\0') return refuse(t, n, "expected a list such as [fig5, fig6]");
+        if (f->text == NULL || f->text[0] == '\0')
+            return refuse(t, n, "expected a list such as [fig5, fig6]");
         if (!data_dir_has_figure(f->text, s->path, f->line, t->arena, t->err)) return false;
         s->figure[s->nfigure++] = f->text;
     }
@@ -151,8 +166,10 @@ static bool read_figures(struct top *t, const struct yaml_node *n)
 
 static bool read_condition(struct top *t, const struct yaml_node *n, const char *text)
 {
-    if (text != NULL && strcmp(text, "n >= ranks") == 0) return t->scenario->only_bodies_for_all = true;
-    if (text != NULL && strcmp(text, "ranks <= processors") == 0) return t->scenario->only_fitting = true;
+    if (text != NULL && strcmp(text, "n >= ranks") == 0)
+        return t->scenario->only_bodies_for_all = true;
+    if (text != NULL && strcmp(text, "ranks <= processors") == 0)
+        return t->scenario->only_fitting = true;
     return refuse(t, n, "expected 'n >= ranks' or 'ranks <= processors', or a list of both");
 }
 
@@ -185,12 +202,13 @@ enum { NTOP = sizeof top_keys / sizeof *top_keys };
 /* A key that is no setting: the nearest of this file's own keys before any other. */
 static bool unknown_top(struct top *t, const struct yaml_node *n)
 {
-    const char *names[NTOP + 8] = {"machine", "model", "kernel", "ranks", "seed", "record", "n", "n_over_p"};
+    const char *names[NTOP + 8] = {"machine", "model",  "kernel", "ranks",
+                                   "seed",    "record", "n",      "n_over_p"};
     for (int i = 0; i < NTOP; i++) names[8 + i] = top_keys[i].name;
     const char *near = text_nearest(n->key, names, NTOP + 8);
     if (near == NULL) return setting_unknown("", n->key, t->scenario->path, n->line, t->err);
-    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "unknown key '%.120s'; did you mean '%s'?", n->key,
-                      near);
+    return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line,
+                      "unknown key '%.120s'; did you mean '%s'?", n->key, near);
 }
 
 static bool read_setting(struct top *t, const struct yaml_node *n)
@@ -199,7 +217,8 @@ static bool read_setting(struct top *t, const struct yaml_node *n)
     const char *key = setting_key(n->key);
     struct yaml_node only = *n, parent = {.kind = YAML_MAPPING, .nchild = 1, .child = &only};
     if (!setting_is_key(key) && !setting_is_group(n->key)) return unknown_top(t, n);
-    if (n->kind == YAML_SEQUENCE && !is_list_field(key)) return add_axis(s, n->key, n, t->arena, t->err);
+    if (n->kind == YAML_SEQUENCE && !is_list_field(key))
+        return add_axis(s, n->key, n, t->arena, t->err);
     only.next = NULL;
     return setting_walk(&parent, "", s->path, add_leaf, &s->base, t->arena, t->err);
 }
@@ -218,15 +237,15 @@ static bool check_axes(const struct scenario *s, struct err *e)
         for (int j = 0; j < s->base.n; j++)
             if (strcmp(s->axis[i].key, s->base.at[j].key) == 0)
                 return err_set_at(e, ERR_DATA, s->path, s->axis[i].line,
-                                  "'%s' is swept here and set for all runs in line %d", s->axis[i].key,
-                                  s->base.at[j].line);
+                                  "'%s' is swept here and set for all runs in line %d",
+                                  s->axis[i].key, s->base.at[j].line);
     return true;
 }
 
 /* ---- the command line */
 
-/* Whether `text` gives a single-valued key several values, "[a, b]" or "a,b", or one of lists several lists. A path
- * may hold commas of its own. */
+/* Whether `text` gives a single-valued key several values, "[a, b]" or "a,b", or one of lists
+ * several lists. A path may hold commas of its own. */
 static bool is_sweep(const char *full, const char *text)
 {
     if (is_list_field(full)) return text[0] == '[' && text[1] == '[' && !is_pair_list(full);
@@ -242,7 +261,8 @@ static void move_axis(struct scenario *s, int at)
 }
 
 /* Several values of a single-valued key become an axis in place `at`. */
-static bool set_axis(struct scenario *s, const char *key, const char *list, int at, struct arena *a, struct err *e)
+static bool set_axis(struct scenario *s, const char *key, const char *list, int at, struct arena *a,
+                     struct err *e)
 {
     struct err why;
     err_clear(&why);
@@ -287,8 +307,10 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
 {
     const char *equals = strchr(set, '=');
     if (equals == NULL || equals == set)
-        return err_set(e, ERR_USAGE,
-                       "--set '%.80s': expected key=value, such as machine.network.link.bandwidth='1 GB/s'", set);
+        return err_set(
+            e, ERR_USAGE,
+            "--set '%.80s': expected key=value, such as machine.network.link.bandwidth='1 GB/s'",
+            set);
     char *name = arena_text(a, set);
     name[equals - set] = '\0';
     const char *full = setting_key(name);
@@ -308,7 +330,8 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     return add_setting(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
 }
 
-/* n and n_over_p exclude each other, and so do ranks given twice: what comes from the command line wins. */
+/* n and n_over_p exclude each other, and so do ranks given twice: what comes from the command line
+ * wins. */
 static void drop_overruled(struct scenario *s, const char *set, const char *file)
 {
     bool given = false;
@@ -318,7 +341,8 @@ static void drop_overruled(struct scenario *s, const char *set, const char *file
     remove_setting(&s->base, file);
 }
 
-static bool read_options(struct scenario *s, const struct plan_options *o, struct arena *a, struct err *e)
+static bool read_options(struct scenario *s, const struct plan_options *o, struct arena *a,
+                         struct err *e)
 {
     if (o == NULL) return true;
     for (int i = 0; i < o->nset; i++)
@@ -340,14 +364,15 @@ bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const 
     s->stem = data_dir_stem(path, a);
     s->dir = data_dir_of(path, a);
     if (yaml_node_child(root, "schema_version") == NULL)
-        return err_set_at(e, ERR_DATA, path, 1, "schema_version is missing; expected 'schema_version: 1'");
+        return err_set_at(e, ERR_DATA, path, 1, "schema_version is missing; expected "
+                                                "'schema_version: 1'");
     for (const struct yaml_node *n = root->child; n != NULL; n = n->next)
         if (!read_top(&t, n)) return false;
     return check_axes(s, e) && read_options(s, o, a, e);
 }
 
-bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o, struct arena *a,
-                        struct err *e)
+bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o,
+                        struct arena *a, struct err *e)
 {
     const char *path = data_dir_find("scenarios", name, NULL, a, e);
     struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, e) : NULL;

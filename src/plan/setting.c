@@ -1,4 +1,5 @@
-/* setting.c - keys of files and of --set find their field; values are tried before they are kept. */
+/* setting.c - keys of files and of --set find their field; values are tried before they are kept.
+ */
 #include "plan/setting.h"
 
 #include <string.h>
@@ -11,14 +12,17 @@ enum { KEY_LENGTH = 256, MAX_CANDIDATES = 256 };
 
 const char *setting_key(const char *key)
 {
-    static const char *const shorts[][2] = {
-        {"n", "model.n"}, {"level", "machine.network.level"}, {"kernel", "kernel.name"}, {"machine", "machine.name"}};
+    static const char *const shorts[][2] = {{"n", "model.n"},
+                                            {"level", "machine.network.level"},
+                                            {"kernel", "kernel.name"},
+                                            {"machine", "machine.name"}};
     for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
         if (strcmp(key, shorts[i][0]) == 0) return shorts[i][1];
     return key;
 }
 
-/* A row that scenarios and --set may touch: not what the plan fills in itself, nor a machine's title. */
+/* A row that scenarios and --set may touch: not what the plan fills in itself, nor a machine's
+ * title. */
 static const struct field *settable(const char *key, const struct field_table **table)
 {
     const struct field *f = field_find_full(key, table);
@@ -35,7 +39,8 @@ bool setting_takes_maps(const char *key)
 {
     const struct field_table *t;
     const struct field *f = field_find_full(key, &t);
-    const int row = f == NULL ? field_find(&machine_table, key) : -1; /* machine files name it without "machine." */
+    const int row = f == NULL ? field_find(&machine_table, key)
+                              : -1; /* machine files name it without "machine." */
     if (row >= 0) f = &machine_table.field[row];
     return f != NULL && f->kind == FIELD_SEGMENTS;
 }
@@ -48,18 +53,21 @@ bool setting_is_group(const char *key)
     for (int i = 0; i < ntable; i++) {
         size_t prefix = strlen(tables[i]->prefix);
         if (prefix > 0 && strcmp(tables[i]->prefix, key) == 0) return true;
-        bool below = prefix == 0 || (strncmp(key, tables[i]->prefix, prefix) == 0 && key[prefix] == '.');
+        bool below =
+            prefix == 0 || (strncmp(key, tables[i]->prefix, prefix) == 0 && key[prefix] == '.');
         const char *rest = prefix == 0 ? key : key + prefix + 1;
         size_t n = prefix == 0 ? length : length - prefix - 1;
         for (int j = 0; below && j < tables[i]->nfield; j++)
-            if (strncmp(tables[i]->field[j].key, rest, n) == 0 && tables[i]->field[j].key[n] == '.') return true;
+            if (strncmp(tables[i]->field[j].key, rest, n) == 0 && tables[i]->field[j].key[n] == '.')
+                return true;
     }
     return false;
 }
 
 static bool make_number(struct setting *s, struct err *e)
 {
-    static const struct field count = {.key = "n_over_p", .kind = FIELD_INT, .min = 1, .max = 1 << 20};
+    static const struct field count = {
+        .key = "n_over_p", .kind = FIELD_INT, .min = 1, .max = 1 << 20};
     char why[256];
     if (field_set(&count, &s->number, s->text, NULL, why, (int)sizeof why)) return true;
     return err_set_at(e, ERR_DATA, s->file, s->line, "%s: '%.80s': %s", s->key, s->text, why);
@@ -71,31 +79,35 @@ static const char tolerance_word[] = "auto-tolerance";
 static const char *tolerance_of(const struct setting *s)
 {
     const size_t n = sizeof tolerance_word - 1;
-    if (strcmp(s->key, "machine.network.level") != 0 || strncmp(s->text, tolerance_word, n) != 0) return NULL;
+    if (strcmp(s->key, "machine.network.level") != 0 || strncmp(s->text, tolerance_word, n) != 0)
+        return NULL;
     const char *rest = s->text + n + strspn(s->text + n, " ");
     return rest > s->text + n && *rest ? rest : NULL;
 }
 
-bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,
-                  struct err *e)
+bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line,
+                  struct arena *a, struct err *e)
 {
     struct run_spec trial;
     char why[512];
     *s = (struct setting){.key = setting_key(key), .text = text, .file = file, .line = line};
     if (strcmp(s->key, "machine.name") == 0) return s->kind = SETTING_MACHINE, true;
     if (strcmp(s->key, "n_over_p") == 0) return s->kind = SETTING_N_OVER_P, make_number(s, e);
-    if (strcmp(s->key, "ranks") == 0 && strcmp(text, "n") == 0) return s->kind = SETTING_RANKS_ARE_N, true;
+    if (strcmp(s->key, "ranks") == 0 && strcmp(text, "n") == 0)
+        return s->kind = SETTING_RANKS_ARE_N, true;
     const char *tolerance = tolerance_of(s);
     if (tolerance != NULL) {
         struct setting *also = TAKE(a, 1, struct setting);
-        if (!setting_make(also, "machine.network.tolerance", tolerance, file, line, a, e)) return false;
+        if (!setting_make(also, "machine.network.tolerance", tolerance, file, line, a, e))
+            return false;
         s->also = also;
         s->text = text = tolerance_word;
     }
     s->field = settable(s->key, &s->table);
     if (s->field == NULL) return setting_unknown("", key, file, line, e);
     struct arena_mark mark = arena_mark(a);
-    bool fine = field_set(s->field, (char *)&trial + s->table->offset, text, a, why, (int)sizeof why);
+    bool fine =
+        field_set(s->field, (char *)&trial + s->table->offset, text, a, why, (int)sizeof why);
     arena_release(a, mark);
     return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
 }
@@ -104,7 +116,8 @@ void setting_apply(const struct setting *s, struct run_spec *run, struct arena *
 {
     char why[512];
     if (s->kind == SETTING_FIELD)
-        CHECK(field_set(s->field, (char *)run + s->table->offset, s->text, a, why, (int)sizeof why));
+        CHECK(
+            field_set(s->field, (char *)run + s->table->offset, s->text, a, why, (int)sizeof why));
     if (s->also != NULL) setting_apply(s->also, run, a);
 }
 
@@ -115,12 +128,13 @@ static int candidates(const char *group, char name[][KEY_LENGTH], const char **l
     int n = 0, ntable;
     size_t length = strlen(group);
     const struct field_table *const *tables = field_tables(&ntable);
-    for (size_t i = 0; length == 0 && i < sizeof top / sizeof *top; i++) snprintf(name[n++], KEY_LENGTH, "%s", top[i]);
+    for (size_t i = 0; length == 0 && i < sizeof top / sizeof *top; i++)
+        snprintf(name[n++], KEY_LENGTH, "%s", top[i]);
     for (int i = 0; i < ntable; i++) {
         for (int j = 0; j < tables[i]->nfield && n < MAX_CANDIDATES; j++) {
             char full[KEY_LENGTH];
-            snprintf(full, sizeof full, "%s%s%s", tables[i]->prefix, tables[i]->prefix[0] ? "." : "",
-                     tables[i]->field[j].key);
+            snprintf(full, sizeof full, "%s%s%s", tables[i]->prefix,
+                     tables[i]->prefix[0] ? "." : "", tables[i]->field[j].key);
             if (length > 0 && (strncmp(full, group, length) != 0 || full[length] != '.')) continue;
             snprintf(name[n], KEY_LENGTH, "%s", full + length + (length > 0));
             if (length > 0) name[n][strcspn(name[n], ".")] = '\0';
@@ -139,20 +153,24 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     int n = candidates(group, name, list);
     const char *near = text_nearest(key, list, n);
     if (near != NULL && strcmp(near, key) == 0)
-        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s' here: it cannot be set", key);
+        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s' here: it cannot be set",
+                          key);
     if (group[0] != '\0') snprintf(in, sizeof in, " in '%.240s'", group);
     if (near != NULL)
-        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?", key, in, near);
+        return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?",
+                          key, in, near);
     struct text all = {0};
-    for (int i = 0; i < n && group[0] != '\0'; i++) text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
+    for (int i = 0; i < n && group[0] != '\0'; i++)
+        text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
     err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s%s", key, in,
-               all.s != NULL ? all.s : "; expected ranks, seed, record.*, machine.*, model.* or kernel.*");
+               all.s != NULL ? all.s : "; expected ranks, seed, record.*, machine.*, model.* or "
+                                       "kernel.*");
     text_free(&all);
     return false;
 }
 
-const char *setting_value(const char *key, const struct yaml_node *leaf, const char *file, struct arena *a,
-                          struct err *e)
+const char *setting_value(const char *key, const struct yaml_node *leaf, const char *file,
+                          struct arena *a, struct err *e)
 {
     const struct yaml_node *value = leaf;
     if (leaf->kind == YAML_MAPPING) value = yaml_node_child(leaf, "value");
@@ -160,29 +178,36 @@ const char *setting_value(const char *key, const struct yaml_node *leaf, const c
     if (maps && value->kind == YAML_SEQUENCE && setting_takes_maps(key)) {
         const char *text = yaml_node_flow_maps(value, a);
         if (text == NULL)
-            err_set_at(e, ERR_DATA, file, leaf->line,
-                       "%s: expected a list of mappings such as '- {from: 0 B, send.overhead: 1 us}'", key);
+            err_set_at(
+                e, ERR_DATA, file, leaf->line,
+                "%s: expected a list of mappings such as '- {from: 0 B, send.overhead: 1 us}'",
+                key);
         return text;
     }
     if (value != NULL && value->kind != YAML_MAPPING) return yaml_node_flow(value, key, file, a, e);
-    err_set_at(e, ERR_DATA, file, leaf->line, "%s: expected a value or {value: ..., class: ..., source: ...}", key);
+    err_set_at(e, ERR_DATA, file, leaf->line,
+               "%s: expected a value or {value: ..., class: ..., source: ...}", key);
     return NULL;
 }
 
-bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,
-                  void *context, struct arena *a, struct err *e)
+bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file,
+                  setting_leaf_fn *leaf, void *context, struct arena *a, struct err *e)
 {
     char key[KEY_LENGTH];
     for (const struct yaml_node *n = mapping->child; n != NULL; n = n->next) {
-        int length = snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
+        int length =
+            snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
         if (length >= (int)sizeof key) return setting_unknown(prefix, n->key, file, n->line, e);
-        bool may_be_short = prefix[0] == '\0' && (n->kind != YAML_MAPPING || !setting_is_group(key));
+        bool may_be_short =
+            prefix[0] == '\0' && (n->kind != YAML_MAPPING || !setting_is_group(key));
         const char *full = may_be_short ? setting_key(key) : key;
         bool ok;
-        if (setting_is_key(full)) ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
+        if (setting_is_key(full))
+            ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
         else if (!setting_is_group(key)) ok = setting_unknown(prefix, n->key, file, n->line, e);
         else if (n->kind != YAML_MAPPING)
-            ok = err_set_at(e, ERR_DATA, file, n->line, "'%s' is a group of settings; expected keys below it", key);
+            ok = err_set_at(e, ERR_DATA, file, n->line,
+                            "'%s' is a group of settings; expected keys below it", key);
         else ok = setting_walk(n, key, file, leaf, context, a, e);
         if (!ok) return false;
     }

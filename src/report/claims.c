@@ -9,8 +9,7 @@
 #include "base/check.h"
 #include "base/text.h"
 
-/* --- the files -----------------------------------------------------------------------------------------------------
- */
+/* --- the files -------------------------------------------------------------------------------- */
 
 static bool is_claim_file(const char *name)
 {
@@ -69,14 +68,16 @@ static bool explore_lines(struct claim_rule *r, struct arena *a, const char *pat
 {
     for (const char *at = r->sql, *line; (line = header_line(a, at, "explore")) != NULL;) {
         if (r->nexplore == CLAIM_MOST_EXPLORED)
-            return err_set_at(e, ERR_DATA, path, 1, "more than %d lines -- explore:", CLAIM_MOST_EXPLORED);
+            return err_set_at(e, ERR_DATA, path, 1,
+                              "more than %d lines -- explore:", CLAIM_MOST_EXPLORED);
         r->explore[r->nexplore++] = line;
         at = strstr(at, "-- explore: ") + 1;
     }
     return true;
 }
 
-static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder, const char *file, struct err *e)
+static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder, const char *file,
+                      struct err *e)
 {
     struct text path = {0}, sql = {0};
     text_add(&path, "%s/%s", folder, file);
@@ -86,8 +87,9 @@ static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder,
         id[strlen(id) - 4] = '\0';
         *r = (struct claim_rule){.id = id, .sql = arena_text(a, sql.s)};
         if (!read_headers(r, a))
-            ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, unit:, designated:, "
-                                                    "judged:, points: and needs: lines");
+            ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, "
+                                                    "unit:, designated:, judged:, points: and "
+                                                    "needs: lines");
         r->never = header_line(a, r->sql, "never");
         ok = ok && explore_lines(r, a, path.s, e);
     }
@@ -124,8 +126,7 @@ void claims_free(struct claim_rules *c)
     *c = (struct claim_rules){0};
 }
 
-/* --- judging --------------------------------------------------------------------------------------------------------
- */
+/* --- judging ---------------------------------------------------------------------------------- */
 
 struct judging {
     const struct claim_rule *rule;
@@ -136,15 +137,19 @@ struct judging {
 
 static struct store_value as_real(struct store_value v)
 {
-    return v.kind == STORE_INT ? store_real((double)v.integer) : v.kind == STORE_REAL ? v : store_null();
+    return v.kind == STORE_INT    ? store_real((double)v.integer)
+           : v.kind == STORE_REAL ? v
+                                  : store_null();
 }
 
-static bool judge_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool judge_row(void *context, int ncolumn, const char *const *name,
+                      const struct store_value *value)
 {
     struct judging *g = context;
     (void)name;
     if (ncolumn < 6 || ncolumn > 7 || value[0].kind != STORE_TEXT)
-        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, missing, note, margin)",
+        return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, "
+                                       "missing, note, margin)",
                        g->rule->id);
     bool whole = value[4].kind != STORE_TEXT;
     struct store_value margin = whole && ncolumn == 7 ? as_real(value[6]) : store_null();
@@ -159,17 +164,17 @@ static bool judge_row(void *context, int ncolumn, const char *const *name, const
     return g->tell(g->context, g->rule, &j);
 }
 
-bool claims_judge(const struct claim_rule *rule, struct store *s, const char *admitted, judgement_fn *tell,
-                  void *context, struct err *e)
+bool claims_judge(const struct claim_rule *rule, struct store *s, const char *admitted,
+                  judgement_fn *tell, void *context, struct err *e)
 {
     struct judging g = {rule, tell, context, e};
     bool asks = strstr(rule->sql, "?1") != NULL;
-    if (!store_query(s, rule->sql, asks ? 1 : 0, &admitted, NULL, judge_row, &g, e)) return err_in(e, rule->id);
+    if (!store_query(s, rule->sql, asks ? 1 : 0, &admitted, NULL, judge_row, &g, e))
+        return err_in(e, rule->id);
     return e->kind == ERR_NONE;
 }
 
-/* --- samples --------------------------------------------------------------------------------------------------------
- */
+/* --- samples ---------------------------------------------------------------------------------- */
 
 struct sampling {
     struct store *into;
@@ -181,12 +186,13 @@ static bool keep_sample(void *context, const struct claim_rule *rule, const stru
 {
     struct sampling *p = context;
     static const char *const name[] = {"id", "variant", "sample", "value", "holds"};
-    const struct store_value value[] = {store_text(rule->id), store_text(j->variant), store_int(p->sample), j->value,
-                                        j->holds};
+    const struct store_value value[] = {store_text(rule->id), store_text(j->variant),
+                                        store_int(p->sample), j->value, j->holds};
     return store_insert(p->into, "claim_sample", 5, name, value, p->e);
 }
 
-bool claims_sample(const struct claim_rules *c, struct store *from, struct store *into, int sample, struct err *e)
+bool claims_sample(const struct claim_rules *c, struct store *from, struct store *into, int sample,
+                   struct err *e)
 {
     struct sampling p = {into, sample, e};
     if (!store_begin(into, e)) return false;
@@ -198,8 +204,7 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
     return store_commit(into, e);
 }
 
-/* --- verdicts -------------------------------------------------------------------------------------------------------
- */
+/* --- verdicts --------------------------------------------------------------------------------- */
 
 /* One claim in the making: its designated row, and where else it holds. */
 struct deciding {
@@ -218,7 +223,8 @@ struct spread {
     struct store_value count, share, low, high;
 };
 
-static bool take_spread(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool take_spread(void *context, int ncolumn, const char *const *name,
+                        const struct store_value *value)
 {
     struct spread *p = context;
     (void)ncolumn;
@@ -232,17 +238,19 @@ static const char *verdict_of(struct store_value holds)
     return holds.kind == STORE_NULL ? "not-testable" : holds.integer ? "pass" : "fail";
 }
 
-static bool put_claim(struct deciding *d, const struct claim_rule *rule, const char *variant, const struct judgement *j,
-                      const char *note)
+static bool put_claim(struct deciding *d, const struct claim_rule *rule, const char *variant,
+                      const struct judgement *j, const char *note)
 {
-    static const char *const name[] = {"id",        "variant",    "statement", "test",  "unit",    "value", "threshold",
-                                       "value_low", "value_high", "samples",   "share", "verdict", "judged",
-                                       "testable", "holding", "note"};
+    static const char *const name[] = {"id",         "variant",  "statement", "test",
+                                       "unit",       "value",    "threshold", "value_low",
+                                       "value_high", "samples",  "share",     "verdict",
+                                       "judged",     "testable", "holding",   "note"};
     bool claim = *variant == '\0';
     const char *const key[] = {rule->id, *variant ? variant : rule->designated};
     struct spread p = {store_int(0), store_null(), store_null(), store_null()};
     if (!store_query(d->s,
-                     "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample WHERE id = ?1 "
+                     "SELECT count(*), avg(holds), min(value), max(value) FROM claim_sample"
+                     " WHERE id = ?1 "
                      "AND variant = ?2",
                      2, key, NULL, take_spread, &p, d->e))
         return false;
@@ -265,13 +273,16 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
     return store_insert(d->s, "claim", 16, name, value, d->e);
 }
 
-/* Why a variant cannot be told: the runs that are missing, what makes them, and those that do not count. */
-static void add_missing(const struct deciding *d, const struct claim_rule *rule, const char *missing, struct text *note)
+/* Why a variant cannot be told: the runs that are missing, what makes them, and those that do not
+ * count. */
+static void add_missing(const struct deciding *d, const struct claim_rule *rule,
+                        const char *missing, struct text *note)
 {
-    text_add(note, "not testable, runs are missing: %s; `%s -o %s` makes them", missing, rule->needs,
-             store_path(d->s));
+    text_add(note, "not testable, runs are missing: %s; `%s -o %s` makes them", missing,
+             rule->needs, store_path(d->s));
     if (d->changed > 0 && !d->what_if)
-        text_add(note, "; %lld runs on changed machines do not count (--what-if counts them)", (long long)d->changed);
+        text_add(note, "; %lld runs on changed machines do not count (--what-if counts them)",
+                 (long long)d->changed);
 }
 
 static bool decide_row(void *context, const struct claim_rule *rule, const struct judgement *j)
@@ -311,7 +322,8 @@ static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, str
     if (other->length) text_add(note, "; %s: %s", holds ? "fails for" : "holds for", other->s);
 }
 
-static bool decide(const struct claim_rule *rule, struct store *s, bool what_if, int64_t changed, struct err *e)
+static bool decide(const struct claim_rule *rule, struct store *s, bool what_if, int64_t changed,
+                   struct err *e)
 {
     struct deciding d = {
         .s = s, .e = e, .what_if = what_if, .changed = changed,
@@ -328,7 +340,8 @@ static bool decide(const struct claim_rule *rule, struct store *s, bool what_if,
     return ok;
 }
 
-static bool take_count(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool take_count(void *context, int ncolumn, const char *const *name,
+                       const struct store_value *value)
 {
     (void)ncolumn;
     (void)name;

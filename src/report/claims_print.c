@@ -7,22 +7,25 @@ static const char order[] = " ORDER BY substr(id, 1, 1) <> 'C', length(id), id, 
 
 static const char table_sql[] =
     "SELECT id, verdict, iif(value IS NULL, '-', format('%.4g', value)) AS value, threshold, unit,"
-    " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high), '-') AS range,"
+    " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high),"
+    " '-') AS range,"
     " iif(share IS NULL, '-', format('%d %%', round(100 * share))) AS share,"
     " iif(testable > 0, holding || ' of ' || testable, '-') AS \"holds in\", statement"
     " FROM claim WHERE variant = '' ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
 
 /* How each verdict came about. */
-static const char reason_sql[] = "SELECT id, verdict, judged, test, note FROM claim WHERE variant = ''"
+static const char reason_sql[] = "SELECT id, verdict, judged, test, note FROM claim"
+                                 " WHERE variant = ''"
                                  " ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
 
-static bool tell_reason(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool tell_reason(void *context, int ncolumn, const char *const *name,
+                        const struct store_value *value)
 {
     FILE *out = context;
     (void)ncolumn;
     (void)name;
-    fprintf(out, "\n%s %s\n  test:   %s\n  judged: %s\n  found:  %s\n", value[0].text, value[1].text, value[3].text,
-            value[2].text, value[4].text);
+    fprintf(out, "\n%s %s\n  test:   %s\n  judged: %s\n  found:  %s\n", value[0].text,
+            value[1].text, value[3].text, value[2].text, value[4].text);
     return true;
 }
 
@@ -30,7 +33,8 @@ static bool tell_reason(void *context, int ncolumn, const char *const *name, con
 struct listing {
     struct json j;
     bool open;
-    char verdict[16]; /* of the claim that is open: its key comes after the variants, as keys are sorted */
+    char verdict[16]; /* of the claim that is open: its key comes after the variants, as keys are
+                         sorted */
 };
 
 static void close_claim(struct listing *l)
@@ -45,18 +49,21 @@ static void close_claim(struct listing *l)
 /* Columns of json_sql; a variant does not repeat what all variants of a claim share. */
 enum claim_column { COLUMN_JUDGED = 2, COLUMN_STATEMENT = 6, COLUMN_TESTABLE = 8, COLUMN_UNIT = 10,
               COLUMN_VARIANT = 14, COLUMN_VERDICT = 15 };
-static const char json_sql[] = "SELECT holding, id, judged, note, samples, share, statement, test, testable, threshold,"
+static const char json_sql[] = "SELECT holding, id, judged, note, samples, share, statement, test,"
+                               " testable, threshold,"
                                " unit, value, value_high,"
                                " value_low, variant, verdict FROM claim";
 
-static bool json_claim(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool json_claim(void *context, int ncolumn, const char *const *name,
+                       const struct store_value *value)
 {
     struct listing *l = context;
     bool own = *value[COLUMN_VARIANT].text == '\0';
     if (own) close_claim(l);
     json_object(&l->j);
     for (int i = 0; i < ncolumn; i++) {
-        bool shared = i <= COLUMN_JUDGED || (i >= COLUMN_STATEMENT && i <= COLUMN_TESTABLE) || i == COLUMN_UNIT;
+        bool shared = i <= COLUMN_JUDGED || (i >= COLUMN_STATEMENT && i <= COLUMN_TESTABLE) ||
+                      i == COLUMN_UNIT;
         if (own ? i >= COLUMN_VARIANT : shared) continue;
         json_key(&l->j, name[i]);
         report_value_json(&l->j, &value[i]);

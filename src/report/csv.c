@@ -48,7 +48,8 @@ static void plain_cell(FILE *out, const char *s, bool last)
     free(copy);
 }
 
-static bool header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool header(void *context, int ncolumn, const char *const *name,
+                   const struct store_value *value)
 {
     struct writer *w = context;
     (void)value;
@@ -56,12 +57,14 @@ static bool header(void *context, int ncolumn, const char *const *name, const st
     return true;
 }
 
-static bool row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool row(void *context, int ncolumn, const char *const *name,
+                const struct store_value *value)
 {
     struct writer *w = context;
     for (int i = 0; i < ncolumn; i++) {
         char buffer[40] = "";
-        if (value[i].kind == STORE_INT) snprintf(buffer, sizeof buffer, "%lld", (long long)value[i].integer);
+        if (value[i].kind == STORE_INT)
+            snprintf(buffer, sizeof buffer, "%lld", (long long)value[i].integer);
         else if (value[i].kind == STORE_REAL) text_real(buffer, value[i].real);
         if (value[i].kind == STORE_TEXT) plain_cell(w->out, value[i].text, i + 1 == ncolumn);
         else csv_cell(w->out, buffer, i + 1 == ncolumn);
@@ -73,7 +76,8 @@ static bool row(void *context, int ncolumn, const char *const *name, const struc
 }
 
 bool csv_write(struct store *s, const char *sql, int nparam, const char *const *param, FILE *out,
-               void (*run_id)(void *context, int64_t id), void *context, int64_t *nrow, struct err *e)
+               void (*run_id)(void *context, int64_t id), void *context, int64_t *nrow,
+               struct err *e)
 {
     struct writer w = {out, 0, run_id, context};
     bool ok = store_query(s, sql, nparam, param, header, row, &w, e);

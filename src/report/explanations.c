@@ -7,7 +7,8 @@
 
 #define IN_ORDER " ORDER BY subject = 'together', length(subject), subject, goal = 'any'"
 
-static bool tell_answer(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool tell_answer(void *context, int ncolumn, const char *const *name,
+                        const char *const *value)
 {
     struct page *p = context;
     struct text heading = {0};
@@ -20,25 +21,28 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name, con
         struct text figure = {0};
         text_add(&figure, "explain-%s", value[0]);
         page_figure(p, figure.s,
-                    "Where the claim holds in the plane of the two most important parameters, with the "
-                    "others as in the "
-                    "answer. Each cell is a simulated and judged point.");
+                    "Where the claim holds in the plane of the two most important parameters, with "
+                    "the others as in the answer. Each cell is a simulated and judged point.");
         text_free(&figure);
     }
     text_free(&heading);
     return true;
 }
 
-static const char sentences[] = "SELECT a.subject, group_concat(a.sentence, ' '),"
-                                " (SELECT statement FROM claim WHERE id = a.subject AND variant = ''),"
-                                " (SELECT 1 FROM explain_map m WHERE m.subject = a.subject LIMIT 1)"
-                                " FROM (SELECT * FROM explain_answer" IN_ORDER ") a GROUP BY a.subject"
-                                " ORDER BY a.subject = 'together', length(a.subject), a.subject";
+static const char sentences[] =
+    "SELECT a.subject, group_concat(a.sentence, ' '),"
+    " (SELECT statement FROM claim WHERE id = a.subject"
+    " AND variant = ''),"
+    " (SELECT 1 FROM explain_map m WHERE m.subject = a.subject LIMIT 1)"
+    " FROM (SELECT * FROM explain_answer" IN_ORDER ") a GROUP BY a.subject"
+    " ORDER BY a.subject = 'together', length(a.subject), a.subject";
 
 static const char table_sql[] =
-    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict, variant,"
+    "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict,"
+    " variant,"
     " iif(distance IS NULL, '', format('%.3g', exp(distance))) AS factor, settings, points,"
-    " CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM explain_answer" IN_ORDER;
+    " CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM "
+    "explain_answer" IN_ORDER;
 
 bool explanations_section(struct page *p, struct store *s, struct err *e)
 {
@@ -46,21 +50,22 @@ bool explanations_section(struct page *p, struct store *s, struct err *e)
     if (!findings_any(s, "SELECT 1 FROM explain_answer LIMIT 1", &any, e)) return false;
     if (!any) return true;
     page_heading(p, 2, "Changes under which failed claims hold");
-    page_paragraph(p, "The paper does not state the flop rate of its code, the cost of a call or a message, "
-                      "how its serial "
-                      "code was written, or who else used the machine. For each failed claim these parameters are "
-                      "varied to find the smallest change under which the claim holds. The size of a change is the sum "
-                      "of |ln(value / nominal)|, that is, the product of all factors; other operators or another "
-                      "serial baseline count as a factor of 2 each. Every point is simulated and judged by "
-                      "the query of "
-                      "the claim. Factors range from 1/10 to 10, traffic of others up to 90 %, variation of computing "
-                      "times up to 100 %. If no point was found, the claim may still hold at a point that was not "
-                      "tried, unless a reason is given why it cannot.");
+    page_paragraph(p, "The paper does not state the flop rate of its code, the cost of a call or a "
+                      "message, how its serial code was written, or who else used the machine. For "
+                      "each failed claim these parameters are varied to find the smallest change "
+                      "under which the claim holds. The size of a change is the sum of |ln(value / "
+                      "nominal)|, that is, the product of all factors; other operators or another "
+                      "serial baseline count as a factor of 2 each. Every point is simulated and "
+                      "judged by the query of the claim. Factors range from 1/10 to 10, traffic of "
+                      "others up to 90 %, variation of computing times up to 100 %. If no point "
+                      "was found, the claim may still hold at a point that was not tried, unless a "
+                      "reason is given why it cannot.");
     return store_select(s, sentences, 0, NULL, tell_answer, p, e) &&
            page_table(p, s, table_sql, 0, NULL, "No search was made.", e);
 }
 
-static bool print_answer(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool print_answer(void *context, int ncolumn, const char *const *name,
+                         const char *const *value)
 {
     (void)ncolumn;
     (void)name;
@@ -70,6 +75,8 @@ static bool print_answer(void *context, int ncolumn, const char *const *name, co
 
 bool explanations_print(struct store *s, bool json, FILE *out, struct err *e)
 {
-    if (json) return report_query(s, "SELECT * FROM explain_answer" IN_ORDER, 0, NULL, true, out, e);
-    return store_select(s, "SELECT sentence FROM explain_answer" IN_ORDER, 0, NULL, print_answer, out, e);
+    if (json)
+        return report_query(s, "SELECT * FROM explain_answer" IN_ORDER, 0, NULL, true, out, e);
+    return store_select(s, "SELECT sentence FROM explain_answer" IN_ORDER, 0, NULL, print_answer,
+                        out, e);
 }

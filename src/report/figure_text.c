@@ -1,4 +1,5 @@
-/* figure_text.c - what the description of a figure says of itself, and how texts become names of files. */
+/* figure_text.c - what the description of a figure says of itself, and how texts become names of
+ * files. */
 #include "report/figure_text.h"
 
 #include <ctype.h>
@@ -27,7 +28,8 @@ const char *figure_line(const char *sql, const char *mark, char *word, size_t si
 
 enum { TITLE_LENGTH = 110 };
 
-/* Where a sentence ends in [line, end): at a full stop that is none of several; NULL when it does not. */
+/* Where a sentence ends in [line, end): at a full stop that is none of several; NULL when it does
+ * not. */
 static const char *sentence_end(const char *line, const char *end)
 {
     for (const char *c = line; c < end; c++)
@@ -51,19 +53,23 @@ static void shorten(struct text *title)
     if (!clause) text_add(title, " ...");
 }
 
-/* The comment that `sql` begins with, up to the end of its first sentence or the line of what it needs. */
+/* The comment that `sql` begins with, up to the end of its first sentence or the line of what it
+ * needs. */
 static void first_sentence(const char *sql, struct text *out)
 {
-    for (const char *line = sql; strncmp(line, "-- ", 3) == 0 && strncmp(line, "-- needs: ", 10) != 0 &&
-                             strncmp(line, "-- each: ", 9) != 0;) {
+    for (const char *line = sql; strncmp(line, "-- ", 3) == 0 &&
+                                 strncmp(line, "-- needs: ", 10) != 0 &&
+                                 strncmp(line, "-- each: ", 9) != 0;) {
         const char *end = strchrnul(line, '\n'), *stop = sentence_end(line, end);
-        text_add(out, "%s%.*s", out->length > 0 ? " " : "", (int)((stop ? stop : end) - line - 3), line + 3);
+        text_add(out, "%s%.*s", out->length > 0 ? " " : "", (int)((stop ? stop : end) - line - 3),
+                 line + 3);
         if (stop || !*end) return;
         line = end + 1;
     }
 }
 
-void report_figure_about(const char *data_dir, const char *name, struct text *title, struct text *needs)
+void report_figure_about(const char *data_dir, const char *name, struct text *title,
+                         struct text *needs)
 {
     struct text path = {0}, sql = {0};
     char line[200] = "";
@@ -81,10 +87,12 @@ void report_figure_about(const char *data_dir, const char *name, struct text *ti
     text_free(&sql);
 }
 
-/* Letters of any alphabet, digits and signs that mean nothing in a path, in gnuplot and in a shell's quotes. */
+/* Letters of any alphabet, digits and signs that mean nothing in a path, in gnuplot and in a
+ * shell's quotes. */
 static bool harmless(char c)
 {
-    return (unsigned char)c >= 0x80 || isalnum((unsigned char)c) || strchr(" '%-_.,+=()", c) != NULL;
+    return (unsigned char)c >= 0x80 || isalnum((unsigned char)c) ||
+           strchr(" '%-_.,+=()", c) != NULL;
 }
 
 enum { DRAWING_NAME_LENGTH = 120 };
@@ -97,7 +105,8 @@ char *figure_file_name(const char *figure, const char *s)
     bool changed = strncmp(s, figure, n) != 0 || (s[n] != '\0' && s[n] != '-');
     if (changed) text_add(&name, "%s-", figure);
     for (const char *c = s; *c && name.length < DRAWING_NAME_LENGTH; c++) {
-        bool keep = harmless(*c) && (*c != '\'' || c[1] != '\''); /* gnuplot misreads a row of quotes */
+        bool keep =
+            harmless(*c) && (*c != '\'' || c[1] != '\''); /* gnuplot misreads a row of quotes */
         text_add_bytes(&name, keep ? c : "_", 1);
         changed = changed || !keep;
     }

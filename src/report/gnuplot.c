@@ -54,12 +54,14 @@ bool gnuplot_run(const char *dir, const char *file, struct err *e)
 {
     int ends[2], status = 0;
     pid_t child;
-    if (pipe2(ends, O_CLOEXEC) != 0) return err_set(e, ERR_INTERNAL, "no pipe for gnuplot: %s", strerror(errno));
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        return err_set(e, ERR_INTERNAL, "no pipe for gnuplot: %s", strerror(errno));
     int code = start(dir, file, ends[1], &child);
     close(ends[1]);
     if (code != 0) {
         close(ends[0]);
-        return err_set(e, ERR_UNAVAILABLE, "%s: %s; the data and the script are in %s: install gnuplot (Debian: "
+        return err_set(e, ERR_UNAVAILABLE, "%s: %s; the data and the script are in %s: install "
+                                           "gnuplot (Debian: "
                        "gnuplot-nox) and run it there on %s", program(), strerror(code), dir, file);
     }
     struct text complaints = {0};
@@ -67,7 +69,9 @@ bool gnuplot_run(const char *dir, const char *file, struct err *e)
     close(ends[0]);
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     bool ok = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (!ok) err_set(e, ERR_UNAVAILABLE, "%s could not draw %s/%s: %s", program(), dir, file, reason(&complaints));
+    if (!ok)
+        err_set(e, ERR_UNAVAILABLE, "%s could not draw %s/%s: %s", program(), dir, file,
+                reason(&complaints));
     text_free(&complaints);
     return ok;
 }

@@ -14,7 +14,8 @@ static bool read_query(const char *data_dir, const char *name, struct text *sql,
     return ok;
 }
 
-static bool tell_paragraph(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool tell_paragraph(void *context, int ncolumn, const char *const *name,
+                           const char *const *value)
 {
     (void)ncolumn;
     (void)name;
@@ -22,10 +23,12 @@ static bool tell_paragraph(void *context, int ncolumn, const char *const *name, 
     return true;
 }
 
-static bool put_table(struct page *p, struct store *s, const char *data_dir, const char *name, struct err *e)
+static bool put_table(struct page *p, struct store *s, const char *data_dir, const char *name,
+                      struct err *e)
 {
     struct text sql = {0};
-    bool ok = read_query(data_dir, name, &sql, e) && page_table(p, s, sql.s, 0, NULL, "Nothing.", e);
+    bool ok =
+        read_query(data_dir, name, &sql, e) && page_table(p, s, sql.s, 0, NULL, "Nothing.", e);
     text_free(&sql);
     return ok;
 }
@@ -34,7 +37,8 @@ bool opening_abstract(struct page *p, struct store *s, const char *data_dir, str
 {
     struct text sql = {0};
     page_heading(p, 2, "Abstract");
-    bool ok = read_query(data_dir, "abstract", &sql, e) && store_select(s, sql.s, 0, NULL, tell_paragraph, p, e);
+    bool ok = read_query(data_dir, "abstract", &sql, e) &&
+              store_select(s, sql.s, 0, NULL, tell_paragraph, p, e);
     text_free(&sql);
     return ok && put_table(p, s, data_dir, "verdicts", e);
 }

@@ -12,19 +12,21 @@
 static const char style[] =
     "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n"
-    "body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1a1a1a; max-width: 62em; margin: 2em auto; "
-    "padding: 0 1em }\n"
-    "h1, h2, h3 { line-height: 1.25; font-weight: 600 } h2 { margin-top: 2.2em; border-bottom: 1px solid #ccc }\n"
-    "table { border-collapse: collapse; margin: 1em 0; font-size: 0.8em; display: block; overflow-x: auto }\n"
-    "th, td { text-align: left; vertical-align: top; padding: 0.25em 0.7em; border-bottom: 1px solid #ddd }\n"
-    "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: #b0401a; color: #fff "
-    "}\n"
+    "body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1a1a1a; max-width: 62em; "
+    "margin: 2em auto; padding: 0 1em }\n"
+    "h1, h2, h3 { line-height: 1.25; font-weight: 600 } h2 { margin-top: 2.2em; border-bottom: 1px "
+    "solid #ccc }\n"
+    "table { border-collapse: collapse; margin: 1em 0; font-size: 0.8em; display: block; "
+    "overflow-x: auto }\n"
+    "th, td { text-align: left; vertical-align: top; padding: 0.25em 0.7em; border-bottom: 1px "
+    "solid #ddd }\n"
+    "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: "
+    "#b0401a; color: #fff }\n"
     "td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }\n"
     "td.short, td.pass, td.fail { white-space: nowrap }\n"
     "nav ul { columns: 18em; padding-left: 1.2em }\n"
-    "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: 0.85em; color: #444 "
-    "}\n"
-    "</style>\n";
+    "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: "
+    "0.85em; color: #444 }\n</style>\n";
 
 static FILE *make_file(const char *folder, const char *name, const char *ending, struct err *e)
 {
@@ -56,8 +58,8 @@ static void escape_md(FILE *md, const char *s, bool cell)
     }
 }
 
-bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures,
-               struct err *e)
+bool page_open(struct page *p, const char *folder, const char *name, const char *title,
+               const char *figures, struct err *e)
 {
     *p = (struct page){.figures = figures};
     p->md = make_file(folder, name, "md", e);
@@ -72,7 +74,8 @@ bool page_open(struct page *p, const char *folder, const char *name, const char 
 }
 
 /* The file of a page with contents: their list, then what waited. */
-static FILE *join(FILE *front, FILE *waiting, char *const *rest, const size_t *size, const struct text *list)
+static FILE *join(FILE *front, FILE *waiting, char *const *rest, const size_t *size,
+                  const struct text *list)
 {
     CHECK(fclose(waiting) == 0); /* in memory */
     fputs(list->s ? list->s : "", front);
@@ -125,7 +128,8 @@ static void add_anchor(struct text *out, const char *heading)
     for (const char *c = heading; *c; c++) {
         char letter = (char)tolower((unsigned char)*c);
         if (letter == ' ') letter = '-';
-        if (isalnum((unsigned char)letter) || letter == '-' || letter == '_') text_add_bytes(out, &letter, 1);
+        if (isalnum((unsigned char)letter) || letter == '-' || letter == '_')
+            text_add_bytes(out, &letter, 1);
     }
 }
 
@@ -222,7 +226,8 @@ static void add_heading(struct page *p, int n, const char *const *name)
     page_row(p, true, n, words);
 }
 
-static bool add_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool add_row(void *context, int ncolumn, const char *const *name,
+                    const struct store_value *value)
 {
     struct page *p = context;
     char number[MOST_COLUMNS][40];
@@ -230,16 +235,20 @@ static bool add_row(void *context, int ncolumn, const char *const *name, const s
     if (ncolumn > MOST_COLUMNS) ncolumn = MOST_COLUMNS;
     if (!p->columns) add_heading(p, ncolumn, name);
     for (int i = 0; i < ncolumn; i++) {
-        cell[i] = value[i].kind == STORE_TEXT ? value[i].text : value[i].kind == STORE_NULL ? "" : number[i];
-        if (value[i].kind == STORE_INT) snprintf(number[i], sizeof number[i], "%lld", (long long)value[i].integer);
-        if (value[i].kind == STORE_REAL) snprintf(number[i], sizeof number[i], "%.4g", value[i].real);
+        cell[i] = value[i].kind == STORE_TEXT   ? value[i].text
+                  : value[i].kind == STORE_NULL ? ""
+                                                : number[i];
+        if (value[i].kind == STORE_INT)
+            snprintf(number[i], sizeof number[i], "%lld", (long long)value[i].integer);
+        if (value[i].kind == STORE_REAL)
+            snprintf(number[i], sizeof number[i], "%.4g", value[i].real);
     }
     page_row(p, false, ncolumn, cell);
     return true;
 }
 
-bool page_table(struct page *p, struct store *s, const char *sql, int nparam, const char *const *param,
-                const char *empty, struct err *e)
+bool page_table(struct page *p, struct store *s, const char *sql, int nparam,
+                const char *const *param, const char *empty, struct err *e)
 {
     p->columns = 0;
     bool ok = store_query(s, sql, nparam, param, NULL, add_row, p, e);
@@ -296,8 +305,8 @@ void page_figure(struct page *p, const char *name, const char *caption)
     } else {
         page_paragraph(p, caption);
         page_paragraph(
-            p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its data are in the CSV "
-               "file of the same name.");
+            p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its data "
+               "are in the CSV file of the same name.");
     }
     text_free(&path);
     text_free(&svg);

@@ -1,4 +1,5 @@
-/* report_document.c - the chapters of the report (report_document.h). Each number comes from a query. */
+/* report_document.c - the chapters of the report (report_document.h). Each number comes from a
+ * query. */
 #include "report/report_document.h"
 
 #include <stdlib.h>
@@ -24,10 +25,10 @@ static bool table(struct chapter *c, const char *sql, const char *empty)
     return page_table(c->page, c->d->store, sql, 0, NULL, empty, c->e);
 }
 
-/* --- what contradicts the paper ------------------------------------------------------------------------------------
- */
+/* --- what contradicts the paper --------------------------------------------------------------- */
 
-static bool tell_claim(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool tell_claim(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
 {
     struct chapter *c = context;
     struct text t = {0};
@@ -53,15 +54,18 @@ static bool contradictions(struct chapter *c)
 {
     page_heading(c->page, 2, "Where the model contradicts the paper");
     page_paragraph(c->page,
-                   "The paper gives no numbers for its figures, its machines were shared with other users, and its "
-                   "serial baseline is not fully specified. Each claim is therefore tested for every serial baseline, "
-                   "with structured and with dense operators. The variant closest to the text of the paper determines "
-                   "the verdict. \"Judged\" gives the reason for that variant, and the tolerance.");
+                   "The paper gives no numbers for its figures, its machines were shared with "
+                   "other users, and its serial baseline is not fully specified. Each claim is "
+                   "therefore tested for every serial baseline, with structured and with dense "
+                   "operators. The variant closest to the text of the paper determines the "
+                   "verdict. \"Judged\" gives the reason for that variant, and the tolerance.");
     return store_select(
         c->d->store,
         "SELECT id, statement, test, iif(value IS NULL, NULL, format('%.4g', value)), unit, note,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), NULL),"
-        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))), judged FROM claim WHERE variant = '' AND "
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
+        " NULL),"
+        " iif(share IS NULL, NULL, format('%d %%', round(100 * share))), judged FROM claim"
+        " WHERE variant = '' AND "
         "verdict = 'fail'" IN_ORDER,
         0, NULL, tell_claim, c, c->e);
 }
@@ -72,35 +76,38 @@ static bool estimates(struct chapter *c)
     text_add(&path, "%s/plots/estimates.sql", c->d->data_dir);
     page_heading(c->page, 2, "Analytic estimates, confirmed or refuted");
     page_paragraph(c->page,
-                   "The claims were estimated analytically before they were simulated. The table compares the two.");
+                   "The claims were estimated analytically before they were simulated. The table "
+                   "compares the two.");
     bool ok = text_read_file(&sql, path.s, c->e) && table(c, sql.s, "No claim has been judged.");
     text_free(&path);
     text_free(&sql);
     return ok;
 }
 
-/* --- all claims -----------------------------------------------------------------------------------------------------
- */
+/* --- all claims ------------------------------------------------------------------------------- */
 
 static bool claims(struct chapter *c)
 {
     page_heading(c->page, 2, "The claims");
     page_paragraph(c->page,
-                   "Share: the fraction of the samples in which a claim holds. Each sample draws all "
-                   "machine parameters "
-                   "that have a published range from log-uniform distributions and repeats the simulation, at fewer "
-                   "points than the study. A value over many points may therefore lie outside its range.");
+                   "Share: the fraction of the samples in which a claim holds. Each sample draws "
+                   "all machine parameters that have a published range from log-uniform "
+                   "distributions and repeats the simulation, at fewer points than the study. A "
+                   "value over many points may therefore lie outside its range.");
     return table(
         c,
-        "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold, unit,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
+        "SELECT id, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value, threshold,"
+        " unit,"
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
+        " '') AS range,"
         " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share,"
         " iif(testable > 0, holding || ' of ' || testable, '') AS holds_in_variants, test"
         " FROM claim WHERE variant = ''" IN_ORDER,
         "No claim has been judged.");
 }
 
-static bool tell_variants(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool tell_variants(void *context, int ncolumn, const char *const *name,
+                          const char *const *value)
 {
     struct chapter *c = context;
     struct text t = {0};
@@ -115,7 +122,8 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
     return page_table(
         c->page, c->d->store,
         "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
-        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high), '') AS range,"
+        " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
+        " '') AS range,"
         " iif(share IS NULL, '', format('%d %%', round(100 * share))) AS share, note FROM claim"
         " WHERE id = ?1 AND variant <> '' ORDER BY variant",
         1, value, "No run is stored for this claim.", c->e);
@@ -124,12 +132,13 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name, c
 static bool variants(struct chapter *c)
 {
     page_heading(c->page, 2, "Each claim for each baseline");
-    static const char sql[] = "SELECT id, statement, test, unit, judged FROM claim WHERE variant = ''" IN_ORDER;
-    return store_select(c->d->store, sql, 0, NULL, tell_variants, c, c->e) && c->e->kind == ERR_NONE;
+    static const char sql[] =
+        "SELECT id, statement, test, unit, judged FROM claim WHERE variant = ''" IN_ORDER;
+    return store_select(c->d->store, sql, 0, NULL, tell_variants, c, c->e) &&
+           c->e->kind == ERR_NONE;
 }
 
-/* --- figures --------------------------------------------------------------------------------------------------------
- */
+/* --- figures ---------------------------------------------------------------------------------- */
 
 /* The comment that opens NAME.sql, without its technical lines. */
 static void caption(const char *sql, struct text *out)
@@ -164,8 +173,7 @@ static bool figures(struct chapter *c)
     return true;
 }
 
-/* --- machines, accuracy, the rest -----------------------------------------------------------------------------------
- */
+/* --- machines, accuracy, the rest ------------------------------------------------------------- */
 
 static bool machines(struct chapter *c)
 {
@@ -173,8 +181,9 @@ static bool machines(struct chapter *c)
     if (!c->d->whole && c->d->nparameter == 0) return true;
     page_heading(c->page, 2, "The machines");
     page_paragraph(c->page,
-                   "Evidence: P published and checked in the source, PR published but quoted from memory, D derived, E "
-                   "estimated. The uncertain parameters are those with a range.");
+                   "Evidence: P published and checked in the source, PR published but quoted from "
+                   "memory, D derived, E estimated. The uncertain parameters are those with a "
+                   "range.");
     const char *machine = "";
     for (int i = 0; i < c->d->nparameter; i++) {
         const struct document_parameter *p = &c->d->parameter[i];
@@ -195,19 +204,23 @@ static bool numerics(struct chapter *c)
 {
     page_heading(c->page, 2, "Accuracy of the numerics");
     page_paragraph(c->page,
-                   "The simulated processors compute actual numbers. The result of each run is compared with that of a "
-                   "serial code. The errors are relative, and the largest of all runs.");
+                   "The simulated processors compute actual numbers. The result of each run is "
+                   "compared with that of a serial code. The errors are relative, and the largest "
+                   "of all runs.");
     if (!table(
             c,
-            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs, max(n) AS largest_n,"
-            " format('%.1e', max(relative_error)) AS largest_error, format('%.1e', max(tolerance)) AS "
+            "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs,"
+            " max(n) AS largest_n,"
+            " format('%.1e', max(relative_error)) AS largest_error,"
+            " format('%.1e', max(tolerance)) AS "
             "largest_tolerance,"
             " count(*) - sum(passed) AS failed FROM v_errors GROUP BY 1, 2, 3, 4, 5, 6",
             "No run is stored."))
         return false;
     page_paragraph(c->page,
-                   "All simulated time is accounted for, to the picosecond: computing, sending, receiving, waiting and "
-                   "contention of all ranks add up to P times the run time.");
+                   "All simulated time is accounted for, to the picosecond: computing, sending, "
+                   "receiving, waiting and contention of all ranks add up to P times the run "
+                   "time.");
     return table(c,
                  "SELECT count(*) AS runs, sum(difference_ps <> 0) AS runs_that_do_not_add_up,"
                  " max(abs(difference_ps)) AS largest_difference_ps FROM v_accounting",
@@ -217,23 +230,30 @@ static bool numerics(struct chapter *c)
 static bool left_out_of_runs(struct chapter *c)
 {
     return table(c,
-                 "SELECT 'failed runs' AS what, count(*) AS runs, ifnull(group_concat(DISTINCT status), "
+                 "SELECT 'failed runs' AS what, count(*) AS runs,"
+                 " ifnull(group_concat(DISTINCT status), "
                  "'') AS which"
                  "  FROM run WHERE status <> 'ok'"
                  " UNION ALL SELECT 'serial composite-body code: O(n^3), not run', count(*),"
                  "  iif(count(*) = 0, '', format('n from %d to %d', min(n), max(n))) FROM run r"
                  "  WHERE status = 'ok' AND kernel = 'dynamics'"
-                 "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id AND b.name LIKE '%crba')"
-                 " UNION ALL SELECT 'contention, level ' || level, count(*), group_concat(DISTINCT scenario) FROM run"
+                 "  AND NOT EXISTS (SELECT 1 FROM baseline b WHERE b.run_id = r.id"
+                 " AND b.name LIKE '%crba')"
+                 " UNION ALL SELECT 'contention, level ' || level, count(*),"
+                 " group_concat(DISTINCT scenario) FROM run"
                  "  WHERE level = 'loggp' GROUP BY level"
-                 " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' || level, count(*),"
+                 " UNION ALL SELECT 'packets and flits: messages hold whole links, level ' ||"
+                 " level, count(*),"
                  "  group_concat(DISTINCT scenario) FROM run WHERE level = 'link' GROUP BY level"
-                 " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not stored', count(*), "
+                 " UNION ALL SELECT 'single links and routes of the machine''s own traffic are not"
+                 " stored', count(*), "
                  "'' FROM run WHERE links = 0",
                  "Nothing.") &&
            table(c,
-                 "SELECT what, why, class || iif(max(bound) IS NULL, '', format(' %.0e', max(bound))) AS class,"
-                 " count(*) AS runs FROM run_omission GROUP BY what, why, class ORDER BY runs DESC, what",
+                 "SELECT what, why, class || iif(max(bound) IS NULL, '',"
+                 " format(' %.0e', max(bound))) AS class,"
+                 " count(*) AS runs FROM run_omission GROUP BY what, why, class"
+                 " ORDER BY runs DESC, what",
                  "No run has omissions.");
 }
 
@@ -253,18 +273,21 @@ static bool effort(struct chapter *c)
 {
     struct text t = {0};
     page_heading(c->page, 2, "Run time on this computer");
-    text_add(&t, "The command that wrote this report took %.1f s, without the runs that were stored before.",
+    text_add(&t, "The command that wrote this report took %.1f s, without the runs that were "
+                 "stored before.",
              c->d->host_s);
     if (c->d->host_s > 0) page_paragraph(c->page, t.s);
     text_free(&t);
     return table(
         c,
         "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
-        " format('%.2f', sum(host_s)) AS simulating_s, format('%.2f', sum(host_total_s)) AS in_all_s,"
+        " format('%.2f', sum(host_s)) AS simulating_s,"
+        " format('%.2f', sum(host_total_s)) AS in_all_s,"
         " format('%.0f', max(host_peak_bytes) / 1e6) AS peak_MB FROM run GROUP BY scenario"
         " UNION ALL SELECT 'all', count(*), max(P), sum(events), format('%.2f', sum(host_s)),"
         " format('%.2f', sum(host_total_s)), format('%.0f', max(host_peak_bytes) / 1e6) FROM run"
-        " UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM claim_sample), NULL, NULL,"
+        " UNION ALL SELECT 'samples, wall time', (SELECT count(DISTINCT sample) FROM claim_sample),"
+        " NULL, NULL,"
         " NULL, value, NULL FROM meta WHERE key = 'samples_s'",
         "No run is stored.");
 }
@@ -274,12 +297,14 @@ static bool provenance(struct chapter *c)
     page_heading(c->page, 2, "Provenance");
     if (!table(c,
                "SELECT 'mimdsim ' || version AS program, git, compiler, flags, count(*) AS runs,"
-               " min(created_utc) AS first_run, max(created_utc) AS last_run FROM v_provenance GROUP BY 1, 2, 3, 4",
+               " min(created_utc) AS first_run, max(created_utc) AS last_run FROM v_provenance"
+               " GROUP BY 1, 2, 3, 4",
                "No run is stored."))
         return false;
     return table(c,
                  "SELECT scenario, count(*) AS runs, group_concat(DISTINCT machine) AS machines,"
-                 " substr(min(config_hash), 1, 12) || ' ... ' || substr(max(config_hash), 1, 12) AS configurations,"
+                 " substr(min(config_hash), 1, 12) || ' ... ' || substr(max(config_hash), 1, 12)"
+                 " AS configurations,"
                  " min(digest) || ' ... ' || max(digest) AS digests FROM run GROUP BY scenario",
                  "No run is stored.");
 }
@@ -295,10 +320,11 @@ static bool chapters(struct chapter *c)
     run = run || d->whole;
     if (claimed && !opening_abstract(c->page, d->store, d->data_dir, c->e)) return false;
     page_contents(c->page);
-    return (!claimed || (contradictions(c) && explanations_section(c->page, d->store, c->e) && estimates(c) &&
-                         claims(c))) && figures(c) &&
-           findings_accuracy(c->page, d->store, c->e) && findings_stability(c->page, d->store, c->e) &&
-           (!claimed || variants(c)) && machines(c) && (!run || numerics(c)) && omissions(c) &&
+    return (!claimed || (contradictions(c) && explanations_section(c->page, d->store, c->e) &&
+                         estimates(c) && claims(c))) &&
+           figures(c) && findings_accuracy(c->page, d->store, c->e) &&
+           findings_stability(c->page, d->store, c->e) && (!claimed || variants(c)) &&
+           machines(c) && (!run || numerics(c)) && omissions(c) &&
            (!run || (effort(c) && provenance(c))) &&
            (!claimed || opening_glossary(c->page, d->store, d->data_dir, c->e));
 }
@@ -308,10 +334,13 @@ bool document_write(const struct document *d, struct err *e)
     struct page page = {0};
     char *figures_folder = strdup(d->figures);
     CHECK(figures_folder);
-    for (size_t n = strlen(figures_folder); n > 1 && figures_folder[n - 1] == '/'; n--) figures_folder[n - 1] = '\0';
+    for (size_t n = strlen(figures_folder); n > 1 && figures_folder[n - 1] == '/'; n--)
+        figures_folder[n - 1] = '\0';
     char *slash = strrchr(figures_folder, '/');
     struct text folder = {0};
-    if (slash) text_add(&folder, "%.*s", slash == figures_folder ? 1 : (int)(slash - figures_folder), figures_folder);
+    if (slash)
+        text_add(&folder, "%.*s", slash == figures_folder ? 1 : (int)(slash - figures_folder),
+                 figures_folder);
     else text_add(&folder, ".");
     struct chapter c = {d, &page, e};
     bool ok = page_open(&page, folder.s, d->name, d->title, figures_folder, e) &&

@@ -1,13 +1,17 @@
-/* report_figure.c - a figure is two files in plots/: what to ask the database, and how gnuplot draws it.
+/* report_figure.c - a figure is two files in plots/: what to ask the database, and how gnuplot
+ * draws it.
  *
- * NAME.sql holds one statement, or several of which each after the first follows a line "-- table: x"; the first
- * gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command fills the database for it, a line
- * "-- each: QUERY" that there is a drawing for each row of QUERY: ?1 is its first column, the files are called after
- * its second. The script that is run is made of the figure's name, style.gp and NAME.gp, and stays beside the
- * images: gnuplot NAME.gp redraws them from the CSV without this program.
+ * NAME.sql holds one statement, or several of which each after the first follows a line "-- table:
+ * x"; the first gives NAME.csv, the others NAME.x.csv. A line "-- needs: ..." says which command
+ * fills the database for it, a line
+ * "-- each: QUERY" that there is a drawing for each row of QUERY: ?1 is its first column, the files
+ * are called after its second. The script that is run is made of the figure's name, style.gp and
+ * NAME.gp, and stays beside the images: gnuplot NAME.gp redraws them from the CSV without this
+ * program.
  *
- * A database may come from a stranger. Its texts go into data files alone, NAME.csv and NAME.provenance, never into a
- * script; of a name that one gives to a drawing, what has a meaning to a shell, to gnuplot or in a path is replaced. */
+ * A database may come from a stranger. Its texts go into data files alone, NAME.csv and
+ * NAME.provenance, never into a script; of a name that one gives to a drawing, what has a meaning
+ * to a shell, to gnuplot or in a path is replaced. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -75,7 +79,8 @@ int report_figures(const char *data_dir, char ***name)
     }
     free(entry);
     free(plots);
-    qsort(*name, (size_t)n, sizeof **name, compare_names); /* without their endings they sort otherwise */
+    qsort(*name, (size_t)n, sizeof **name,
+          compare_names); /* without their endings they sort otherwise */
     return n;
 }
 
@@ -86,8 +91,11 @@ static bool no_such_figure(const char *data_dir, const char *wanted, struct err 
     const char *nearest = text_nearest(wanted, (const char *const *)name, n);
     struct text all = {0};
     for (int i = 0; i < n; i++) text_add(&all, "%s%s", i ? ", " : "", name[i]);
-    if (nearest != NULL) err_set(e, ERR_NO_INPUT, "there is no figure '%s'; did you mean '%s'?", wanted, nearest);
-    else err_set(e, ERR_NO_INPUT, "there is no figure '%s'; known: %s", wanted, n > 0 ? all.s : "none");
+    if (nearest != NULL)
+        err_set(e, ERR_NO_INPUT, "there is no figure '%s'; did you mean '%s'?", wanted, nearest);
+    else
+        err_set(e, ERR_NO_INPUT, "there is no figure '%s'; known: %s", wanted,
+                n > 0 ? all.s : "none");
     for (int i = 0; i < n; i++) free(name[i]);
     free(name);
     text_free(&all);
@@ -105,20 +113,24 @@ static bool write_file(const char *path, const char *data, size_t size, struct e
     FILE *out = fopen(path, "w");
     if (out == NULL) return err_set(e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
     bool ok = fwrite(data, 1, size, out) == size;
-    if (fclose(out) != 0 || !ok) ok = err_set(e, ERR_IO, "writing %s failed: %s", path, strerror(errno));
+    if (fclose(out) != 0 || !ok)
+        ok = err_set(e, ERR_IO, "writing %s failed: %s", path, strerror(errno));
     if (!ok) unlink(path);
     return ok;
 }
 
-/* One table of the figure into its file; a main table without rows leaves what an earlier drawing wrote. */
-static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow, struct err *e)
+/* One table of the figure into its file; a main table without rows leaves what an earlier drawing
+ * wrote. */
+static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow,
+                        struct err *e)
 {
     struct text path = {0};
     char *data = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&data, &size);
     CHECK(out != NULL);
-    bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run, &f->run_ids, nrow, e);
+    bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run,
+                        &f->run_ids, nrow, e);
     if (!ok) err_in(e, f->name);
     CHECK(fclose(out) == 0);
     text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
@@ -150,11 +162,13 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
     return true;
 }
 
-static bool add_source(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool add_source(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
 {
     (void)ncolumn;
     (void)name;
-    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "", value[0] ? value[0] : "");
+    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "",
+             value[0] ? value[0] : "");
     return true;
 }
 
@@ -166,12 +180,14 @@ static bool add_hash(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-/* Of rows that belong to no run: "mimdsim 0.1.0 (commit)", the programs that wrote in this database. */
+/* Of rows that belong to no run: "mimdsim 0.1.0 (commit)", the programs that wrote in this
+ * database. */
 static bool writers(struct figure *f, struct text *out, struct err *e)
 {
     struct text sources = {0};
-    bool ok = store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM build ORDER BY 1", 0, NULL,
-                           add_source, &sources, e);
+    bool ok =
+        store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM build ORDER BY 1", 0,
+                     NULL, add_source, &sources, e);
     if (sources.length > 0) text_add(out, "mimdsim %s", sources.s);
     text_free(&sources);
     return ok;
@@ -190,11 +206,13 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
                            "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1",
                            1, ids, add_source, &sources, e) &&
               store_select(f->s,
-                           "SELECT config_hash FROM run WHERE id IN (SELECT value FROM json_each(?1)) "
+                           "SELECT config_hash FROM run"
+                           " WHERE id IN (SELECT value FROM json_each(?1)) "
                            "ORDER BY config_hash, seed, rep",
                            1, ids, add_hash, &hashes, e);
     size_t nrun = hashes.length / 64;
-    if (ok && nrun == 1 && sources.s) text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
+    if (ok && nrun == 1 && sources.s)
+        text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
     else if (ok && nrun > 1 && sources.s) {
         digest_sha256_hex(hashes.s, hashes.length, hash);
         text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
@@ -269,19 +287,21 @@ bool report_folder(const char *dir, struct err *e)
     struct stat info;
     bool ok = mkdir(path, 0777) == 0 || errno == EEXIST;
     if (!ok) err_set(e, ERR_CREATE, "cannot make folder %s: %s", dir, strerror(errno));
-    else if (stat(path, &info) == 0 && !S_ISDIR(info.st_mode)) ok = err_set(e, ERR_CREATE, "%s is not a folder", dir);
+    else if (stat(path, &info) == 0 && !S_ISDIR(info.st_mode))
+        ok = err_set(e, ERR_CREATE, "%s is not a folder", dir);
     free(path);
     return ok;
 }
 
-/* Nothing to draw: a folder that was made for it goes again; what another database's drawing left there stays. */
+/* Nothing to draw: a folder that was made for it goes again; what another database's drawing left
+ * there stays. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
     if (f->folder_made) rmdir(f->dir);
     figure_line(sql, "-- needs: ", needs, sizeof needs);
-    return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s), f->name,
-                   *needs ? "; first: " : "", needs);
+    return err_set(e, ERR_NO_INPUT, "database %s has no runs for figure '%s'%s%s", store_path(f->s),
+                   f->name, *needs ? "; first: " : "", needs);
 }
 
 static bool draw(struct figure *f, const char *sql, struct err *e)
@@ -298,7 +318,8 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
 }
 
 /* The text of figure `name`; false when there is no such figure. */
-static bool read_description(const char *data_dir, const char *name, struct text *sql, struct err *e)
+static bool read_description(const char *data_dir, const char *name, struct text *sql,
+                             struct err *e)
 {
     char *plots = joined(data_dir, "/plots", ""), *file = joined(name, ".sql", "");
     char *stem = strchr(name, '/') == NULL ? figure_stem(plots, file) : NULL;
@@ -311,8 +332,8 @@ static bool read_description(const char *data_dir, const char *name, struct text
     return ok;
 }
 
-static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run, const char *as,
-                        const char *dir, struct err *e)
+static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run,
+                        const char *as, const char *dir, struct err *e)
 {
     struct text sql = {0};
     if (!read_description(data_dir, name, &sql, e)) return no_such_figure(data_dir, name, e);
@@ -326,14 +347,16 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
     return ok;
 }
 
-/* --- figures with a drawing for each of several rows -------------------------------------------------------------- */
+/* --- figures with a drawing for each of several rows ------------------------------------------ */
 
-static bool add_drawing(void *context, int ncolumn, const char *const *name, const char *const *value)
+static bool add_drawing(void *context, int ncolumn, const char *const *name,
+                        const char *const *value)
 {
     struct report_drawings *d = context;
     (void)name;
     CHECK(ncolumn == 2);
-    if (value[0] == NULL || value[1] == NULL) return true; /* a row that was left without its name */
+    if (value[0] == NULL || value[1] == NULL)
+        return true; /* a row that was left without its name */
     d->which = realloc(d->which, ((size_t)d->n + 1) * sizeof *d->which);
     d->as = realloc(d->as, ((size_t)d->n + 1) * sizeof *d->as);
     CHECK(d->which != NULL && d->as != NULL);
@@ -371,23 +394,24 @@ static void keep_drawing(struct report_drawings *d, const char *as)
 }
 
 /* The figure that `name` is a drawing of: NAME itself, or what stands before one of its hyphens. */
-static bool find_description(const char *data_dir, const char *name, struct report_drawings *d, struct text *sql,
-                             struct err *e)
+static bool find_description(const char *data_dir, const char *name, struct report_drawings *d,
+                             struct text *sql, struct err *e)
 {
     char each[1000];
     text_copy(d->figure, sizeof d->figure, name);
     if (read_description(data_dir, name, sql, e)) return true;
     for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
         *hyphen = '\0';
-        if (read_description(data_dir, d->figure, sql, e) && figure_line(sql->s, "-- each: ", each, sizeof each))
+        if (read_description(data_dir, d->figure, sql, e) &&
+            figure_line(sql->s, "-- each: ", each, sizeof each))
             return true;
         text_free(sql);
     }
     return no_such_figure(data_dir, name, e);
 }
 
-bool report_drawings_find(struct store *s, const char *data_dir, const char *name, struct report_drawings *d,
-                          struct err *e)
+bool report_drawings_find(struct store *s, const char *data_dir, const char *name,
+                          struct report_drawings *d, struct err *e)
 {
     struct text sql = {0};
     char each[1000], needs[200] = "";
@@ -399,8 +423,8 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
         if (ok && strcmp(d->figure, name) != 0) keep_drawing(d, name);
         figure_line(sql.s, "-- needs: ", needs, sizeof needs);
         if (ok && d->n == 0)
-            ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s", store_path(s), name,
-                         *needs ? "; first: " : "", needs);
+            ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s",
+                         store_path(s), name, *needs ? "; first: " : "", needs);
     } else {
         const char *const alone[] = {"", name};
         add_drawing(d, 2, NULL, alone);
@@ -410,7 +434,8 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
     return ok;
 }
 
-bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir, struct err *e)
+bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir,
+                   struct err *e)
 {
     struct report_drawings d;
     struct err first;
@@ -419,15 +444,17 @@ bool report_figure(struct store *s, const char *data_dir, const char *name, cons
     for (int i = 0; i < d.n && (first.kind == ERR_NONE || first.kind == ERR_UNAVAILABLE); i++) {
         struct err mine; /* without gnuplot the numbers of the others are written all the same */
         err_clear(&mine);
-        if (!make_figure(s, data_dir, d.figure, *d.which[i] ? d.which[i] : NULL, d.as[i], dir, &mine)) first = mine;
+        if (!make_figure(s, data_dir, d.figure, *d.which[i] ? d.which[i] : NULL, d.as[i], dir,
+                         &mine))
+            first = mine;
     }
     report_drawings_free(&d);
     if (first.kind != ERR_NONE) *e = first;
     return first.kind == ERR_NONE;
 }
 
-bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id, const char *as,
-                       const char *dir, struct err *e)
+bool report_figure_run(struct store *s, const char *data_dir, const char *name, int64_t run_id,
+                       const char *as, const char *dir, struct err *e)
 {
     char id[24];
     snprintf(id, sizeof id, "%lld", (long long)run_id);

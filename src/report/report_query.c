@@ -60,7 +60,8 @@ static void grid_add(struct grid *g, char *const *cell)
     g->nrow++;
 }
 
-static bool grid_header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool grid_header(void *context, int ncolumn, const char *const *name,
+                        const struct store_value *value)
 {
     struct grid *g = context;
     (void)value;
@@ -76,7 +77,8 @@ static bool grid_header(void *context, int ncolumn, const char *const *name, con
     return true;
 }
 
-static bool grid_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool grid_row(void *context, int ncolumn, const char *const *name,
+                     const struct store_value *value)
 {
     struct grid *g = context;
     (void)name;
@@ -118,7 +120,8 @@ static int compare_columns(const void *a, const void *b)
     return order ? order : x->at - y->at;
 }
 
-/* Columns of one name, which a join may give, would be one key: the second becomes "name:1", as SQLite calls it. */
+/* Columns of one name, which a join may give, would be one key: the second becomes "name:1", as
+ * SQLite calls it. */
 static void name_apart(struct document_rows *d)
 {
     for (int i = 0, first = 0; i < d->ncolumn; i++) {
@@ -131,13 +134,15 @@ static void name_apart(struct document_rows *d)
     }
 }
 
-static bool json_header(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool json_header(void *context, int ncolumn, const char *const *name,
+                        const struct store_value *value)
 {
     struct document_rows *d = context;
     (void)value;
     d->ncolumn = ncolumn;
     d->column = TAKE(d->a, ncolumn, struct key_place);
-    for (int i = 0; i < ncolumn; i++) d->column[i] = (struct key_place){arena_text(d->a, name[i]), i};
+    for (int i = 0; i < ncolumn; i++)
+        d->column[i] = (struct key_place){arena_text(d->a, name[i]), i};
     qsort(d->column, (size_t)ncolumn, sizeof *d->column, compare_columns);
     name_apart(d);
     json_array(&d->j);
@@ -154,7 +159,8 @@ void report_value_json(struct json *j, const struct store_value *v)
     }
 }
 
-static bool json_row(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool json_row(void *context, int ncolumn, const char *const *name,
+                     const struct store_value *value)
 {
     struct document_rows *d = context;
     struct json *j = &d->j;
@@ -168,8 +174,8 @@ static bool json_row(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-static bool query_json(struct store *s, const char *sql, int nparam, const char *const *param, FILE *out,
-                       struct err *e)
+static bool query_json(struct store *s, const char *sql, int nparam, const char *const *param,
+                       FILE *out, struct err *e)
 {
     struct document_rows d = {.j = json_make(out), .a = arena_create()};
     bool ok = store_query(s, sql, nparam, param, json_header, json_row, &d, e);
@@ -179,8 +185,8 @@ static bool query_json(struct store *s, const char *sql, int nparam, const char 
     return ok;
 }
 
-bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json, FILE *out,
-                  struct err *e)
+bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json,
+                  FILE *out, struct err *e)
 {
     bool ok;
     if (json) ok = query_json(s, sql, nparam, param, out, e);
@@ -191,6 +197,7 @@ bool report_query(struct store *s, const char *sql, int nparam, const char *cons
         free(g.cell);
         arena_destroy(g.a);
     }
-    if (ok && (fflush(out) != 0 || ferror(out))) return err_set(e, ERR_IO, "the output cannot be written");
+    if (ok && (fflush(out) != 0 || ferror(out))) return err_set(e, ERR_IO, "the output cannot be "
+                                                                           "written");
     return ok;
 }

@@ -1,4 +1,5 @@
-/* timeline.c - what the formats of a trace share: words, groups of spans, the two ends of a message (timeline.h). */
+/* timeline.c - what the formats of a trace share: words, groups of spans, the two ends of a message
+ * (timeline.h). */
 #include "report/timeline.h"
 
 #include <stdlib.h>
@@ -19,7 +20,9 @@ const char *timeline_stage(const struct timeline *t, int stage)
 int64_t timeline_group(const struct timeline *t, int64_t first)
 {
     int64_t i = first + 1;
-    while (i < t->nspan && t->span[i]->rank == t->span[first]->rank && t->span[i]->stage == t->span[first]->stage) i++;
+    while (i < t->nspan && t->span[i]->rank == t->span[first]->rank &&
+           t->span[i]->stage == t->span[first]->stage)
+        i++;
     return i;
 }
 
@@ -43,7 +46,8 @@ int64_t *timeline_partners(const struct timeline *t)
     for (int64_t i = 0; i < t->nspan; i++) {
         partner[i] = -1;
         bool is_end = t->span[i]->kind == SPAN_SEND || t->span[i]->kind == SPAN_RECV;
-        if (is_end && t->span[i]->message >= 0) end[n++] = (struct message_end){t->span[i]->message, i};
+        if (is_end && t->span[i]->message >= 0)
+            end[n++] = (struct message_end){t->span[i]->message, i};
     }
     qsort(end, (size_t)n, sizeof *end, compare_message);
     for (int64_t i = 0; i + 1 < n; i++) {

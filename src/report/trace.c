@@ -33,7 +33,8 @@ static int compare_rank(const void *a, const void *b)
     return x->rank != y->rank ? (x->rank < y->rank ? -1 : 1) : compare_begin(a, b);
 }
 
-/* The spans of *t within its window and ranks, at most `max` of them. Returns how many were left out. */
+/* The spans of *t within its window and ranks, at most `max` of them. Returns how many were left
+ * out. */
 static int64_t pick(struct timeline *t, int64_t max)
 {
     const struct run_result *r = t->run;
@@ -60,7 +61,8 @@ void trace_csv(const struct timeline *t, FILE *out)
         const struct span *p = t->span[i];
         fprintf(out, "%d,", p->rank);
         csv_cell(out, timeline_stage(t, p->stage), false);
-        fprintf(out, "%s,%lld,%lld,", timeline_kind(p->kind), (long long)p->begin_ps, (long long)p->end_ps);
+        fprintf(out, "%s,%lld,%lld,", timeline_kind(p->kind), (long long)p->begin_ps,
+                (long long)p->end_ps);
         if (p->peer >= 0) fprintf(out, "%d", p->peer);
         fprintf(out, ",%lld,", (long long)p->bytes);
         if (p->message >= 0) fprintf(out, "%lld", (long long)p->message);
@@ -68,22 +70,31 @@ void trace_csv(const struct timeline *t, FILE *out)
     }
 }
 
-bool trace_write(const struct run_result *r, enum trace_format format, const struct trace_options *o, FILE *out,
-                 int64_t *left_out, struct err *e)
+bool trace_write(const struct run_result *r, enum trace_format format,
+                 const struct trace_options *o, FILE *out, int64_t *left_out, struct err *e)
 {
-    static void (*const write[])(const struct timeline *, FILE *) = {trace_chrome, trace_paje, trace_csv, trace_text};
+    static void (*const write[])(const struct timeline *, FILE *) = {trace_chrome, trace_paje,
+                                                                     trace_csv, trace_text};
     bool all = o->first_rank == 0 && o->last_rank == 0;
-    struct timeline t = {.run = r, .title = o->title ? o->title : "", .begin_ps = o->begin_ps,
-                         .first_rank = o->first_rank, .last_rank = all ? r->nrank - 1 : o->last_rank,
+    struct timeline t = {.run = r,
+                         .title = o->title ? o->title : "",
+                         .begin_ps = o->begin_ps,
+                         .first_rank = o->first_rank,
+                         .last_rank = all ? r->nrank - 1 : o->last_rank,
                          .end_ps = o->end_ps > 0 ? o->end_ps : r->makespan_ps + 1,
                          .columns = o->columns > 0 ? o->columns : TRACE_COLUMNS};
     if (r->span == NULL || r->nspan == 0)
-        return err_set(e, ERR_NO_INPUT, "this run has no timeline; record it with `record: {spans: true}`");
+        return err_set(e, ERR_NO_INPUT, "this run has no timeline; record it with `record: {spans: "
+                                        "true}`");
     *left_out = pick(&t, o->max_spans > 0 ? o->max_spans : TRACE_MAX_SPANS);
-    bool ok = t.nspan > 0 || err_set(e, ERR_CONFIG, "nothing was recorded on ranks %d to %d between %.6f and %.6f us",
-                                     t.first_rank, t.last_rank, (double)t.begin_ps * 1e-6, (double)t.end_ps * 1e-6);
+    bool ok = t.nspan > 0 || err_set(e, ERR_CONFIG,
+                                     "nothing was recorded on ranks %d to %d "
+                                     "between %.6f and %.6f us",
+                                     t.first_rank, t.last_rank, (double)t.begin_ps * 1e-6,
+                                     (double)t.end_ps * 1e-6);
     if (ok) write[format](&t, out);
     free(t.span);
-    if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO, "the timeline cannot be written");
+    if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO, "the timeline cannot be "
+                                                                         "written");
     return ok;
 }

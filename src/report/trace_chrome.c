@@ -1,8 +1,10 @@
-/* trace_chrome.c - Chrome trace events: a track per rank, stages as slices around their spans, messages as flows.
+/* trace_chrome.c - Chrome trace events: a track per rank, stages as slices around their spans,
+ * messages as flows.
  *
- * Times are microseconds with six decimals, which is exact for picoseconds. Slices of a track must nest: spans follow
- * each other, and a stage's slice reaches from its first span to its last. A flow is written only when both its ends
- * are in the trace; it leaves from and arrives at the slices that begin at its times ("bp": "e"). */
+ * Times are microseconds with six decimals, which is exact for picoseconds. Slices of a track must
+ * nest: spans follow each other, and a stage's slice reaches from its first span to its last. A
+ * flow is written only when both its ends are in the trace; it leaves from and arrives at the
+ * slices that begin at its times ("bp": "e"). */
 #include <stdlib.h>
 
 #include "base/json.h"
@@ -28,7 +30,8 @@ static void put_head(FILE *out, const char *phase, int rank, const char *name)
     put_text(out, name);
 }
 
-static void put_slice(FILE *out, int rank, const char *name, const char *category, int64_t begin, int64_t end)
+static void put_slice(FILE *out, int rank, const char *name, const char *category, int64_t begin,
+                      int64_t end)
 {
     put_head(out, "X", rank, name);
     fprintf(out, ",\"cat\":\"%s\"", category);
@@ -39,7 +42,8 @@ static void put_slice(FILE *out, int rank, const char *name, const char *categor
 static void put_span(const struct span *p, FILE *out)
 {
     put_slice(out, p->rank, timeline_kind(p->kind), timeline_kind(p->kind), p->begin_ps, p->end_ps);
-    if (p->peer >= 0) fprintf(out, ",\"args\":{\"peer\":%d,\"bytes\":%lld}", p->peer, (long long)p->bytes);
+    if (p->peer >= 0)
+        fprintf(out, ",\"args\":{\"peer\":%d,\"bytes\":%lld}", p->peer, (long long)p->bytes);
     fputs("}", out);
 }
 
@@ -74,7 +78,8 @@ void trace_chrome(const struct timeline *t, FILE *out)
     for (int64_t first = 0, next; first < t->nspan; first = next) {
         const struct span *head = t->span[first];
         next = timeline_group(t, first);
-        put_slice(out, head->rank, timeline_stage(t, head->stage), "stage", head->begin_ps, t->span[next - 1]->end_ps);
+        put_slice(out, head->rank, timeline_stage(t, head->stage), "stage", head->begin_ps,
+                  t->span[next - 1]->end_ps);
         fputs("}", out);
         for (int64_t i = first; i < next; i++) {
             put_span(t->span[i], out);

@@ -1,6 +1,6 @@
-/* trace_paje.c - Paje traces: containers are ranks, with one state for the stage and one for the activity; messages
- * are links. Events must come in the order of time; the definitions are those of "Paje trace file" (Kergommeaux and
- * Stein, 2003), with the fields that ViTE and pj_dump read. */
+/* trace_paje.c - Paje traces: containers are ranks, with one state for the stage and one for the
+ * activity; messages are links. Events must come in the order of time; the definitions are those of
+ * "Paje trace file" (Kergommeaux and Stein, 2003), with the fields that ViTE and pj_dump read. */
 #include <stdlib.h>
 
 #include "base/check.h"
@@ -28,15 +28,19 @@ static void put_definitions(FILE *out)
     static const char *const definition[] = {
         "PajeDefineContainerType 0\n% Alias string\n% Type string\n% Name string",
         "PajeDefineStateType 1\n% Alias string\n% Type string\n% Name string",
-        "PajeDefineLinkType 2\n% Alias string\n% Type string\n% StartContainerType string\n% EndContainerType string\n"
-        "% Name string",
+        "PajeDefineLinkType 2\n"
+        "% Alias string\n"
+        "% Type string\n% StartContainerType string\n% EndContainerType string\n% Name string",
         "PajeDefineEntityValue 3\n% Alias string\n% Type string\n% Name string\n% Color color",
-        "PajeCreateContainer 4\n% Time date\n% Alias string\n% Type string\n% Container string\n% Name string",
+        "PajeCreateContainer 4\n"
+        "% Time date\n% Alias string\n% Type string\n% Container string\n% Name string",
         "PajeDestroyContainer 5\n% Time date\n% Type string\n% Name string",
         "PajeSetState 6\n% Time date\n% Type string\n% Container string\n% Value string",
-        "PajeStartLink 7\n% Time date\n% Type string\n% Container string\n% StartContainer string\n% Value string\n"
-        "% Key string",
-        "PajeEndLink 8\n% Time date\n% Type string\n% Container string\n% EndContainer string\n% Value string\n"
+        "PajeStartLink 7\n"
+        "% Time date\n"
+        "% Type string\n% Container string\n% StartContainer string\n% Value string\n% Key string",
+        "PajeEndLink 8\n"
+        "% Time date\n% Type string\n% Container string\n% EndContainer string\n% Value string\n"
         "% Key string"};
     for (size_t i = 0; i < sizeof definition / sizeof *definition; i++)
         fprintf(out, "%%EventDef %s\n%%EndEventDef\n", definition[i]);
@@ -45,10 +49,13 @@ static void put_definitions(FILE *out)
 /* Types, and colours that are told apart by colour-blind readers (Okabe and Ito). */
 static void put_types(const struct timeline *t, FILE *out)
 {
-    static const char *const colour[] = {"0.0 0.447 0.698", "0.902 0.624 0.0", "0.941 0.894 0.259", "0.784 0.831 0.863",
-                                         "0.8 0.475 0.655"};
-    static const char *const hue[] = {"0.337 0.706 0.914", "0.0 0.62 0.451", "0.835 0.369 0.0", "0.941 0.894 0.259"};
-    fputs("0 M 0 \"machine\"\n0 R M \"rank\"\n1 S R \"stage\"\n1 A R \"activity\"\n2 L M R R \"message\"\n", out);
+    static const char *const colour[] = {"0.0 0.447 0.698", "0.902 0.624 0.0", "0.941 0.894 0.259",
+                                         "0.784 0.831 0.863", "0.8 0.475 0.655"};
+    static const char *const hue[] = {"0.337 0.706 0.914", "0.0 0.62 0.451", "0.835 0.369 0.0",
+                                      "0.941 0.894 0.259"};
+    fputs("0 M 0 \"machine\"\n0 R M \"rank\"\n1 S R \"stage\"\n1 A R \"activity\"\n2 L M R R "
+          "\"message\"\n",
+          out);
     for (int i = 0; i < t->run->nstage; i++)
         fprintf(out, "3 s%d S \"%s\" \"%s\"\n", i, t->run->stage_name[i], hue[i % 4]);
     for (int i = SPAN_COMPUTE; i <= SPAN_BARRIER; i++)
@@ -59,7 +66,8 @@ static void put_types(const struct timeline *t, FILE *out)
 /* Seconds out of picoseconds, digit for digit. */
 static void put_time(FILE *out, int kind, int64_t ps)
 {
-    fprintf(out, "%d %lld.%012lld", kind, (long long)(ps / 1000000000000), (long long)(ps % 1000000000000));
+    fprintf(out, "%d %lld.%012lld", kind, (long long)(ps / 1000000000000),
+            (long long)(ps % 1000000000000));
 }
 
 /* All changes of state and all message ends, in order of time; returns how many. */
@@ -70,14 +78,18 @@ static int64_t gather(const struct timeline *t, const int64_t *partner, struct e
         const struct span *p = t->span[i];
         bool first = i == 0 || t->span[i - 1]->rank != p->rank;
         bool last = i + 1 == t->nspan || t->span[i + 1]->rank != p->rank;
-        if (first || t->span[i - 1]->stage != p->stage) event[n++] = (struct event){p->begin_ps, STAGE_BEGINS, i};
+        if (first || t->span[i - 1]->stage != p->stage)
+            event[n++] = (struct event){p->begin_ps, STAGE_BEGINS, i};
         event[n++] = (struct event){p->begin_ps, SPAN_BEGINS, i};
-        if (partner[i] >= 0 && p->kind == SPAN_SEND) event[n++] = (struct event){p->end_ps, MESSAGE_LEAVES, i};
+        if (partner[i] >= 0 && p->kind == SPAN_SEND)
+            event[n++] = (struct event){p->end_ps, MESSAGE_LEAVES, i};
         if (partner[i] >= 0 && p->kind == SPAN_RECV) {
             int64_t sent = t->span[partner[i]]->end_ps;
-            event[n++] = (struct event){p->begin_ps > sent ? p->begin_ps : sent, MESSAGE_ARRIVES, i};
+            event[n++] =
+                (struct event){p->begin_ps > sent ? p->begin_ps : sent, MESSAGE_ARRIVES, i};
         }
-        if (last || t->span[i + 1]->begin_ps > p->end_ps) event[n++] = (struct event){p->end_ps, SPAN_ENDS, i};
+        if (last || t->span[i + 1]->begin_ps > p->end_ps)
+            event[n++] = (struct event){p->end_ps, SPAN_ENDS, i};
     }
     qsort(event, (size_t)n, sizeof *event, compare_events);
     return n;
@@ -119,7 +131,8 @@ void trace_paje(const struct timeline *t, FILE *out)
     int64_t *partner = timeline_partners(t), end = t->begin_ps;
     struct event *event = malloc((size_t)t->nspan * 4 * sizeof *event);
     CHECK(event != NULL);
-    int64_t n = gather(t, partner, event), start = event[0].time < t->begin_ps ? event[0].time : t->begin_ps;
+    int64_t n = gather(t, partner, event),
+            start = event[0].time < t->begin_ps ? event[0].time : t->begin_ps;
     if (n > 0 && event[n - 1].time > end) end = event[n - 1].time;
     put_definitions(out);
     put_types(t, out);

@@ -13,7 +13,8 @@ struct reading {
     bool found;
 };
 
-static bool read_run(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool read_run(void *context, int ncolumn, const char *const *name,
+                     const struct store_value *value)
 {
     struct reading *g = context;
     (void)ncolumn;
@@ -25,47 +26,62 @@ static bool read_run(void *context, int ncolumn, const char *const *name, const 
     return false;
 }
 
-static bool read_stage(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool read_stage(void *context, int ncolumn, const char *const *name,
+                       const struct store_value *value)
 {
     struct reading *g = context;
     int64_t stage = value[0].integer;
     (void)ncolumn;
     (void)name;
     if (stage < 0 || stage >= RUN_MAX_STAGES) return true;
-    text_copy(g->r->stage_name[stage], sizeof g->r->stage_name[stage], value[1].text ? value[1].text : "");
+    text_copy(g->r->stage_name[stage], sizeof g->r->stage_name[stage],
+              value[1].text ? value[1].text : "");
     if (stage >= g->r->nstage) g->r->nstage = (int)stage + 1;
     return true;
 }
 
-static bool read_span(void *context, int ncolumn, const char *const *name, const struct store_value *value)
+static bool read_span(void *context, int ncolumn, const char *const *name,
+                      const struct store_value *value)
 {
     struct reading *g = context;
     struct span *p = &g->r->span[g->r->nspan++];
     (void)ncolumn;
     (void)name;
-    *p = (struct span){.rank = (int)value[0].integer, .stage = (int)value[1].integer, .begin_ps = value[3].integer,
-                       .end_ps = value[4].integer, .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
-                       .bytes = value[6].integer, .message = value[7].kind == STORE_INT ? value[7].integer : -1};
+    *p = (struct span){.rank = (int)value[0].integer,
+                       .stage = (int)value[1].integer,
+                       .begin_ps = value[3].integer,
+                       .end_ps = value[4].integer,
+                       .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
+                       .bytes = value[6].integer,
+                       .message = value[7].kind == STORE_INT ? value[7].integer : -1};
     for (int k = SPAN_COMPUTE; k <= SPAN_BARRIER; k++)
-        if (strcmp(value[2].text, timeline_kind((enum span_kind)k)) == 0) p->kind = (enum span_kind)k;
+        if (strcmp(value[2].text, timeline_kind((enum span_kind)k)) == 0)
+            p->kind = (enum span_kind)k;
     return true;
 }
 
-bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r, struct err *e)
+bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r,
+                struct err *e)
 {
     char id[24];
     const char *const param[] = {id};
     *r = (struct run_result){0};
     struct reading g = {.a = a, .r = r};
     snprintf(id, sizeof id, "%lld", (long long)run_id);
-    if (!store_query(s, "SELECT P, makespan_ps, (SELECT count(*) FROM span WHERE run_id = run.id) FROM run "
+    if (!store_query(s, "SELECT P, makespan_ps, (SELECT count(*) FROM span WHERE run_id = run.id)"
+                        " FROM run "
                         "WHERE id = ?1", 1, param, NULL, read_run, &g, e))
         return false;
     if (!g.found) return err_set(e, ERR_NO_INPUT, "there is no run %s in %s", id, store_path(s));
-    if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL, read_stage, &g, e) ||
-        !store_query(s, "SELECT rank, stage, kind, begin_ps, end_ps, peer, bytes, message FROM span WHERE run_id = ?1 "
-                        "ORDER BY span", 1, param, NULL, read_span, &g, e))
+    if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL,
+                     read_stage, &g, e) ||
+        !store_query(s,
+                     "SELECT rank, stage, kind, begin_ps, end_ps, peer, bytes, message FROM span"
+                     " WHERE run_id = ?1 "
+                     "ORDER BY span",
+                     1, param, NULL, read_span, &g, e))
         return false;
     return r->nspan > 0 ||
-           err_set(e, ERR_NO_INPUT, "run %s has no stored timeline; record it with `record: {spans: true}`", id);
+           err_set(e, ERR_NO_INPUT,
+                   "run %s has no stored timeline; record it with `record: {spans: true}`", id);
 }

@@ -1,4 +1,5 @@
-/* trace_text.c - the timeline as bars of letters, for a terminal: what each rank does most in each slot of time. */
+/* trace_text.c - the timeline as bars of letters, for a terminal: what each rank does most in each
+ * slot of time. */
 #include <string.h>
 
 #include "report/timeline.h"
@@ -8,12 +9,15 @@ enum { NKIND = SPAN_BARRIER + 1 };
 /* The slot's share of [begin, end). */
 static int64_t overlap(const struct span *p, int64_t begin, int64_t end)
 {
-    int64_t from = p->begin_ps > begin ? p->begin_ps : begin, to = p->end_ps < end ? p->end_ps : end;
+    int64_t from = p->begin_ps > begin ? p->begin_ps : begin,
+            to = p->end_ps < end ? p->end_ps : end;
     return to > from ? to - from : 0;
 }
 
-/* One rank's spans are span[first..next). Two lines: its stages (a letter each), and what it does. */
-static void put_rank(const struct timeline *t, int64_t first, int64_t next, int64_t begin, int64_t end, FILE *out)
+/* One rank's spans are span[first..next). Two lines: its stages (a letter each), and what it does.
+ */
+static void put_rank(const struct timeline *t, int64_t first, int64_t next, int64_t begin,
+                     int64_t end, FILE *out)
 {
     static const char sign[] = "#><.|";
     char stage_bar[512], bar[512];
@@ -28,7 +32,8 @@ static void put_rank(const struct timeline *t, int64_t first, int64_t next, int6
         for (int64_t i = from; i < next && t->span[i]->begin_ps < right; i++) {
             int64_t part = overlap(t->span[i], left, right);
             share[t->span[i]->kind] += part;
-            if (t->span[i]->stage >= 0 && t->span[i]->stage <= RUN_MAX_STAGES) stages[t->span[i]->stage] += part;
+            if (t->span[i]->stage >= 0 && t->span[i]->stage <= RUN_MAX_STAGES)
+                stages[t->span[i]->stage] += part;
         }
         int kind = -1, stage = -1;
         for (int k = 0; k < NKIND; k++)
@@ -38,7 +43,8 @@ static void put_rank(const struct timeline *t, int64_t first, int64_t next, int6
         bar[c] = kind < 0 ? ' ' : sign[kind];
         stage_bar[c] = stage < 0 ? ' ' : (char)('A' + stage);
     }
-    fprintf(out, "%8s  %.*s\n%8d  %.*s\n", "", columns, stage_bar, t->span[first]->rank, columns, bar);
+    fprintf(out, "%8s  %.*s\n%8d  %.*s\n", "", columns, stage_bar, t->span[first]->rank, columns,
+            bar);
 }
 
 void trace_text(const struct timeline *t, FILE *out)
@@ -52,10 +58,11 @@ void trace_text(const struct timeline *t, FILE *out)
     if (t->begin_ps > begin) begin = t->begin_ps;
     if (t->end_ps < end) end = t->end_ps;
     if (*t->title) fprintf(out, "%s\n", t->title);
-    fprintf(out, "%.3f to %.3f us, one letter is %.3f us\n", (double)begin * 1e-6, (double)end * 1e-6,
-            (double)(end - begin) * 1e-6 / t->columns);
+    fprintf(out, "%.3f to %.3f us, one letter is %.3f us\n", (double)begin * 1e-6,
+            (double)end * 1e-6, (double)(end - begin) * 1e-6 / t->columns);
     fputs("what: # compute  > send  < receive  . wait  | barrier\nstages:", out);
-    for (int i = 0; i < t->run->nstage; i++) fprintf(out, " %c %s ", 'A' + i, t->run->stage_name[i]);
+    for (int i = 0; i < t->run->nstage; i++)
+        fprintf(out, " %c %s ", 'A' + i, t->run->stage_name[i]);
     fputs("\n\n    rank\n", out);
     for (int64_t first = 0, next; first < t->nspan; first = next, ranks++) {
         for (next = first; next < t->nspan && t->span[next]->rank == t->span[first]->rank;) next++;

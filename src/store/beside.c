@@ -1,4 +1,5 @@
-/* beside.c - files that are written beside their place, never through a link, and what a crash left of them. */
+/* beside.c - files that are written beside their place, never through a link, and what a crash left
+ * of them. */
 #include "store/beside.h"
 
 #include <ctype.h>
@@ -17,7 +18,8 @@
 static const char middle[] = ".new-", ending[] = ".part";
 enum { DRAWN = 6 };
 
-/* Locked, where the file system has locks, and still there: a cleaner may have come between the making and the lock. */
+/* Locked, where the file system has locks, and still there: a cleaner may have come between the
+ * making and the lock. */
 static bool is_ours(int file)
 {
     struct stat info;
@@ -32,7 +34,8 @@ int beside_open(const char *path, char **name)
         text_add(&t, "%s%sXXXXXX%s", path, middle, ending);
         int file = mkostemps(t.s, (int)strlen(ending), O_CLOEXEC);
         if (file >= 0 && is_ours(file)) {
-            /* mkostemps makes it for its owner alone; others may read a database as they may any new file. */
+            /* mkostemps makes it for its owner alone; others may read a database as they may any
+             * new file. */
             mode_t mask = umask(0);
             umask(mask);
             fchmod(file, 0666 & ~mask);
@@ -71,8 +74,9 @@ static void remove_left(int dir, const char *name)
     int file = openat(dir, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return;
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&
-        flock(file, LOCK_EX | LOCK_NB) == 0 && fstatat(dir, name, &found, AT_SYMLINK_NOFOLLOW) == 0 &&
-        found.st_dev == info.st_dev && found.st_ino == info.st_ino)
+        flock(file, LOCK_EX | LOCK_NB) == 0 &&
+        fstatat(dir, name, &found, AT_SYMLINK_NOFOLLOW) == 0 && found.st_dev == info.st_dev &&
+        found.st_ino == info.st_ino)
         unlinkat(dir, name, 0);
     close(file);
 }

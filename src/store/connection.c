@@ -19,14 +19,17 @@ bool store_failed(struct store *s, struct err *e)
     switch (code) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-        return err_set(e, ERR_BUSY, "database %s is locked by another program; try again when that has finished", path);
+        return err_set(e, ERR_BUSY,
+                       "database %s is locked by another program; try again when that has finished",
+                       path);
     case SQLITE_FULL: return err_set(e, ERR_IO, "no space left on the disk of database %s", path);
     case SQLITE_READONLY: return err_set(e, ERR_IO, "database %s is read-only", path);
     case SQLITE_CANTOPEN:
-        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s", path,
-                       system ? strerror(system) : text);
+        return err_set(e, s->writable ? ERR_CREATE : ERR_NO_INPUT, "cannot open database %s: %s",
+                       path, system ? strerror(system) : text);
     case SQLITE_IOERR:
-        return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path, system ? strerror(system) : text);
+        return err_set(e, ERR_IO, "reading or writing database %s failed: %s", path,
+                       system ? strerror(system) : text);
     case SQLITE_NOTADB: return err_set(e, ERR_DATA, "%s is not a database of mimdsim", path);
     case SQLITE_CORRUPT: return err_set(e, ERR_DATA, "database %s is damaged: %s", path, text);
     case SQLITE_NOMEM: return err_set(e, ERR_INTERNAL, "no memory for database %s", path);
@@ -46,7 +49,8 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
     struct text sql = {0};
     if (statement_sql[which] != NULL) text_add(&sql, "%s", statement_sql[which]);
     else rows_insert(which, &sql);
-    if (sqlite3_prepare_v3(s->db, sql.s, -1, SQLITE_PREPARE_PERSISTENT, kept, NULL)) store_failed(s, e);
+    if (sqlite3_prepare_v3(s->db, sql.s, -1, SQLITE_PREPARE_PERSISTENT, kept, NULL))
+        store_failed(s, e);
     text_free(&sql);
     return *kept;
 }

@@ -9,7 +9,8 @@
 
 enum { MOST_SEGMENTS = 5 };
 
-/* A table of schema.sql: the keys that are bound first, what a statement fills in itself, and its columns in order. */
+/* A table of schema.sql: the keys that are bound first, what a statement fills in itself, and its
+ * columns in order. */
 struct row_table {
     enum statement statement;
     const char *name, *keys;
@@ -18,8 +19,13 @@ struct row_table {
 };
 
 static const struct row_table row_table[] = {
-    {STATEMENT_RUN_INSERT, "run", "build_id", ", created_utc", ", strftime('%Y-%m-%dT%H:%M:%SZ', 'now')",
-     {&run_identity_columns, &run_outcome_columns, &run_level_columns, &run_refinement_columns, &run_config_columns}},
+    {STATEMENT_RUN_INSERT,
+     "run",
+     "build_id",
+     ", created_utc",
+     ", strftime('%Y-%m-%dT%H:%M:%SZ', 'now')",
+     {&run_identity_columns, &run_outcome_columns, &run_level_columns, &run_refinement_columns,
+      &run_config_columns}},
     {STATEMENT_STAGE, "stage", "run_id, stage", "", "", {&stage_row_columns}},
     {STATEMENT_RANK_STAGE, "rank_stage", "run_id, rank, stage", "", "", {&stage_time_columns}},
     {STATEMENT_BASELINE, "baseline", "run_id, ordinal", "", "", {&baseline_columns}},
@@ -87,7 +93,8 @@ static void bind_column(struct binding *b, const struct column *c, const void *r
     case VALUE_REAL: bind_real(b, v.real); break;
     /* What lies in the buffer is gone when the statement runs. */
     case VALUE_TEXT:
-        sqlite3_bind_text(b->statement, b->next++, v.text, -1, v.text == v.buffer ? SQLITE_TRANSIENT : SQLITE_STATIC);
+        sqlite3_bind_text(b->statement, b->next++, v.text, -1,
+                          v.text == v.buffer ? SQLITE_TRANSIENT : SQLITE_STATIC);
         break;
     default: bind_int(b, v.integer); break;
     }
@@ -98,6 +105,7 @@ void rows_bind(enum statement which, struct binding *b, const void *row)
     const struct row_table *t = table_of(which);
     for (int i = 0; t->segment[i] != NULL; i++)
         for (int k = 0; k < t->segment[i]->n; k++)
-            if (!(t->segment[i]->column[k].flags & COLUMN_NO_SQL)) bind_column(b, &t->segment[i]->column[k], row);
+            if (!(t->segment[i]->column[k].flags & COLUMN_NO_SQL))
+                bind_column(b, &t->segment[i]->column[k], row);
     CHECK(b->next - 1 == sqlite3_bind_parameter_count(b->statement));
 }

@@ -1,4 +1,5 @@
-/* run_columns.c - the columns of table run that come from the spec: labels by which rows are chosen, and settings. */
+/* run_columns.c - the columns of table run that come from the spec: labels by which rows are
+ * chosen, and settings. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,7 +10,10 @@
 
 #define SPEC(member) .part = PART(struct run_row, spec), .offset = offsetof(struct run_spec, member)
 
-static const struct run_spec *spec_of(const void *row) { return ((const struct run_row *)row)->spec; }
+static const struct run_spec *spec_of(const void *row)
+{
+    return ((const struct run_row *)row)->spec;
+}
 
 /* The word of the setting `more`, a choice. */
 static void read_setting(const struct column *c, const void *row, struct column_value *v)
@@ -22,7 +26,10 @@ static void read_setting(const struct column *c, const void *row, struct column_
     v->text = f->choice[*(const unsigned *)(const void *)(base + f->offset)];
 }
 
-#define SETTING(name, setting, text) {name, COLUMN_STRING, .value = read_setting, .more = setting, .doc = text}
+#define SETTING(name, setting, text)                                                               \
+    {                                                                                              \
+        name, COLUMN_STRING, .value = read_setting, .more = setting, .doc = text                   \
+    }
 
 static void read_bodies(const struct column *c, const void *row, struct column_value *v)
 {
@@ -36,7 +43,8 @@ static const struct column run_identity[] = {
     {"config_hash", COLUMN_CHARS, SPEC(config_hash), .doc = "SHA-256 that identifies its settings"},
     {"seed", COLUMN_COUNT, SPEC(seed), .doc = "of noise, background traffic and random routes"},
     {"rep", COLUMN_INT, SPEC(rep), .doc = "repetition, from 0"},
-    {"scenario", COLUMN_CHARS, SPEC(scenario), .doc = "the scenario's file without its folder and ending"},
+    {"scenario", COLUMN_CHARS, SPEC(scenario),
+     .doc = "the scenario's file without its folder and ending"},
     {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "name of the machine"},
     SETTING("topology", "machine.topology.family", "family of its network"),
     SETTING("level", "machine.network.level", "how closely the network is simulated"),
@@ -51,7 +59,8 @@ static const struct column run_identity[] = {
     SETTING("base", "model.base", "how its first body is held"),
     SETTING("joint", "model.joint", "type of its joints"),
     {"n", COLUMN_INT, .value = read_bodies, .doc = "bodies"},
-    {"nu", COLUMN_INT, .part = PART(struct run_row, result), .offset = offsetof(struct run_result, nu),
+    {"nu", COLUMN_INT, .part = PART(struct run_row, result),
+     .offset = offsetof(struct run_result, nu),
      .doc = "degrees of freedom, 0 when there is no model"},
     {"P", COLUMN_INT, SPEC(nrank), .doc = "virtual processors"},
     {"compute_noise_cv", COLUMN_REAL, SPEC(machine.noise.compute_cv), .flags = COLUMN_NULL,
@@ -61,16 +70,24 @@ static const struct column run_identity[] = {
 };
 const struct column_table run_identity_columns = COLUMNS(run_identity);
 
-#define ORDER(member) .part = PART(struct run_row, order), .offset = offsetof(struct run_order, member)
+#define ORDER(member)                                                                              \
+    .part = PART(struct run_row, order), .offset = offsetof(struct run_order, member)
 
-static const struct run_order *order_of(const void *row) { return ((const struct run_row *)row)->order; }
+static const struct run_order *order_of(const void *row)
+{
+    return ((const struct run_row *)row)->order;
+}
 
-static bool level_chosen(const void *row) { return order_of(row) && order_of(row)->level_choice.made; }
+static bool level_chosen(const void *row)
+{
+    return order_of(row) && order_of(row)->level_choice.made;
+}
 
 static void read_asked(const struct column *c, const void *row, struct column_value *v)
 {
     (void)c;
-    snprintf(v->buffer, sizeof v->buffer, "auto-tolerance %.9g %%", 100 * order_of(row)->level_choice.tolerance);
+    snprintf(v->buffer, sizeof v->buffer, "auto-tolerance %.9g %%",
+             100 * order_of(row)->level_choice.tolerance);
     v->kind = VALUE_TEXT;
     v->text = v->buffer;
 }
@@ -78,10 +95,10 @@ static void read_asked(const struct column *c, const void *row, struct column_va
 static const struct column run_level[] = {
     {"level_asked", COLUMN_STRING, .value = read_asked, .known = level_chosen, .flags = COLUMN_NULL,
      .doc = "'auto-tolerance 2 %': `level` was taken for its measured error"},
-    {"level_error", COLUMN_REAL, ORDER(level_choice.error), .known = level_chosen, .flags = COLUMN_NULL,
-     .doc = "of the makespan, relative, at level_error_at"},
-    {"level_error_at", COLUMN_CHARS, ORDER(level_choice.at), .known = level_chosen, .flags = COLUMN_NULL,
-     .doc = "where that was measured: \"n=P=128\""},
+    {"level_error", COLUMN_REAL, ORDER(level_choice.error), .known = level_chosen,
+     .flags = COLUMN_NULL, .doc = "of the makespan, relative, at level_error_at"},
+    {"level_error_at", COLUMN_CHARS, ORDER(level_choice.at), .known = level_chosen,
+     .flags = COLUMN_NULL, .doc = "where that was measured: \"n=P=128\""},
 };
 const struct column_table run_level_columns = COLUMNS(run_level);
 
@@ -95,11 +112,15 @@ static void read_config(const struct column *c, const void *row, struct column_v
 static bool machine_shipped(const void *row) { return spec_of(row)->machine_changes != NULL; }
 
 static const struct column run_config[] = {
-    {"config_text", COLUMN_STRING, .value = read_config, 
-     .doc = "all settings as text; config_hash is the SHA-256 of its lines that differ from the defaults, sorted"},
+    {"config_text", COLUMN_STRING, .value = read_config,
+     .doc = "all settings as text; config_hash is the SHA-256 of its lines that differ from the "
+            "defaults, sorted"},
     {"machine_changes", COLUMN_STRING, SPEC(machine_changes), .flags = COLUMN_NULL,
-     .doc = "JSON: settings that are not those of the shipped machine of this name; '{}': none; NULL: none is shipped"},
-    {"machine_hash", COLUMN_STRING, SPEC(machine_hash), .known = machine_shipped, .flags = COLUMN_NULL,
-     .doc = "SHA-256 of that shipped machine when the run was made; 'not stored' in runs from before version 5"},
+     .doc = "JSON: settings that are not those of the shipped machine of this name; '{}': none; "
+            "NULL: none is shipped"},
+    {"machine_hash", COLUMN_STRING, SPEC(machine_hash), .known = machine_shipped,
+     .flags = COLUMN_NULL,
+     .doc = "SHA-256 of that shipped machine when the run was made; 'not stored' in runs from "
+            "before version 5"},
 };
 const struct column_table run_config_columns = COLUMNS(run_config);

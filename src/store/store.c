@@ -1,9 +1,10 @@
 /* store.c - opening, checking and closing the database, and transactions.
  *
- * Durability: a run takes milliseconds, so a commit must not wait for the disk. Journal mode WAL with synchronous =
- * NORMAL writes each commit to the log without a flush: after kill -9 the system still holds every committed run; a
- * power cut may lose the last ones, but the log's checksums keep the database whole. Shared memory of WAL does not
- * work over network file systems: there a rollback journal with full flushes is used. */
+ * Durability: a run takes milliseconds, so a commit must not wait for the disk. Journal mode WAL
+ * with synchronous = NORMAL writes each commit to the log without a flush: after kill -9 the system
+ * still holds every committed run; a power cut may lose the last ones, but the log's checksums keep
+ * the database whole. Shared memory of WAL does not work over network file systems: there a
+ * rollback journal with full flushes is used. */
 #include "store/store.h"
 
 #include <errno.h>
@@ -27,7 +28,8 @@
 static bool read_number(struct store *s, const char *sql, int64_t *out, struct err *e)
 {
     sqlite3_stmt *q = NULL;
-    bool ok = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
+    bool ok =
+        sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
     if (ok) *out = sqlite3_column_int64(q, 0);
     else store_failed(s, e);
     sqlite3_finalize(q);
@@ -47,9 +49,12 @@ static bool check_owner(struct store *s, bool *empty, int64_t *version, struct e
     if (application != STORE_APPLICATION)
         return err_set(e, ERR_DATA, "%s is a database of another program, not of mimdsim", s->path);
     if (*version > STORE_VERSION || *version < STORE_OLDEST)
-        return err_set(e, ERR_DATA, "database %s has schema version %lld, this program knows versions %d to %d; %s",
+        return err_set(e, ERR_DATA,
+                       "database %s has schema version %lld, this program knows "
+                       "versions %d to %d; %s",
                        s->path, (long long)*version, STORE_OLDEST, STORE_VERSION,
-                       *version > STORE_VERSION ? "use a newer mimdsim" : "run its scenarios again");
+                       *version > STORE_VERSION ? "use a newer mimdsim"
+                                                : "run its scenarios again");
     return true;
 }
 
@@ -58,11 +63,14 @@ static bool create_schema(struct store *s, struct err *e)
 {
     struct text t = {0};
     rows_schema(&t);
-    text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION, STORE_VERSION);
-    text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d), ('span_rows_limit', %d);",
+    text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION,
+             STORE_VERSION);
+    text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d),"
+                 " ('span_rows_limit', %d);",
              STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
     int64_t version;
-    bool empty = false, ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, &version, e);
+    bool empty = false,
+         ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, &version, e);
     /* Another program may have made it while we waited for the lock. */
     if (ok && empty) ok = store_exec(s, t.s, e);
     if (ok) ok = store_exec(s, "COMMIT", e);
@@ -71,11 +79,13 @@ static bool create_schema(struct store *s, struct err *e)
     return ok;
 }
 
-/* Whether the folder of `path` is on a file system that several hosts share (magic numbers: statfs(2)). */
+/* Whether the folder of `path` is on a file system that several hosts share (magic numbers:
+ * statfs(2)). */
 static bool on_network(const char *path)
 {
-    static const unsigned magic[] = {0x6969,     0x517B,     0xFF534D42, 0xFE534D42, 0x0BD00BD0, 0x47504653,
-                                     0x19830326, 0x01021997, 0x00C36400, 0x5346414F, 0x65735546};
+    static const unsigned magic[] = {0x6969,     0x517B,     0xFF534D42, 0xFE534D42,
+                                     0x0BD00BD0, 0x47504653, 0x19830326, 0x01021997,
+                                     0x00C36400, 0x5346414F, 0x65735546};
     struct statfs info;
     if (statfs(path, &info) != 0) return false;
     for (size_t i = 0; i < sizeof magic / sizeof magic[0]; i++)
@@ -85,13 +95,14 @@ static bool on_network(const char *path)
 
 static bool set_journal(struct store *s, struct err *e)
 {
-    return on_network(s->path) ? store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e)
-                               : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
+    return on_network(s->path)
+               ? store_exec(s, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL", e)
+               : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
 }
 
 /* Upgrade by `way`, and keep what it has to tell. */
-static bool upgrade(struct store *s, int version, bool (*way)(struct store *, int, struct text *, struct err *),
-                    struct err *e)
+static bool upgrade(struct store *s, int version,
+                    bool (*way)(struct store *, int, struct text *, struct err *), struct err *e)
 {
     struct text told = {0};
     const bool ok = way(s, version, &told, e);
@@ -105,13 +116,16 @@ static bool prepare_writer(struct store *s, struct err *e)
     bool empty = false;
     int64_t version;
     if (!check_owner(s, &empty, &version, e)) return false;
-    if (sqlite3_db_readonly(s->db, "main") == 1) return err_set(e, ERR_IO, "database %s is read-only", s->path);
+    if (sqlite3_db_readonly(s->db, "main") == 1)
+        return err_set(e, ERR_IO, "database %s is read-only", s->path);
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
-    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_file, e)) return false;
+    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_file, e))
+        return false;
     /* Tables that came after the first databases of this version. */
     if (!store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
-    return store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
+    return store_exec(
+        s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
 }
 
 static bool prepare_reader(struct store *s, struct err *e)
@@ -119,7 +133,8 @@ static bool prepare_reader(struct store *s, struct err *e)
     bool empty = false;
     int64_t version;
     if (!check_owner(s, &empty, &version, e)) return false;
-    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e)) return false;
+    if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e))
+        return false;
     if (!store_exec(s, "PRAGMA query_only = ON", e)) return false;
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
@@ -139,7 +154,8 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     struct stat info;
     *exists = stat(path, &info) == 0;
     if (*exists && S_ISDIR(info.st_mode))
-        return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA, "%s is a folder, not a database", path);
+        return err_set(e, mode == STORE_WRITE ? ERR_CREATE : ERR_DATA,
+                       "%s is a folder, not a database", path);
     if (!*exists && mode == STORE_READ)
         return err_set(e, ERR_NO_INPUT, "there is no database %s; `mimdsim run` makes one", path);
     if (*exists) return true;
@@ -157,7 +173,8 @@ static unsigned char *make_image(sqlite3_int64 *size, bool wal, struct err *e)
     if (sqlite3_open(":memory:", &s.db) == SQLITE_OK && create_schema(&s, e))
         image = sqlite3_serialize(s.db, "main", size, 0);
     else store_failed(&s, e);
-    /* Bytes 18 and 19 of the header: 2 is WAL, 1 a rollback journal (sqlite.org/fileformat2.html, 1.3.3). */
+    /* Bytes 18 and 19 of the header: 2 is WAL, 1 a rollback journal
+     * (sqlite.org/fileformat2.html, 1.3.3). */
     if (image != NULL) image[18] = image[19] = wal ? 2 : 1;
     sqlite3_close(s.db);
     return image;
@@ -185,8 +202,9 @@ static void remove_stale_logs(const char *path)
     }
 }
 
-/* Make the file of a new database. It is written beside its place and linked there when it is whole, so no one ever
- * sees, and no failure leaves, half of one; when another program was faster, its file is the one. */
+/* Make the file of a new database. It is written beside its place and linked there when it is
+ * whole, so no one ever sees, and no failure leaves, half of one; when another program was faster,
+ * its file is the one. */
 static bool make_file(const char *path, struct err *e)
 {
     char *folder = folder_of(path), *beside = NULL;
@@ -198,7 +216,9 @@ static bool make_file(const char *path, struct err *e)
     int file = beside_open(path, &beside);
     bool ok = file >= 0 && write_all(file, image, size) && fdatasync(file) == 0;
     if (ok && link(beside, path) != 0 && errno != EEXIST) ok = rename(beside, path) == 0;
-    if (!ok) err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path, strerror(errno));
+    if (!ok)
+        err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path,
+                strerror(errno));
     if (file >= 0) {
         unlink(beside);
         close(file);
@@ -218,7 +238,8 @@ static void reopen_immutable(struct store *s)
         else text_add_bytes(&uri, (const char *)c, 1);
     text_add(&uri, "?immutable=1");
     sqlite3_close(s->db);
-    sqlite3_open_v2(uri.s, &s->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
+    sqlite3_open_v2(uri.s, &s->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX,
+                    NULL);
     text_free(&uri);
 }
 
@@ -231,25 +252,29 @@ static bool log_exists(const char *path)
     return there;
 }
 
-/* Where the file may be written, it is opened so, although query_only forbids every change: SQLite removes the log of
- * a WAL database only when its last connection could write. Where not, its log would stay behind: none is made. */
+/* Where the file may be written, it is opened so, although query_only forbids every change: SQLite
+ * removes the log of a WAL database only when its last connection could write. Where not, its log
+ * would stay behind: none is made. */
 static bool open_reader(struct store *s, struct err *e)
 {
-    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
+    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL))
+        return store_failed(s, e);
     if (sqlite3_db_readonly(s->db, "main") == 1 && !log_exists(s->path)) reopen_immutable(s);
     int64_t ignored;
     struct err first = {0};
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     bool readable = read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
     int code = sqlite3_errcode(s->db);
-    if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path)) reopen_immutable(s);
+    if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path))
+        reopen_immutable(s);
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     return prepare_reader(s, e);
 }
 
 static bool open_writer(struct store *s, struct err *e)
 {
-    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)) return store_failed(s, e);
+    if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL))
+        return store_failed(s, e);
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     return prepare_writer(s, e);
 }
@@ -258,7 +283,8 @@ static bool open_memory(struct store *s, bool passing, struct err *e)
 {
     if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
     s->passing = passing;
-    return create_schema(s, e) && store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
+    return create_schema(s, e) &&
+           store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }
 
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
@@ -299,7 +325,8 @@ const char *store_remark(const struct store *s) { return s->remark; }
 bool store_upgrade(const char *path, struct text *told, struct err *e)
 {
     bool exists;
-    struct store *s = check_path(path, STORE_READ, &exists, e) ? store_open(path, STORE_WRITE, e) : NULL;
+    struct store *s =
+        check_path(path, STORE_READ, &exists, e) ? store_open(path, STORE_WRITE, e) : NULL;
     if (s == NULL) return false;
     if (s->remark != NULL) text_add(told, "%s", s->remark);
     else text_add(told, "database %s is of version %d already", path, STORE_VERSION);

@@ -1,7 +1,8 @@
-/* store_put.c - one finished run becomes rows: run, settings, stages, ranks, baselines, checks, omissions, links,
- * spans.
+/* store_put.c - one finished run becomes rows: run, settings, stages, ranks, baselines, checks,
+ * omissions, links, spans.
  *
- * All of them in one transaction. Which columns a row has, and what they hold, say the tables of columns (rows.h). */
+ * All of them in one transaction. Which columns a row has, and what they hold, say the tables of
+ * columns (rows.h). */
 #include "store/store.h"
 
 #include <stdlib.h>
@@ -22,7 +23,8 @@ static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err 
     return ok;
 }
 
-static bool bind_identity(struct store *s, const struct run_spec *spec, struct binding *b, struct err *e)
+static bool bind_identity(struct store *s, const struct run_spec *spec, struct binding *b,
+                          struct err *e)
 {
     if (!bind_start(s, STATEMENT_RUN_FIND, b, e)) return false;
     bind_text(b, spec->config_hash);
@@ -69,7 +71,8 @@ static bool find_build(struct store *s, struct err *e)
 }
 
 /* The row of a table of columns, behind keys that are bound. */
-static bool put_row(struct store *s, enum statement which, struct binding *b, const void *row, struct err *e)
+static bool put_row(struct store *s, enum statement which, struct binding *b, const void *row,
+                    struct err *e)
 {
     rows_bind(which, b, row);
     return store_step(s, b->statement, e);
@@ -90,12 +93,13 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
 }
 
 /* The row of a setting, made when it is new. */
-static bool setting_id(struct store *s, const char *key, int nkey, const char *value, int nvalue, int64_t *id,
-                       struct err *e)
+static bool setting_id(struct store *s, const char *key, int nkey, const char *value, int nvalue,
+                       int64_t *id, struct err *e)
 {
     for (int add = 0; add < 2; add++) {
         struct binding b;
-        if (!bind_start(s, add ? STATEMENT_SETTING_ADD : STATEMENT_SETTING_FIND, &b, e)) return false;
+        if (!bind_start(s, add ? STATEMENT_SETTING_ADD : STATEMENT_SETTING_FIND, &b, e))
+            return false;
         sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC);
         sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC);
         if (!add && !find_id(s, &b, id, e)) return false;
@@ -111,11 +115,13 @@ static bool put_settings(struct store *s, int64_t run, const char *config, struc
 {
     if (s->passing) return true;
     for (const char *line = config; line != NULL && *line;) {
-        const char *end = strchrnul(line, '\n'), *equals = memmem(line, (size_t)(end - line), " = ", 3);
+        const char *end = strchrnul(line, '\n'),
+                   *equals = memmem(line, (size_t)(end - line), " = ", 3);
         if (equals != NULL) {
             int64_t setting;
             struct binding b;
-            if (!setting_id(s, line, (int)(equals - line), equals + 3, (int)(end - equals - 3), &setting, e) ||
+            if (!setting_id(s, line, (int)(equals - line), equals + 3, (int)(end - equals - 3),
+                            &setting, e) ||
                 !bind_start(s, STATEMENT_RUN_SETTING, &b, e))
                 return false;
             bind_int(&b, run);
@@ -128,8 +134,8 @@ static bool put_settings(struct store *s, int64_t run, const char *config, struc
 }
 
 /* Rows whose key is (run, number). */
-static bool put_numbered(struct store *s, enum statement which, int64_t run, int64_t number, const void *row,
-                         struct err *e)
+static bool put_numbered(struct store *s, enum statement which, int64_t run, int64_t number,
+                         const void *row, struct err *e)
 {
     struct binding b;
     if (!bind_start(s, which, &b, e)) return false;
@@ -138,7 +144,8 @@ static bool put_numbered(struct store *s, enum statement which, int64_t run, int
     return put_row(s, which, &b, row, e);
 }
 
-static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage, const struct stage_time *t, struct err *e)
+static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage,
+                           const struct stage_time *t, struct err *e)
 {
     struct binding b;
     if (stage_time_idle(t)) return true;
@@ -159,7 +166,8 @@ static bool put_stages(struct store *s, int64_t run, const struct run_result *r,
     if (s->passing || r->nrank > STORE_RANK_ROWS) return true;
     for (int k = 0; k < r->nrank; k++)
         for (int i = 0; i < r->nstage; i++)
-            if (!put_rank_stage(s, run, k, i, &r->stage[(int64_t)k * r->nstage + i], e)) return false;
+            if (!put_rank_stage(s, run, k, i, &r->stage[(int64_t)k * r->nstage + i], e))
+                return false;
     return true;
 }
 
@@ -191,7 +199,8 @@ static bool put_omissions(struct store *s, int64_t run, const struct run_result 
 /* Busiest first: longest queues, then longest use, then place. */
 static int compare_load(const void *a, const void *b)
 {
-    const struct link_load *x = *(const struct link_load *const *)a, *y = *(const struct link_load *const *)b;
+    const struct link_load *x = *(const struct link_load *const *)a,
+                           *y = *(const struct link_load *const *)b;
     if (x->queue_ps != y->queue_ps) return x->queue_ps > y->queue_ps ? -1 : 1;
     if (x->busy_ps != y->busy_ps) return x->busy_ps > y->busy_ps ? -1 : 1;
     return x < y ? -1 : x > y;
@@ -233,17 +242,17 @@ static bool remove_old(struct store *s, const struct run_spec *spec, struct err 
 
 bool store_note_build(struct store *s, struct err *e) { return find_build(s, e); }
 
-bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order, const struct run_result *r,
-               struct err *e)
+bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order,
+               const struct run_result *r, struct err *e)
 {
     bool alone = !s->in_transaction;
     int64_t run = 0;
     CHECK(s->writable);
     if (alone && !store_begin(s, e)) return false;
     bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, order, r, &run, e) &&
-              put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) && put_baselines(s, run, r, e) &&
-              put_errors(s, run, r, e) && put_omissions(s, run, r, e) && put_links(s, run, r, e) &&
-              put_spans(s, run, r, e);
+              put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) &&
+              put_baselines(s, run, r, e) && put_errors(s, run, r, e) &&
+              put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e);
     if (!alone) return ok;
     if (ok) return store_commit(s, e);
     store_rollback(s);

@@ -13,7 +13,10 @@ enum { MAX_COLUMNS = 128, MAX_INSERT = 64 };
 
 struct store_value store_null(void) { return (struct store_value){.kind = STORE_NULL}; }
 
-struct store_value store_int(int64_t v) { return (struct store_value){.kind = STORE_INT, .integer = v}; }
+struct store_value store_int(int64_t v)
+{
+    return (struct store_value){.kind = STORE_INT, .integer = v};
+}
 
 struct store_value store_real(double v)
 {
@@ -39,7 +42,8 @@ static struct store_value column_value(sqlite3_stmt *q, int column)
 {
     switch (sqlite3_column_type(q, column)) {
     case SQLITE_INTEGER: return store_int(sqlite3_column_int64(q, column));
-    case SQLITE_FLOAT: return (struct store_value){.kind = STORE_REAL, .real = sqlite3_column_double(q, column)};
+    case SQLITE_FLOAT:
+        return (struct store_value){.kind = STORE_REAL, .real = sqlite3_column_double(q, column)};
     case SQLITE_NULL: return store_null();
     default: return store_text((const char *)sqlite3_column_text(q, column));
     }
@@ -54,7 +58,8 @@ static bool has_statement(struct store *s, const char *sql)
     return more;
 }
 
-static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param, struct err *e)
+static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param,
+                             struct err *e)
 {
     sqlite3_stmt *q = NULL;
     const char *rest = "";
@@ -63,7 +68,8 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         return NULL;
     }
     if (has_statement(s, rest)) {
-        err_set(e, ERR_DATA, "more than one statement: '%.60s' would not be run", rest + strspn(rest, " \t\r\n"));
+        err_set(e, ERR_DATA, "more than one statement: '%.60s' would not be run",
+                rest + strspn(rest, " \t\r\n"));
         sqlite3_finalize(q);
         return NULL;
     }
@@ -72,12 +78,15 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         return NULL;
     }
     if (!s->writable && !sqlite3_stmt_readonly(q)) {
-        err_set(e, ERR_IO, "database %s is opened for reading only: a statement that changes it is not run", s->path);
+        err_set(e, ERR_IO,
+                "database %s is opened for reading only: a statement that changes it is not run",
+                s->path);
         sqlite3_finalize(q);
         return NULL;
     }
     if (sqlite3_bind_parameter_count(q) != nparam) {
-        err_set(e, ERR_DATA, "the query has %d parameters, %d were given", sqlite3_bind_parameter_count(q), nparam);
+        err_set(e, ERR_DATA, "the query has %d parameters, %d were given",
+                sqlite3_bind_parameter_count(q), nparam);
         sqlite3_finalize(q);
         return NULL;
     }
@@ -85,15 +94,16 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
     return q;
 }
 
-bool store_query(struct store *s, const char *sql, int nparam, const char *const *param, store_value_fn *header,
-                 store_value_fn *row, void *context, struct err *e)
+bool store_query(struct store *s, const char *sql, int nparam, const char *const *param,
+                 store_value_fn *header, store_value_fn *row, void *context, struct err *e)
 {
     sqlite3_stmt *q = prepare(s, sql, nparam, param, e);
     if (q == NULL) return false;
     int ncolumn = sqlite3_column_count(q), code = SQLITE_DONE;
     const char *name[MAX_COLUMNS];
     struct store_value value[MAX_COLUMNS];
-    bool ok = ncolumn <= MAX_COLUMNS || err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
+    bool ok = ncolumn <= MAX_COLUMNS ||
+              err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
     for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
     bool more = ok && (header == NULL || header(context, ncolumn, name, NULL));
     while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
@@ -105,14 +115,15 @@ bool store_query(struct store *s, const char *sql, int nparam, const char *const
     return ok;
 }
 
-bool store_select(struct store *s, const char *sql, int nparam, const char *const *param, store_row_fn *row,
-                  void *context, struct err *e)
+bool store_select(struct store *s, const char *sql, int nparam, const char *const *param,
+                  store_row_fn *row, void *context, struct err *e)
 {
     sqlite3_stmt *q = prepare(s, sql, nparam, param, e);
     if (q == NULL) return false;
     int ncolumn = sqlite3_column_count(q), code = SQLITE_DONE;
     const char *name[MAX_COLUMNS], *value[MAX_COLUMNS];
-    bool ok = ncolumn <= MAX_COLUMNS || err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
+    bool ok = ncolumn <= MAX_COLUMNS ||
+              err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
     for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
     bool more = ok;
     while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
@@ -125,7 +136,8 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
 }
 
 /* Prepare, bind, step and finalize a statement that returns nothing. */
-static bool run_once(struct store *s, const char *sql, int nvalue, const struct store_value *value, struct err *e)
+static bool run_once(struct store *s, const char *sql, int nvalue, const struct store_value *value,
+                     struct err *e)
 {
     sqlite3_stmt *q = NULL;
     CHECK(s->writable);
@@ -152,7 +164,8 @@ bool store_insert(struct store *s, const char *table, int ncolumn, const char *c
 }
 
 bool store_insert_row(struct store *s, const char *table, int n, const char *const *name,
-                      const struct store_value *value, const struct column_table *t, const void *row, struct err *e)
+                      const struct store_value *value, const struct column_table *t,
+                      const void *row, struct err *e)
 {
     const char *all[MAX_INSERT];
     struct store_value cell[MAX_INSERT];
@@ -175,7 +188,8 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
     return store_insert(s, table, n, all, cell, e);
 }
 
-bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e)
+bool store_delete(struct store *s, const char *table, const char *column, struct store_value value,
+                  struct err *e)
 {
     struct text sql = {0};
     text_add(&sql, "DELETE FROM \"%s\" WHERE \"%s\" IS ?", table, column);

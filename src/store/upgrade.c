@@ -1,5 +1,5 @@
-/* upgrade.c - one transaction from an older schema to this one, and the old database kept beside; see
- * upgrade.h. */
+/* upgrade.c - one transaction from an older schema to this one, and the old database kept beside;
+ * see upgrade.h. */
 #include "store/upgrade.h"
 
 #include <errno.h>
@@ -14,8 +14,7 @@
 
 enum { MOST_BACKUPS = 100 };
 
-/* --- tables
- * ------------------------------------------------------------------------------------------------------- */
+/* --- tables ----------------------------------------------------------------------------------- */
 
 /* Call `visit` with each row of `sql` on `db`; false at the first failure of either. */
 typedef bool visit_fn(struct store *s, sqlite3_stmt *row, struct err *e);
@@ -27,13 +26,15 @@ static bool for_each(struct store *s, sqlite3 *db, const char *sql, visit_fn *vi
     int code = sqlite3_prepare_v2(db, sql, -1, &q, NULL);
     while (ok && code == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW) ok = visit(s, q, e);
     if (code == SQLITE_OK) code = sqlite3_finalize(q);
-    if (ok && code != SQLITE_OK) ok = err_set(e, ERR_DATA, "database %s: %s", s->path, sqlite3_errstr(code));
+    if (ok && code != SQLITE_OK)
+        ok = err_set(e, ERR_DATA, "database %s: %s", s->path, sqlite3_errstr(code));
     return ok;
 }
 
 /* Run the statement that printf-like `format` with a name or two makes; %w doubles quotes
  * (sqlite.org/printf.html). */
-static bool exec_named(struct store *s, struct err *e, const char *format, const char *a, const char *b)
+static bool exec_named(struct store *s, struct err *e, const char *format, const char *a,
+                       const char *b)
 {
     char *sql = sqlite3_mprintf(format, a, b);
     bool ok = sql != NULL && store_exec(s, sql, e);
@@ -45,32 +46,35 @@ static const char *name_of(sqlite3_stmt *row) { return (const char *)sqlite3_col
 
 static bool has_column(struct store *s, const char *table, const char *column)
 {
-    return sqlite3_table_column_metadata(s->db, "main", table, column, NULL, NULL, NULL, NULL, NULL) ==
-           SQLITE_OK;
+    return sqlite3_table_column_metadata(s->db, "main", table, column, NULL, NULL, NULL, NULL,
+                                         NULL) == SQLITE_OK;
 }
 
-/* Views and indices are made anew; those of the user's own, which the schema does not name, stay. */
+/* Views and indices are made anew; those of the user's own, which the schema does not name, stay.
+ */
 static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
 {
     const bool view = strcmp((const char *)sqlite3_column_text(row, 1), "view") == 0;
-    return exec_named(s, e, view ? "DROP VIEW IF EXISTS \"%w\"" : "DROP INDEX IF EXISTS \"%w\"", name_of(row),
-                      NULL);
+    return exec_named(s, e, view ? "DROP VIEW IF EXISTS \"%w\"" : "DROP INDEX IF EXISTS \"%w\"",
+                      name_of(row), NULL);
 }
 
 static bool put_aside(struct store *s, sqlite3_stmt *row, struct err *e)
 {
     if (!has_column(s, name_of(row), NULL)) return true;
-    return exec_named(s, e, "ALTER TABLE \"%w\" RENAME TO \"older_%w\"", name_of(row), name_of(row));
+    return exec_named(s, e, "ALTER TABLE \"%w\" RENAME TO \"older_%w\"", name_of(row),
+                      name_of(row));
 }
 
-/* The columns of `table`, and what each gets: the old column of the same name, its default, or nothing of its
- * type. */
+/* The columns of `table`, and what each gets: the old column of the same name, its default, or
+ * nothing of its type. */
 static bool list_columns(struct store *s, const char *table, const char *older, struct text *to,
                          struct text *from, struct err *e)
 {
     sqlite3_stmt *q = NULL;
     bool ok = sqlite3_prepare_v2(
-                  s->db, "SELECT name, type, \"notnull\" AND dflt_value IS NULL FROM pragma_table_info(?1)",
+                  s->db, "SELECT name, type, \"notnull\" AND dflt_value IS NULL"
+                         " FROM pragma_table_info(?1)",
                   -1, &q, NULL) == SQLITE_OK;
     if (ok) sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC);
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
@@ -94,7 +98,8 @@ static bool fill_table(struct store *s, sqlite3_stmt *row, struct err *e)
     bool ok = true;
     if (has_column(s, older.s, NULL)) {
         ok = list_columns(s, table, older.s, &to, &from, e);
-        text_add(&sql, "DELETE FROM \"%s\"; INSERT INTO \"%s\" (%s) SELECT %s FROM \"%s\"; DROP TABLE \"%s\"",
+        text_add(&sql, "DELETE FROM \"%s\"; INSERT INTO \"%s\" (%s) SELECT %s"
+                       " FROM \"%s\"; DROP TABLE \"%s\"",
                  table, table, to.s, from.s, older.s, older.s);
         ok = ok && store_exec(s, sql.s, e);
     }
@@ -105,15 +110,16 @@ static bool fill_table(struct store *s, sqlite3_stmt *row, struct err *e)
     return ok;
 }
 
-/* Everything within the transaction. `fresh` is an empty database of this version: it tells what there is to
- * be. */
+/* Everything within the transaction. `fresh` is an empty database of this version: it tells what
+ * there is to be. */
 static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int version, int64_t *kept,
                    struct err *e)
 {
     static const char tables[] =
         "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite_%'",
                       others[] =
-                          "SELECT name, type FROM sqlite_schema WHERE type <> 'table' AND sql IS NOT NULL";
+                          "SELECT name, type FROM sqlite_schema WHERE type <> 'table'"
+                          " AND sql IS NOT NULL";
     char identity[64];
     snprintf(identity, sizeof identity, "PRAGMA user_version = %d", STORE_VERSION);
     return for_each(s, fresh, others, drop_object, e) && for_each(s, fresh, tables, put_aside, e) &&
@@ -133,37 +139,40 @@ static bool remake_from(struct store *s, int version, int64_t *kept, struct err 
     return ok;
 }
 
-/* Renaming a table must not touch what refers to it, and tables go while others still refer to them. */
+/* Renaming a table must not touch what refers to it, and tables go while others still refer to
+ * them. */
 static bool begin(struct store *s, struct err *e)
 {
-    return store_exec(s, "PRAGMA foreign_keys = OFF; PRAGMA legacy_alter_table = ON; BEGIN IMMEDIATE", e);
+    return store_exec(
+        s, "PRAGMA foreign_keys = OFF; PRAGMA legacy_alter_table = ON; BEGIN IMMEDIATE", e);
 }
 
 static bool end(struct store *s, bool ok, struct err *e)
 {
     ok = ok && store_exec(s, "COMMIT", e);
     if (!ok && !sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
-    sqlite3_exec(s->db, "PRAGMA legacy_alter_table = OFF; PRAGMA foreign_keys = ON", NULL, NULL, NULL);
+    sqlite3_exec(s->db, "PRAGMA legacy_alter_table = OFF; PRAGMA foreign_keys = ON", NULL, NULL,
+                 NULL);
     return ok;
 }
 
 static void tell_kept(int64_t kept, struct text *told)
 {
     if (kept > 0)
-        text_add(told, "; %lld runs cannot be described by this program any more: table run_older says why",
+        text_add(told, "; %lld runs cannot be described by this program any more: table run_older "
+                       "says why",
                  (long long)kept);
 }
 
-/* --- the old one beside
- * ------------------------------------------------------------------------------------------- */
+/* --- the old one beside ----------------------------------------------------------------------- */
 
 /* Copy the database as it is before the transaction's first change into the new file `to`. */
 static bool copy_into(struct store *s, const char *to, struct err *e)
 {
     struct store reader = {.path = s->path};
     char *sql = sqlite3_mprintf("VACUUM INTO %Q", to);
-    bool ok = sqlite3_open_v2(s->path, &reader.db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL) ==
-                  SQLITE_OK ||
+    bool ok = sqlite3_open_v2(s->path, &reader.db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX,
+                              NULL) == SQLITE_OK ||
               store_failed(&reader, e);
     sqlite3_busy_timeout(reader.db, STORE_BUSY_MS);
     ok = ok && store_exec(&reader, sql, e);
@@ -172,7 +181,8 @@ static bool copy_into(struct store *s, const char *to, struct err *e)
     return ok;
 }
 
-/* Link `from` to PATH.vN, or PATH.vN.K where that is taken; *name is the one it got, for the caller to free.
+/* Link `from` to PATH.vN, or PATH.vN.K where that is taken; *name is the one it got, for the caller
+ * to free.
  */
 static bool link_free_name(struct store *s, int version, const char *from, struct text *name)
 {
@@ -192,7 +202,8 @@ static bool back_up(struct store *s, int version, struct text *name, struct err 
     char *beside = NULL;
     int file = beside_open(s->path, &beside);
     if (file < 0)
-        return err_set(e, ERR_CREATE, "cannot keep a copy of database %s: %s", s->path, strerror(errno));
+        return err_set(e, ERR_CREATE, "cannot keep a copy of database %s: %s", s->path,
+                       strerror(errno));
     bool ok = copy_into(s, beside, e);
     if (ok && (fdatasync(file) != 0 || !link_free_name(s, version, beside, name)))
         ok = err_set(e, ERR_IO, "cannot keep a copy of database %s: %s", s->path, strerror(errno));
@@ -202,10 +213,10 @@ static bool back_up(struct store *s, int version, struct text *name, struct err 
     return ok;
 }
 
-/* --- both ways
- * ---------------------------------------------------------------------------------------------------- */
+/* --- both ways -------------------------------------------------------------------------------- */
 
-/* What user_version says now: another program may have upgraded it while this one waited for the lock. */
+/* What user_version says now: another program may have upgraded it while this one waited for the
+ * lock. */
 static bool still(struct store *s, int version, bool *same, struct err *e)
 {
     sqlite3_stmt *q = NULL;
@@ -227,7 +238,8 @@ bool upgrade_file(struct store *s, int version, struct text *told, struct err *e
     ok = end(s, ok, e);
     if (backed && !ok) unlink(name.s);
     if (backed && ok) {
-        text_add(told, "database %s was of version %d and is now of version %d; the old one is kept as %s",
+        text_add(told, "database %s was of version %d and is now of version %d; the old one is "
+                       "kept as %s",
                  s->path, version, STORE_VERSION, name.s);
         tell_kept(kept, told);
         /* The old tables' pages are given back; where that fails they are used again later. */
@@ -245,17 +257,20 @@ static bool copy_pages(struct store *s, sqlite3 *to, struct err *e)
     int code = b != NULL ? sqlite3_backup_finish(b) : sqlite3_errcode(to);
     if (code == SQLITE_OK) return true;
     return err_set(e, code == SQLITE_BUSY ? ERR_BUSY : ERR_IO,
-                   "database %s could not be copied for reading: %s", s->path, sqlite3_errstr(code));
+                   "database %s could not be copied for reading: %s", s->path,
+                   sqlite3_errstr(code));
 }
 
 bool upgrade_copy(struct store *s, int version, struct text *told, struct err *e)
 {
     sqlite3 *copy = NULL;
     int64_t kept = 0;
-    /* An empty name: a private file in the folder for temporary files, removed when it is closed. */
+    /* An empty name: a private file in the folder for temporary files, removed when it is closed.
+     */
     bool ok = sqlite3_open("", &copy) == SQLITE_OK && copy_pages(s, copy, e);
     if (!ok) {
-        if (e->kind == ERR_NONE) err_set(e, ERR_IO, "no temporary file for a copy of database %s", s->path);
+        if (e->kind == ERR_NONE)
+            err_set(e, ERR_IO, "no temporary file for a copy of database %s", s->path);
         sqlite3_close(copy);
         return false;
     }
@@ -264,8 +279,8 @@ bool upgrade_copy(struct store *s, int version, struct text *told, struct err *e
     ok = end(s, begin(s, e) && remake_from(s, version, &kept, e), e);
     if (!ok) return false;
     text_add(told,
-             "database %s is of version %d: read through an upgraded copy; `mimdsim query --upgrade %s` "
-             "upgrades it",
+             "database %s is of version %d: read through an upgraded copy; `mimdsim query "
+             "--upgrade %s` upgrades it",
              s->path, version, s->path);
     tell_kept(kept, told);
     return true;

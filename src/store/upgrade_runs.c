@@ -1,7 +1,8 @@
-/* upgrade_runs.c - stored configurations are read back into runs, which are identified as new ones are.
+/* upgrade_runs.c - stored configurations are read back into runs, which are identified as new ones
+ * are.
  *
- * Before version 6 a run that asked for level 'auto-tolerance' was identified by the question; since then by
- * the level that it took, as any other run with that level. */
+ * Before version 6 a run that asked for level 'auto-tolerance' was identified by the question;
+ * since then by the level that it took, as any other run with that level. */
 #include "store/upgrade_runs.h"
 
 #include <stdio.h>
@@ -29,15 +30,20 @@ static bool prepare(struct store *s, sqlite3_stmt **out, const char *sql, struct
 static bool open_work(struct work *w, struct err *e)
 {
     return prepare(w->s, &w->select, "SELECT id, config_text, level FROM run ORDER BY id", e) &&
-           prepare(w->s, &w->update, "UPDATE run SET config_hash = ?, config_text = ? WHERE id = ?", e) &&
+           prepare(w->s, &w->update, "UPDATE run SET config_hash = ?, config_text = ? WHERE id = ?",
+                   e) &&
            prepare(w->s, &w->older, "INSERT INTO run_older VALUES (?, ?, ?)", e) &&
            prepare(w->s, &w->forget,
-                   "DELETE FROM run_setting WHERE run_id = ?1 AND setting_id IN (SELECT id FROM setting "
+                   "DELETE FROM run_setting WHERE run_id = ?1"
+                   " AND setting_id IN (SELECT id FROM setting "
                    "WHERE key = ?2)",
                    e) &&
-           prepare(w->s, &w->setting, "INSERT OR IGNORE INTO setting (key, value) VALUES (?1, ?2)", e) &&
-           prepare(w->s, &w->link,
-                   "INSERT INTO run_setting SELECT ?1, id FROM setting WHERE key = ?2 AND value = ?3", e);
+           prepare(w->s, &w->setting, "INSERT OR IGNORE INTO setting (key, value) VALUES (?1, ?2)",
+                   e) &&
+           prepare(
+               w->s, &w->link,
+               "INSERT INTO run_setting SELECT ?1, id FROM setting WHERE key = ?2 AND value = ?3",
+               e);
 }
 
 static void close_work(struct work *w)
@@ -58,7 +64,8 @@ static bool note_older(struct work *w, int64_t run, const char *why, struct err 
 }
 
 /* The value of one setting of a stored run becomes `value`. */
-static bool change_setting(struct work *w, int64_t run, const char *key, const char *value, struct err *e)
+static bool change_setting(struct work *w, int64_t run, const char *key, const char *value,
+                           struct err *e)
 {
     struct binding forget = {w->forget, 1}, setting = {w->setting, 1}, link = {w->link, 1};
     bind_int(&forget, run);
@@ -68,11 +75,13 @@ static bool change_setting(struct work *w, int64_t run, const char *key, const c
     bind_int(&link, run);
     bind_text(&link, key);
     bind_text(&link, value);
-    return store_step(w->s, w->forget, e) && store_step(w->s, w->setting, e) && store_step(w->s, w->link, e);
+    return store_step(w->s, w->forget, e) && store_step(w->s, w->setting, e) &&
+           store_step(w->s, w->link, e);
 }
 
 /* A run that asked for a tolerance is a run at the level that it took. */
-static bool settle_level(struct work *w, int64_t run, struct run_spec *spec, const char *level, struct err *e)
+static bool settle_level(struct work *w, int64_t run, struct run_spec *spec, const char *level,
+                         struct err *e)
 {
     static const char *const key[] = {"network.level", "network.tolerance"};
     struct arena *a = arena_create();
@@ -117,7 +126,8 @@ static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
     if (asked && !settle_level(w, run, &spec, level, e)) return false;
     identity_forget(w->identity); /* the arena is used anew for every run */
     identity_set(w->identity, &spec, a);
-    /* What was stored stays as it is, but for the level: an older program may have known fewer settings. */
+    /* What was stored stays as it is, but for the level: an older program may have known fewer
+     * settings. */
     return update_run(w, run, &spec, asked ? spec.config_text : text, e);
 }
 
@@ -125,7 +135,8 @@ bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
 {
     int ntable;
     const struct field_table *const *table = field_tables(&ntable);
-    struct work w = {.s = s, .identity = identity_create(table, ntable), .version = version, .kept = kept};
+    struct work w = {
+        .s = s, .identity = identity_create(table, ntable), .version = version, .kept = kept};
     bool ok = open_work(&w, e);
     while (ok && sqlite3_step(w.select) == SQLITE_ROW) {
         struct arena *a = arena_create();

@@ -1,4 +1,5 @@
-/* accuracy.c - which points of a scenario its ladders stand at, and the cheapest rung of each; see accuracy.h. */
+/* accuracy.c - which points of a scenario its ladders stand at, and the cheapest rung of each; see
+ * accuracy.h. */
 #include "study/accuracy.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@
 #include "study/accuracy_ladder.h"
 #include "study/level_choice.h"
 
-/* --- the cheapest rung ------------------------------------------------------------------------------------------ */
+/* --- the cheapest rung ------------------------------------------------------------------------ */
 
 static double cost_of(const struct accuracy_rung *x)
 {
@@ -20,10 +21,11 @@ static double cost_of(const struct accuracy_rung *x)
     return x->machine_ps >= 0 ? (double)x->machine_ps : NAN;
 }
 
-struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const char *ladder, const char *quantity,
-                                       double tolerance)
+struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const char *ladder,
+                                       const char *quantity, double tolerance)
 {
-    struct accuracy_choice c = {.ladder = ladder, .at = "", .quantity = quantity, .tolerance = tolerance};
+    struct accuracy_choice c = {
+        .ladder = ladder, .at = "", .quantity = quantity, .tolerance = tolerance};
     for (int i = 0; i < r->nrung; i++) {
         const struct accuracy_rung *x = &r->rung[i];
         bool applies = strcmp(x->ladder, ladder) == 0 && strcmp(x->quantity, quantity) == 0;
@@ -36,13 +38,15 @@ struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const ch
         if (finer) c.finest = x;
         if (x->error <= tolerance && (!c.rung || cost_of(x) < cost_of(c.rung))) c.rung = x;
     }
-    if (c.rung && c.finest && cost_of(c.rung) > 0) c.cost_ratio = cost_of(c.finest) / cost_of(c.rung);
+    if (c.rung && c.finest && cost_of(c.rung) > 0)
+        c.cost_ratio = cost_of(c.finest) / cost_of(c.rung);
     return c;
 }
 
-/* --- points ----------------------------------------------------------------------------------------------------- */
+/* --- points ----------------------------------------------------------------------------------- */
 
-/* Limits that keep each ladder to seconds: messages of one evaluation, bodies, degrees of freedom. */
+/* Limits that keep each ladder to seconds: messages of one evaluation, bodies, degrees of freedom.
+ */
 enum { MOST_MESSAGES = 20000, MOST_BODIES = 256, MOST_MOVING = 40 };
 
 enum { NETWORK, ARITHMETIC, INTEGRATION, LADDERS };
@@ -56,9 +60,10 @@ static double size_of(int ladder, const struct run_estimate *x)
     return ladder == ARITHMETIC ? (double)x->nbody : (double)x->nu;
 }
 
-/* The largest point within the limit, the smallest of all when none is; of equal ones the last with most ranks. -1:
- * this ladder needs a model and there is none. */
-static int point_choose(const struct run_spec *spec, const struct run_estimate *size, int nspec, int ladder)
+/* The largest point within the limit, the smallest of all when none is; of equal ones the last with
+ * most ranks. -1: this ladder needs a model and there is none. */
+static int point_choose(const struct run_spec *spec, const struct run_estimate *size, int nspec,
+                        int ladder)
 {
     static const double most[LADDERS] = {MOST_MESSAGES, MOST_BODIES, MOST_MOVING};
     int best = -1;
@@ -73,12 +78,14 @@ static int point_choose(const struct run_spec *spec, const struct run_estimate *
     return best;
 }
 
-static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const struct run_spec *spec, int which,
-                         int nbody, struct err *e)
+static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const struct run_spec *spec,
+                         int which, int nbody, struct err *e)
 {
-    *l = (struct ladder){.report = r, .name = ladder_name[which], .spec = *spec, .arena = arena_create()};
+    *l = (struct ladder){
+        .report = r, .name = ladder_name[which], .spec = *spec, .arena = arena_create()};
     level_family(spec, l->family);
-    if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE) l->spec.machine.network.level = LEVEL_LINK;
+    if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
+        l->spec.machine.network.level = LEVEL_LINK;
     if (nbody == spec->nrank) snprintf(l->at, sizeof l->at, "n=P=%d", nbody);
     else if (nbody > 0) snprintf(l->at, sizeof l->at, "n=%d P=%d", nbody, spec->nrank);
     else snprintf(l->at, sizeof l->at, "P=%d", spec->nrank);
@@ -90,10 +97,11 @@ static bool ladder_begin(struct ladder *l, struct accuracy_report *r, const stru
     return true;
 }
 
-static bool climb(struct accuracy_report *r, const struct run_spec *spec, const struct run_estimate *size, int nspec,
-                  int which, struct err *e)
+static bool climb(struct accuracy_report *r, const struct run_spec *spec,
+                  const struct run_estimate *size, int nspec, int which, struct err *e)
 {
-    static void (*const ladder[LADDERS])(struct ladder *) = {ladder_network, ladder_arithmetic, ladder_integration};
+    static void (*const ladder[LADDERS])(struct ladder *) = {ladder_network, ladder_arithmetic,
+                                                             ladder_integration};
     int at = point_choose(spec, size, nspec, which);
     if (at < 0) return true;
     struct ladder l;
@@ -105,8 +113,8 @@ static bool climb(struct accuracy_report *r, const struct run_spec *spec, const 
     return good;
 }
 
-static bool begin(struct accuracy_report *r, const struct run_spec *spec, int nspec, struct arena *a,
-                  struct run_estimate **size, struct err *e)
+static bool begin(struct accuracy_report *r, const struct run_spec *spec, int nspec,
+                  struct arena *a, struct run_estimate **size, struct err *e)
 {
     *r = (struct accuracy_report){.arena = a};
     if (nspec == 0) return err_set(e, ERR_CONFIG, "the scenario has no runs");
@@ -117,15 +125,15 @@ static bool begin(struct accuracy_report *r, const struct run_spec *spec, int ns
     return true;
 }
 
-bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a, struct accuracy_report *r,
-                      struct err *e)
+bool accuracy_network(const struct run_spec *spec, int nspec, struct arena *a,
+                      struct accuracy_report *r, struct err *e)
 {
     struct run_estimate *size = NULL;
     return begin(r, spec, nspec, a, &size, e) && climb(r, spec, size, nspec, NETWORK, e);
 }
 
-bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet, struct arena *a,
-                      struct accuracy_report *r, struct err *e)
+bool accuracy_measure(const struct run_spec *spec, int nspec, double within, bool quiet,
+                      struct arena *a, struct accuracy_report *r, struct err *e)
 {
     struct run_estimate *size = NULL;
     if (!begin(r, spec, nspec, a, &size, e)) return false;
@@ -137,10 +145,11 @@ bool accuracy_measure(const struct run_spec *spec, int nspec, double within, boo
     progress_end(&p);
     for (int k = 0; k < LADDERS; k++) {
         if (r->host_s[k] == 0) continue;
-        r->choice[r->nchoice++] =
-            accuracy_choose(r, ladder_name[k], ladder_quantity[k], within > 0 ? within : usual_tolerance[k]);
+        r->choice[r->nchoice++] = accuracy_choose(r, ladder_name[k], ladder_quantity[k],
+                                                  within > 0 ? within : usual_tolerance[k]);
         if (k == INTEGRATION && within > 0 && within != usual_tolerance[k])
-            r->choice[r->nchoice++] = accuracy_choose(r, ladder_name[k], ladder_quantity[k], usual_tolerance[k]);
+            r->choice[r->nchoice++] =
+                accuracy_choose(r, ladder_name[k], ladder_quantity[k], usual_tolerance[k]);
     }
     return true;
 }

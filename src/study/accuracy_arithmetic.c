@@ -1,4 +1,5 @@
-/* accuracy_arithmetic.c - the arithmetic ladder: accelerations by every algorithm in every precision. */
+/* accuracy_arithmetic.c - the arithmetic ladder: accelerations by every algorithm in every
+ * precision. */
 #include <math.h>
 #include <stdio.h>
 
@@ -14,14 +15,17 @@
 static const char reference_name[] = "quad aba";
 static const char *const precision_name[] = {"double", "float", "quad"};
 static const enum precision from_coarse[] = {PRECISION_FLOAT, PRECISION_DOUBLE, PRECISION_QUAD};
-enum { MOST_DENSE = 300 }; /* degrees of freedom beyond which the mass matrix takes too long in quad precision */
+enum {
+    MOST_DENSE = 300
+}; /* degrees of freedom beyond which the mass matrix takes too long in quad precision */
 
 /* What is worth using; above a tenth an answer is none. */
 static void grade(struct accuracy_rung *r, double error) { ladder_grade(r, error, 1e-2, 0.1); }
 
-/* Seconds of one evaluation (t NULL: articulated bodies in three components), set-up included: the best of three
- * batches of some milliseconds. */
-static double time_forward(struct ladder *l, const struct dynamics_type *t, enum forward_method method, double *qdd)
+/* Seconds of one evaluation (t NULL: articulated bodies in three components), set-up included: the
+ * best of three batches of some milliseconds. */
+static double time_forward(struct ladder *l, const struct dynamics_type *t,
+                           enum forward_method method, double *qdd)
 {
     double best = INFINITY;
     for (int batch = 0; batch < 3; batch++) {
@@ -40,7 +44,8 @@ static double time_forward(struct ladder *l, const struct dynamics_type *t, enum
     return best;
 }
 
-static void serial_rung(struct ladder *l, enum forward_method method, enum precision precision, const double *reference)
+static void serial_rung(struct ladder *l, enum forward_method method, enum precision precision,
+                        const double *reference)
 {
     const struct dynamics_type *t = dynamics_type_of(precision);
     double *qdd = TAKE(l->arena, l->model->nu, double);
@@ -49,7 +54,8 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
     struct accuracy_rung *r = ladder_add(l, name, precision_name[precision], "qdd", reference_name);
     bool dense = method == FORWARD_CRBA || method == FORWARD_CRBA_SPARSE;
     if (dense && precision == PRECISION_QUAD && l->model->nu > MOST_DENSE) {
-        text_copy(r->text, sizeof r->text, "left out: more than 300 degrees of freedom in quad precision");
+        text_copy(r->text, sizeof r->text, "left out: more than 300 degrees of freedom in quad "
+                                           "precision");
         return;
     }
     struct work w = {0};
@@ -58,14 +64,16 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
         text_copy(r->text, sizeof r->text, "a pivot was not positive");
         return;
     }
-    if (report.fell_back) text_copy(r->text, sizeof r->text, "solved by articulated bodies instead");
+    if (report.fell_back) text_copy(r->text, sizeof r->text, "solved by articulated bodies "
+                                                             "instead");
     grade(r, trial_error(qdd, reference, l->model->nu));
     struct node_cost cost = node_cost_make(&l->spec.machine.node);
     if (precision != PRECISION_QUAD) r->machine_ps = node_cost_ps(&cost, &w);
     r->host_s = time_forward(l, t, method, qdd);
 }
 
-/* The serial code that the parallel programs have to beat where they compute in three components, too. */
+/* The serial code that the parallel programs have to beat where they compute in three components,
+ * too. */
 static void planar_rung(struct ladder *l, const double *reference)
 {
     struct err e;
@@ -96,7 +104,7 @@ static void serial_rungs(struct ladder *l, const double *reference)
     planar_rung(l, reference);
 }
 
-/* --- on the machine --------------------------------------------------------------------------------------------- */
+/* --- on the machine --------------------------------------------------------------------------- */
 
 static const struct {
     const char *name;
@@ -116,8 +124,8 @@ static const struct {
 } refinement_table[] = {{"", 0, 0, RESIDUAL_WORKING}, {" inner", 1, 0, RESIDUAL_WORKING},
                         {" robust", 1, 1, RESIDUAL_WORKING}, {" twice", 4, 0, RESIDUAL_TWICE}};
 
-static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, const char *method, const char *rung,
-                          const double *reference)
+static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, const char *method,
+                          const char *rung, const double *reference)
 {
     struct run_spec spec = l->spec;
     spec.kernel = *kernel;
@@ -128,13 +136,18 @@ static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, co
     text_copy(r->text, sizeof r->text, t.text);
     if (t.answered) {
         grade(r, trial_error(t.qdd, reference, l->model->nu));
-        int length = isnan(t.residual) ? snprintf(r->text, sizeof r->text, "the residual is no number")
-                                       : snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
+        int length = isnan(t.residual)
+                         ? snprintf(r->text, sizeof r->text,
+                                    "the residual is no "
+                                    "number")
+                         : snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
         if (t.condition > 0)
-            snprintf(r->text + length, sizeof r->text - (size_t)length, ", condition %.1e", t.condition);
+            snprintf(r->text + length, sizeof r->text - (size_t)length, ", condition %.1e",
+                     t.condition);
         r->machine_ps = t.makespan_ps;
         r->host_s = t.host_s;
-        for (int i = 0; i < 2 && t.host_s < 5e-3; i++) /* the fastest of a few: the others were disturbed */
+        for (int i = 0; i < 2 && t.host_s < 5e-3;
+             i++) /* the fastest of a few: the others were disturbed */
             r->host_s = fmin(r->host_s, trial_run(&spec, l->model, l->state, l->arena).host_s);
     }
     arena_release(l->arena, mark);
@@ -144,18 +157,24 @@ static void solver_rungs(struct ladder *l, enum formulation f, int solver, const
                          const double *reference)
 {
     char method[48], rung[32];
-    snprintf(method, sizeof method, "%s %s", f == FORMULATION_PAPER ? "paper" : "direct", solver_name);
+    snprintf(method, sizeof method, "%s %s", f == FORMULATION_PAPER ? "paper" : "direct",
+             solver_name);
     const bool has_twice = f == FORMULATION_DIRECT && l->model->is_chain && l->model->nloop == 0;
     for (int p = 0; p < 2; p++)
         for (int k = 0; k < (has_twice ? 4 : 3); k++) {
-            struct kernel_spec kernel = {.name = "forward", .formulation = f, .solver = solver_table[solver].solver,
-                                         .part_solver = solver_table[solver].part, .precision = from_coarse[p],
+            struct kernel_spec kernel = {.name = "forward",
+                                         .formulation = f,
+                                         .solver = solver_table[solver].solver,
+                                         .part_solver = solver_table[solver].part,
+                                         .precision = from_coarse[p],
                                          .algebra = l->spec.kernel.algebra,
-                                         .composites_incoming = true, .hybrid_levels = 1,
+                                         .composites_incoming = true,
+                                         .hybrid_levels = 1,
                                          .residual = refinement_table[k].residual,
                                          .inner_refinements = refinement_table[k].inner,
                                          .outer_refinements = refinement_table[k].outer};
-            snprintf(rung, sizeof rung, "%s%s", precision_name[from_coarse[p]], refinement_table[k].name);
+            snprintf(rung, sizeof rung, "%s%s", precision_name[from_coarse[p]],
+                     refinement_table[k].name);
             parallel_rung(l, &kernel, method, rung, reference);
         }
 }
@@ -172,8 +191,10 @@ void ladder_arithmetic(struct ladder *l)
         return;
     }
     serial_rungs(l, reference);
-    bool chain = m->is_chain && m->nloop == 0; /* trees and loops are contracted: no solver to choose */
+    bool chain =
+        m->is_chain && m->nloop == 0; /* trees and loops are contracted: no solver to choose */
     for (int f = 0; f < 2; f++)
         for (int s = 0; s < (chain ? (int)SOLVERS : 1); s++)
-            solver_rungs(l, (enum formulation)f, s, chain ? solver_table[s].name : "contraction", reference);
+            solver_rungs(l, (enum formulation)f, s, chain ? solver_table[s].name : "contraction",
+                         reference);
 }

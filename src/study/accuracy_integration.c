@@ -1,4 +1,5 @@
-/* accuracy_integration.c - the integration ladder: which stepper, and on how many processors, in the least time. */
+/* accuracy_integration.c - the integration ladder: which stepper, and on how many processors, in
+ * the least time. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,7 +27,8 @@ struct climb {
     struct ending begin, reference;
     double uncertainty;     /* of the reference's state */
     int64_t evaluation_ps;  /* least predicted time of one evaluation */
-    int64_t implicit_ps;    /* of one linearly implicit step on as many processors; -1: there is none */
+    int64_t
+        implicit_ps; /* of one linearly implicit step on as many processors; -1: there is none */
     int processors;         /* and on how many */
 };
 
@@ -49,8 +51,8 @@ static void ending_measure(struct ending *x, const struct model *m, struct arena
     t->drift(m, x->s, a, &x->drift, &velocity);
 }
 
-/* Long enough for the fastest joint to turn by about a radian, and no longer: errors then measure the stepper, not the
- * chaos of the motion. */
+/* Long enough for the fastest joint to turn by about a radian, and no longer: errors then measure
+ * the stepper, not the chaos of the motion. */
 static double duration_of(struct ladder *l)
 {
     const struct model *m = l->model;
@@ -115,7 +117,8 @@ static double state_error(const struct climb *c, const struct state *x)
 {
     const struct model *m = c->l->model;
     const struct state *r = c->reference.s, *b = c->begin.s;
-    return fmax(trial_change_error(x->q, r->q, b->q, m->nq), trial_change_error(x->qd, r->qd, b->qd, m->nu));
+    return fmax(trial_change_error(x->q, r->q, b->q, m->nq),
+                trial_change_error(x->qd, r->qd, b->qd, m->nu));
 }
 
 /* Of the energy: over the largest of kinetic energy and what the motion exchanged. */
@@ -134,14 +137,15 @@ static double momentum_error(const struct climb *c, const struct ending *x)
 }
 
 /* The rows of one rung: state first, then what should be kept. */
-static void add_rows(struct climb *c, const char *method, const char *rung, struct ending *x, long evaluations,
-                     double host_s, const char *why)
+static void add_rows(struct climb *c, const char *method, const char *rung, struct ending *x,
+                     long evaluations, double host_s, const char *why)
 {
     static const char *const quantity[] = {"state", "energy", "momentum", "loop position"};
     const struct model *m = c->l->model;
     if (x) ending_measure(x, m, c->l->arena);
     for (int k = 0; k < (m->nloop > 0 ? 4 : 3); k++) {
-        struct accuracy_rung *r = ladder_add(c->l, method, rung, quantity[k], k == 3 ? "closed loops" : reference_name);
+        struct accuracy_rung *r =
+            ladder_add(c->l, method, rung, quantity[k], k == 3 ? "closed loops" : reference_name);
         if (c->evaluation_ps >= 0) r->machine_ps = c->evaluation_ps * evaluations;
         r->host_s = host_s;
         if (!x) {
@@ -162,7 +166,9 @@ static void library_rung(struct climb *c, const char *stepper, double tolerance,
     struct ladder *l = c->l;
     struct arena_mark mark = arena_mark(l->arena);
     struct ending x = {.s = copy_of(l->model, l->state, l->arena)};
-    const struct trajectory_options o = {.stepper = stepper, .tolerance = tolerance, .fixed_steps = fixed,
+    const struct trajectory_options o = {.stepper = stepper,
+                                         .tolerance = tolerance,
+                                         .fixed_steps = fixed,
                                          .most_evaluations = MOST_EVALUATIONS};
     struct trajectory_report report = {0};
     struct err e;
@@ -212,7 +218,8 @@ static bool reference_find(struct climb *c)
     c->begin.s = l->state;
     c->reference.s = copy_of(l->model, l->state, l->arena);
     ending_measure(&c->begin, l->model, l->arena);
-    bool good = trajectory_advance(l->model, c->reference.s, c->duration, &tight, l->arena, NULL, &e);
+    bool good =
+        trajectory_advance(l->model, c->reference.s, c->duration, &tight, l->arena, NULL, &e);
     if (good) {
         ending_measure(&c->reference, l->model, l->arena);
         good = trajectory_advance(l->model, second.s, c->duration, &other, l->arena, NULL, &e);
@@ -224,15 +231,16 @@ static bool reference_find(struct climb *c)
     return false;
 }
 
-/* Fixed steps of implicit methods are few: each takes a Jacobian of 2 (n_q + n_u) evaluations. Multistep methods choose
- * step and order together: they have no fixed steps. */
+/* Fixed steps of implicit methods are few: each takes a Jacobian of 2 (n_q + n_u) evaluations.
+ * Multistep methods choose step and order together: they have no fixed steps. */
 static void library_rungs(struct climb *c, const char *stepper)
 {
     static const double tolerance[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11};
     const bool implicit = strstr(stepper, "imp") || strcmp(stepper, "msbdf") == 0;
     for (int k = 0; k < 5; k++) library_rung(c, stepper, tolerance[k], 0);
     if (strncmp(stepper, "ms", 2) == 0) return;
-    for (long steps = implicit ? 8 : 16; steps <= (implicit ? 128 : 1024); steps *= implicit ? 4 : 8)
+    for (long steps = implicit ? 8 : 16; steps <= (implicit ? 128 : 1024);
+         steps *= implicit ? 4 : 8)
         library_rung(c, stepper, 1e-12, steps);
 }
 
@@ -245,6 +253,7 @@ void ladder_integration(struct ladder *l)
     for (const char *const *s = trajectory_steppers(); *s; s++)
         library_rungs(&c, *s);
     for (int rule = STEP_SEMI_IMPLICIT; rule <= STEP_LINEARLY_IMPLICIT; rule++)
-        for (int steps = LEAST_FIXED_STEPS; steps <= MOST_FIXED_STEPS / (rule == STEP_RK4 ? 4 : 1); steps *= 4)
+        for (int steps = LEAST_FIXED_STEPS; steps <= MOST_FIXED_STEPS / (rule == STEP_RK4 ? 4 : 1);
+             steps *= 4)
             own_rung(&c, (enum step_rule)rule, steps);
 }

@@ -1,4 +1,5 @@
-/* accuracy_network.c - the network ladder: the same program on every level, times held against the finest. */
+/* accuracy_network.c - the network ladder: the same program on every level, times held against the
+ * finest. */
 #include <math.h>
 #include <stdio.h>
 
@@ -32,20 +33,25 @@ static double makespan_error(int64_t ps, const struct trial *finest)
     return reference > 0 ? fabs((double)ps - reference) / reference : NAN;
 }
 
-/* Largest difference of a rank's finishing time over the makespan; `finish` NULL: all end at `end_ps`. */
-static double finish_error(const int64_t *finish, int64_t end_ps, const struct trial *finest, int nrank)
+/* Largest difference of a rank's finishing time over the makespan; `finish` NULL: all end at
+ * `end_ps`. */
+static double finish_error(const int64_t *finish, int64_t end_ps, const struct trial *finest,
+                           int nrank)
 {
     double largest = 0;
     for (int i = 0; i < nrank; i++)
-        largest = fmax(largest, fabs((double)((finish ? finish[i] : end_ps) - finest->finish_ps[i])));
+        largest =
+            fmax(largest, fabs((double)((finish ? finish[i] : end_ps) - finest->finish_ps[i])));
     return finest->makespan_ps > 0 ? largest / (double)finest->makespan_ps : NAN;
 }
 
-static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, const int64_t *finish, double host_s,
-                     const char *why, const struct trial *finest, const char *finest_name)
+static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, const int64_t *finish,
+                     double host_s, const char *why, const struct trial *finest,
+                     const char *finest_name)
 {
     for (int k = 0; k < 2; k++) {
-        struct accuracy_rung *r = ladder_add(l, name, name, k == 0 ? "makespan" : "finish times", finest_name);
+        struct accuracy_rung *r =
+            ladder_add(l, name, name, k == 0 ? "makespan" : "finish times", finest_name);
         text_copy(r->text, sizeof r->text, why);
         if (makespan_ps < 0) continue;
         r->host_s = host_s;
@@ -55,7 +61,8 @@ static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, co
     }
 }
 
-/* Mean work of a rank, and each of its messages paid in full over the mean distance: nothing overlaps, nobody waits. */
+/* Mean work of a rank, and each of its messages paid in full over the mean distance: nothing
+ * overlaps, nobody waits. */
 static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 {
     const struct machine_spec *m = &l->spec.machine;
@@ -76,7 +83,8 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
     const int nlist = software_segments(&m->software, list);
     const struct software_segment *s = software_segment_of(list, nlist, (int64_t)bytes);
     double per_byte = fmax(s->gap_per_byte, n->link_bandwidth > 0 ? 1 / n->link_bandwidth : 0);
-    double message = s->send_overhead + s->recv_overhead + bytes * (s->send_copy + s->recv_copy + per_byte) +
+    double message = s->send_overhead + s->recv_overhead +
+                     bytes * (s->send_copy + s->recv_copy + per_byte) +
                      (hops + 1) * n->hop_latency + n->end_latency;
     struct node_cost cost = node_cost_make(&m->node);
     *seconds = (x.flops * cost.flop * 1e-12 + x.messages * message) / P;
@@ -91,7 +99,8 @@ void ladder_network(struct ladder *l)
     int finest = -1;
     network_levels_by_fineness(fine);
     for (int i = 0; i < LEVELS; i++) t[i] = run_level(l, (enum network_level)i);
-    for (int i = 0; i < LEVELS && finest < 0; i++) /* the finest that answers is the reference of the others */
+    for (int i = 0; i < LEVELS && finest < 0;
+         i++) /* the finest that answers is the reference of the others */
         if (t[fine[i]].answered) finest = (int)fine[i];
     const char *reference = finest >= 0 ? network_level_name((enum network_level)finest) : "none";
     double seconds, host_s;
@@ -99,6 +108,7 @@ void ladder_network(struct ladder *l)
         add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s,
                  "mean work and messages of a rank, no overlap", &t[finest], reference);
     for (int i = 0; i < LEVELS; i++)
-        add_rows(l, network_level_name((enum network_level)i), t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps,
-                 t[i].host_s, t[i].text, finest >= 0 ? &t[finest] : NULL, reference);
+        add_rows(l, network_level_name((enum network_level)i),
+                 t[i].answered ? t[i].makespan_ps : -1, t[i].finish_ps, t[i].host_s, t[i].text,
+                 finest >= 0 ? &t[finest] : NULL, reference);
 }

@@ -23,30 +23,38 @@ static const struct column rung_column[] = {
     {"at", COLUMN_CHARS, RUNG(at), .doc = "point of the scenario: \"n=P=128\""},
     {"family", COLUMN_CHARS, RUNG(family), .flags = COLUMN_NO_JSON,
      .doc = "SHA-256 of the settings without sizes, level and seeds: what it holds for"},
-    {"method", COLUMN_CHARS, RUNG(method), .title = "method", .before = "  ", .width = -24, .doc = "a curve"},
+    {"method", COLUMN_CHARS, RUNG(method), .title = "method", .before = "  ", .width = -24,
+     .doc = "a curve"},
     {"rung", COLUMN_CHARS, RUNG(rung), .doc = "a point on it: level, step size, tolerance"},
-    {"rung_shown", COLUMN_STRING, .value = read_rung, .flags = COLUMN_NO_SQL | COLUMN_NO_JSON, .title = "rung",
-     .before = " ", .width = -18, .doc = "as `rung`, blank where that is the method"},
+    {"rung_shown", COLUMN_STRING, .value = read_rung, .flags = COLUMN_NO_SQL | COLUMN_NO_JSON,
+     .title = "rung", .before = " ", .width = -18,
+     .doc = "as `rung`, blank where that is the method"},
     {"quantity", COLUMN_CHARS, RUNG(quantity), .doc = "what was compared"},
     {"reference", COLUMN_CHARS, RUNG(reference), .doc = "with what"},
-    {"status", COLUMN_WORD, RUNG(status), WORDS(status_word), .title = "status", .before = " ", .width = -9,
-     .doc = "whether it is good enough, poor, or no answer"},
-    {"relative_error", COLUMN_REAL, RUNG(error), .flags = COLUMN_NULL, .key = "error", .title = "error", .width = 10,
-     .style = 'e', .digits = 2, .doc = "NULL: failed, or not finite"},
-    {"host_s", COLUMN_REAL, RUNG(host_s), .flags = COLUMN_NULL, .title = "host_ms", .width = 12, .style = 'f',
-     .digits = 4, .scale = 1e3, .doc = "time on this computer"},
-    {"machine_ps", COLUMN_INT64, RUNG(machine_ps), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE, .key = "machine_s",
-     .json_scale = 1e-12, .title = "machine_us", .width = 14, .style = 'f', .digits = 3, .scale = 1e-6,
-     .doc = "predicted time on the machine"},
-    {"text", COLUMN_CHARS, RUNG(text), .title = "", .before = "  ", .doc = "why it failed; processors used"},
+    {"status", COLUMN_WORD, RUNG(status), WORDS(status_word), .title = "status", .before = " ",
+     .width = -9, .doc = "whether it is good enough, poor, or no answer"},
+    {"relative_error", COLUMN_REAL, RUNG(error), .flags = COLUMN_NULL, .key = "error",
+     .title = "error", .width = 10, .style = 'e', .digits = 2,
+     .doc = "NULL: failed, or not finite"},
+    {"host_s", COLUMN_REAL, RUNG(host_s), .flags = COLUMN_NULL, .title = "host_ms", .width = 12,
+     .style = 'f', .digits = 4, .scale = 1e3, .doc = "time on this computer"},
+    {"machine_ps", COLUMN_INT64, RUNG(machine_ps), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE,
+     .key = "machine_s", .json_scale = 1e-12, .title = "machine_us", .width = 14, .style = 'f',
+     .digits = 3, .scale = 1e-6, .doc = "predicted time on the machine"},
+    {"text", COLUMN_CHARS, RUNG(text), .title = "", .before = "  ",
+     .doc = "why it failed; processors used"},
 };
 const struct column_table accuracy_rung_columns = COLUMNS(rung_column);
 
 #define CHOICE(member) .offset = offsetof(struct accuracy_choice, member)
-#define CHOSEN(member) \
-    .part = PART(struct accuracy_choice, rung), .offset = offsetof(struct accuracy_rung, member), .known = has_rung
+#define CHOSEN(member)                                                                             \
+    .part = PART(struct accuracy_choice, rung), .offset = offsetof(struct accuracy_rung, member),  \
+    .known = has_rung
 
-static bool has_rung(const void *row) { return ((const struct accuracy_choice *)row)->rung != NULL; }
+static bool has_rung(const void *row)
+{
+    return ((const struct accuracy_choice *)row)->rung != NULL;
+}
 
 static const struct column choice_column[] = {
     {"ladder", COLUMN_STRING, CHOICE(ladder), .doc = "network, arithmetic or integration"},
@@ -75,14 +83,16 @@ static int rung_length(const struct accuracy_report *r, int i)
 {
     int n = 1;
     while (i + n < r->nrung && strcmp(r->rung[i + n].ladder, r->rung[i].ladder) == 0 &&
-           strcmp(r->rung[i + n].method, r->rung[i].method) == 0 && strcmp(r->rung[i + n].rung, r->rung[i].rung) == 0)
+           strcmp(r->rung[i + n].method, r->rung[i].method) == 0 &&
+           strcmp(r->rung[i + n].rung, r->rung[i].rung) == 0)
         n++;
     return n;
 }
 
 static void print_choice(FILE *out, const struct accuracy_choice *c)
 {
-    fprintf(out, "%s (%s%s%s within %.2g): ", c->ladder, c->at, c->at[0] ? ", " : "", c->quantity, c->tolerance);
+    fprintf(out, "%s (%s%s%s within %.2g): ", c->ladder, c->at, c->at[0] ? ", " : "", c->quantity,
+            c->tolerance);
     if (!c->finest) {
         fprintf(out, "no method has a result\n");
         return;
@@ -94,14 +104,15 @@ static void print_choice(FILE *out, const struct accuracy_choice *c)
         return;
     }
     bool same = strcmp(c->rung->method, c->rung->rung) == 0;
-    fprintf(out, "%s%s%s, error %.1e", c->rung->method, same ? "" : ", ", same ? "" : c->rung->rung, c->rung->error);
+    fprintf(out, "%s%s%s, error %.1e", c->rung->method, same ? "" : ", ", same ? "" : c->rung->rung,
+            c->rung->error);
     if (c->rung->machine_ps >= 0 && strcmp(c->ladder, "network") != 0)
         fprintf(out, ", %.3f us on the machine", (double)c->rung->machine_ps * 1e-6);
     same = strcmp(c->finest->method, c->finest->rung) == 0;
     fprintf(out, "%s%s; the most accurate (%s%s%s) costs %.3g times as much\n",
             strcmp(c->ladder, "integration") == 0 ? ", " : "",
-            strcmp(c->ladder, "integration") == 0 ? c->rung->text : "", c->finest->method, same ? "" : ", ",
-            same ? "" : c->finest->rung, c->cost_ratio);
+            strcmp(c->ladder, "integration") == 0 ? c->rung->text : "", c->finest->method,
+            same ? "" : ", ", same ? "" : c->finest->rung, c->cost_ratio);
 }
 
 void accuracy_print(FILE *out, const struct accuracy_report *r)
@@ -111,7 +122,8 @@ void accuracy_print(FILE *out, const struct accuracy_report *r)
         const struct accuracy_rung *x = &r->rung[i];
         n = rung_length(r, i);
         if (strcmp(ladder, x->ladder) != 0) {
-            fprintf(out, "%s%s, %s: %s against %s\n", i > 0 ? "\n" : "", x->ladder, x->at, x->quantity, x->reference);
+            fprintf(out, "%s%s, %s: %s against %s\n", i > 0 ? "\n" : "", x->ladder, x->at,
+                    x->quantity, x->reference);
             columns_title(&accuracy_rung_columns, out);
         }
         ladder = x->ladder;

@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "study/accuracy_ladder.h"
 
-struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung, const char *quantity,
-                                 const char *reference)
+struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung,
+                                 const char *quantity, const char *reference)
 {
     struct accuracy_report *r = l->report;
     if (r->nrung == r->room) {

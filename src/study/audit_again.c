@@ -26,7 +26,7 @@ static const struct {
              {"span", "run_id", "span"}};
 enum { TABLES = sizeof table / sizeof *table };
 
-/* --- which runs --------------------------------------------------------------------------------- */
+/* --- which runs ------------------------------------------------------------------------------- */
 
 struct again {
     struct store *store, *scratch;
@@ -119,7 +119,7 @@ static bool read_specs(struct again *g, int64_t chosen)
     return true;
 }
 
-/* --- comparing ---------------------------------------------------------------------------------- */
+/* --- comparing -------------------------------------------------------------------------------- */
 
 /* One run's rows of a table, a line each. */
 struct lines {
@@ -243,7 +243,7 @@ static bool compare_run(struct again *g, int i, bool tell, bool *same)
     return true;
 }
 
-/* --- all of it ---------------------------------------------------------------------------------- */
+/* --- all of it -------------------------------------------------------------------------------- */
 
 static bool keep(void *context, const struct run_spec *spec, const struct run_result *result)
 {

@@ -20,7 +20,7 @@ static bool take_finding(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
-/* --- views and limits are the program's --------------------------------------------------------- */
+/* --- views and limits are the program's ------------------------------------------------------- */
 
 static const char schema[] =
     "SELECT 'view ' || name, sql FROM sqlite_schema WHERE type = 'view' UNION ALL SELECT "
@@ -67,7 +67,8 @@ static bool compare_schema(struct store *s, struct audit_report *r, struct err *
     return ok;
 }
 
-/* The rules of audit.sql, each a line "-- rule: NAME" and the query below it, up to the next one. */
+/* The rules of audit.sql, each a line "-- rule: NAME" and the query below it, up to the next one.
+ */
 bool audit_rows(struct store *s, struct audit_report *r, struct err *e)
 {
     static const char mark[] = "-- rule: ";

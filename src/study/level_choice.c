@@ -29,11 +29,14 @@ int level_cheapest(const struct level_error *error, int n, double tolerance)
     network_levels_by_cost(cheap);
     for (int k = 0; k < LEVELS; k++)
         for (int i = 0; i < n; i++)
-            if (strcmp(error[i].level, network_level_name(cheap[k])) == 0 && error[i].error <= tolerance) return i;
+            if (strcmp(error[i].level, network_level_name(cheap[k])) == 0 &&
+                error[i].error <= tolerance)
+                return i;
     return -1;
 }
 
-/* The tolerance acts no more: its default, so that the run is the one that asked for this level at once. */
+/* The tolerance acts no more: its default, so that the run is the one that asked for this level at
+ * once. */
 static void drop_tolerance(struct run_spec *spec, struct arena *a)
 {
     const struct field *f = &machine_table.field[field_find(&machine_table, "network.tolerance")];
@@ -41,12 +44,14 @@ static void drop_tolerance(struct run_spec *spec, struct arena *a)
     CHECK(field_set(f, &spec->machine, f->fallback, a, why, (int)sizeof why));
 }
 
-void level_take(struct run_spec *spec, const struct level_error *taken, struct level_choice *choice, struct arena *a)
+void level_take(struct run_spec *spec, const struct level_error *taken, struct level_choice *choice,
+                struct arena *a)
 {
     int k = 0;
     while (k < LEVELS && strcmp(network_level_name((enum network_level)k), taken->level) != 0) k++;
     CHECK(k < LEVELS);
-    *choice = (struct level_choice){.made = true, .tolerance = spec->machine.network.tolerance, .error = taken->error};
+    *choice = (struct level_choice){
+        .made = true, .tolerance = spec->machine.network.tolerance, .error = taken->error};
     text_copy(choice->at, sizeof choice->at, taken->at);
     spec->machine.network.level = (enum network_level)k;
     drop_tolerance(spec, a);

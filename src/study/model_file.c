@@ -26,13 +26,15 @@ static bool begins_with(const char *path, const char *word)
 
 bool model_file_is(const char *path)
 {
-    return ends_in(path, ".urdf") || (ends_in(path, ".json") && !begins_with(path, "schema_version"));
+    return ends_in(path, ".urdf") ||
+           (ends_in(path, ".json") && !begins_with(path, "schema_version"));
 }
 
 static void print_warnings(const struct urdf_robot *robot, FILE *out)
 {
     for (int i = 0; out && i < robot->nwarning; i++)
-        fprintf(out, "mimdsim: %s:%d: warning: %s\n", robot->path, robot->warning[i].line, robot->warning[i].text);
+        fprintf(out, "mimdsim: %s:%d: warning: %s\n", robot->path, robot->warning[i].line,
+                robot->warning[i].text);
 }
 
 static bool check_robot(const char *path, FILE *warnings, struct arena *a, struct err *e)
@@ -53,7 +55,8 @@ static bool check_vector(const char *path, struct arena *a, struct err *e)
 bool model_file_check(const char *path, FILE *warnings, struct err *e)
 {
     struct arena *a = arena_create();
-    const bool fine = ends_in(path, ".urdf") ? check_robot(path, warnings, a, e) : check_vector(path, a, e);
+    const bool fine =
+        ends_in(path, ".urdf") ? check_robot(path, warnings, a, e) : check_vector(path, a, e);
     arena_destroy(a);
     return fine;
 }
@@ -62,7 +65,9 @@ bool model_file_check(const char *path, FILE *warnings, struct err *e)
 static bool seen(const struct run_spec *run, int i)
 {
     for (int k = 0; k < i; k++)
-        if (run[k].model.generator == MODEL_URDF && strcmp(run[k].model.path, run[i].model.path) == 0) return true;
+        if (run[k].model.generator == MODEL_URDF &&
+            strcmp(run[k].model.path, run[i].model.path) == 0)
+            return true;
     return false;
 }
 

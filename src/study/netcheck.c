@@ -13,7 +13,8 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
     bool referred = false;
     if (!netcheck_form_of(r, c, &form, &referred)) return false;
     if (r->ncase++ > 0 && r->referred != referred)
-        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has %s results, but earlier cases have %s",
+        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has %s results, but earlier "
+                                                            "cases have %s",
                           referred ? "reference" : "no", referred ? "none" : "some");
     r->referred = referred;
     switch (form) {
@@ -40,19 +41,21 @@ static bool any_answer(const struct netcheck *n)
     return false;
 }
 
-/* Nothing that could be compared is no success: the file is told apart from an empty table by the first reason. */
+/* Nothing that could be compared is no success: the file is told apart from an empty table by the
+ * first reason. */
 static bool nothing_answered(const struct netcheck *n, struct err *e)
 {
     for (int i = 0; i < n->nrow; i++)
         for (int l = 0; l < LEVELS; l++)
             if (n->level[l] && n->row[i].answer[l].why[0])
-                return err_set_at(e, ERR_DATA, n->path, n->row[i].line, "none of its cases (%d) can be run; %s: %s",
+                return err_set_at(e, ERR_DATA, n->path, n->row[i].line, "none of its cases (%d) "
+                                                                        "can be run; %s: %s",
                                   n->nrow, n->row[i].name, n->row[i].answer[l].why);
     return err_set_at(e, ERR_DATA, n->path, 1, "no case could be run");
 }
 
-bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const char *filter, bool quiet,
-                  struct arena *a, struct err *e)
+bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const char *filter,
+                  bool quiet, struct arena *a, struct err *e)
 {
     const struct node *root = document_read(path, a, e);
     if (!root) return false;
@@ -61,7 +64,8 @@ bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const
         return err_set_at(e, ERR_DATA, path, root->line, "expected a list of reference cases");
     *n = (struct netcheck){.path = path};
     for (int l = 0; l < LEVELS; l++) n->level[l] = !level || level[l];
-    struct netcheck_reader r = {.n = n, .path = path, .filter = filter, .rows = a, .arena = arena_create(), .e = e};
+    struct netcheck_reader r = {
+        .n = n, .path = path, .filter = filter, .rows = a, .arena = arena_create(), .e = e};
     struct progress p = progress_make("reference cases", one ? 1 : root->count, quiet);
     bool ok = true;
     int done = 0;

@@ -1,4 +1,5 @@
-/* netcheck_ask.c - plays a case's messages on each level and compares times with the reference's. */
+/* netcheck_ask.c - plays a case's messages on each level and compares times with the reference's.
+ */
 #include "study/netcheck_ask.h"
 
 #include <math.h>
@@ -24,7 +25,8 @@ static double *cycles_of(const sim_ps *ps, int n, struct arena *a)
 double netcheck_empty(const struct netcheck_question *k, int m)
 {
     const struct network_spec *w = &k->machine.network;
-    double cycle = NETCHECK_CYCLE_PS, head = round(w->hop_latency * 1e9), end = round(w->end_latency * 1e9);
+    double cycle = NETCHECK_CYCLE_PS, head = round(w->hop_latency * 1e9),
+           end = round(w->end_latency * 1e9);
     int routers = topology_distance(k->topology, k->q.src[m], k->q.dst[m]) + 1;
     double flits = (double)(k->q.bytes[m] / NETCHECK_FLIT_BYTES);
     return (double)k->q.time[m] / cycle + head * routers + end + fmax(flits, 1) - 1;
@@ -44,10 +46,12 @@ double netcheck_empty_latency(const struct netcheck_question *k)
 
 /* ---- judging ---- */
 
-static void compare_messages(const struct netcheck_question *k, const sim_ps *arrival, struct netcheck_answer *answer)
+static void compare_messages(const struct netcheck_question *k, const sim_ps *arrival,
+                             struct netcheck_answer *answer)
 {
     int n = k->q.nmessage;
-    double *found = cycles_of(arrival, n, k->arena), *reference = TAKE(k->arena, n + 1, double), sum = 0;
+    double *found = cycles_of(arrival, n, k->arena), *reference = TAKE(k->arena, n + 1, double),
+           sum = 0;
     memcpy(reference, k->arrival, (size_t)n * sizeof *reference);
     if (k->any_order) {
         qsort(found, (size_t)n, sizeof *found, by_value);
@@ -80,7 +84,8 @@ static double error_of(const struct netcheck_row *row, double found)
     return nearest > 0 ? (found - nearest) / nearest : 0;
 }
 
-static void judge(const struct netcheck_question *k, const struct traffic_result *r, enum network_level level)
+static void judge(const struct netcheck_question *k, const struct traffic_result *r,
+                  enum network_level level)
 {
     const struct netcheck_row *row = k->row;
     struct netcheck_answer *answer = &k->row->answer[level];
@@ -97,7 +102,8 @@ static void judge(const struct netcheck_question *k, const struct traffic_result
         text_copy(answer->why, sizeof answer->why, r->text);
         return;
     }
-    answer->found = k->latency ? mean_latency(k, r->arrival) : (double)r->makespan / NETCHECK_CYCLE_PS;
+    answer->found =
+        k->latency ? mean_latency(k, r->arrival) : (double)r->makespan / NETCHECK_CYCLE_PS;
     if (row->played) answer->arrival = cycles_of(r->arrival, k->q.nmessage, k->rows);
     else answer->error = error_of(row, answer->found);
     if (row->compared) compare_messages(k, r->arrival, answer);
@@ -105,9 +111,11 @@ static void judge(const struct netcheck_question *k, const struct traffic_result
 
 /* ---- asking ---- */
 
-/* Cut-through is for packets that fit the buffers. Without packet_bytes our levels cut a longer message into pieces of
- * a buffer's size, which the reference's routers do not do: no comparison. */
-static bool fits_buffers(const struct netcheck_question *k, enum network_level level, struct netcheck_answer *answer)
+/* Cut-through is for packets that fit the buffers. Without packet_bytes our levels cut a longer
+ * message into pieces of a buffer's size, which the reference's routers do not do: no comparison.
+ */
+static bool fits_buffers(const struct netcheck_question *k, enum network_level level,
+                         struct netcheck_answer *answer)
 {
     if ((level != LEVEL_PACKET && level != LEVEL_AUTO) || !k->row->worms) return true;
     snprintf(answer->why, sizeof answer->why, "its packets do not fit buffers of %d flits",
@@ -128,7 +136,8 @@ static void sizes_of(struct netcheck_question *k)
     k->row->nmessage = k->q.nmessage;
 }
 
-static bool play(struct netcheck_question *k, enum network_level level, struct traffic_result *r, struct err *e)
+static bool play(struct netcheck_question *k, enum network_level level, struct traffic_result *r,
+                 struct err *e)
 {
     *r = (struct traffic_result){.arrival = TAKE(k->arena, k->q.nmessage + 1, sim_ps)};
     err_clear(e);
@@ -161,20 +170,23 @@ void netcheck_ask(struct netcheck_question *k)
 enum { SATURATION_CYCLES = 10000, SATURATION_SEED = 1 };
 static const double criterion = 3, step = 1.05, finest = 0.01;
 
-/* whether the mean latency at `load` is three times that of the empty network, or the level cannot say (-1) */
-static int saturated(struct netcheck_question *k, enum network_level level, const char *pattern, int flits, double load,
-                     struct netcheck_answer *answer)
+/* whether the mean latency at `load` is three times that of the empty network, or the level cannot
+ * say (-1) */
+static int saturated(struct netcheck_question *k, enum network_level level, const char *pattern,
+                     int flits, double load, struct netcheck_answer *answer)
 {
     struct err e;
     struct traffic_result r;
     struct arena_mark mark = arena_mark(k->arena);
     int verdict = -1;
     err_clear(&e);
-    if (netcheck_load(pattern, k->topology, flits, load, SATURATION_CYCLES, SATURATION_SEED, k->arena, &k->q, &e)) {
+    if (netcheck_load(pattern, k->topology, flits, load, SATURATION_CYCLES, SATURATION_SEED,
+                      k->arena, &k->q, &e)) {
         k->warm = (sim_ps)(SATURATION_CYCLES / 4) * NETCHECK_CYCLE_PS;
         sizes_of(k);
         if (fits_buffers(k, level, answer) && play(k, level, &r, &e)) {
-            verdict = r.deadlock || mean_latency(k, r.arrival) >= criterion * netcheck_empty_latency(k);
+            verdict =
+                r.deadlock || mean_latency(k, r.arrival) >= criterion * netcheck_empty_latency(k);
             answer->events += r.events;
         }
     }
@@ -183,18 +195,22 @@ static int saturated(struct netcheck_question *k, enum network_level level, cons
     return verdict;
 }
 
-/* Steps of 5 % from the bracket until the answer turns, then halving to 1 %; a load of 1 is the most there is. */
-static void ask_one_saturation(struct netcheck_question *k, enum network_level level, const char *pattern, int flits)
+/* Steps of 5 % from the bracket until the answer turns, then halving to 1 %; a load of 1 is the
+ * most there is. */
+static void ask_one_saturation(struct netcheck_question *k, enum network_level level,
+                               const char *pattern, int flits)
 {
     struct netcheck_answer *answer = &k->row->answer[level];
     double below = k->row->low, above = k->row->high;
     int s;
-    while ((s = saturated(k, level, pattern, flits, below, answer)) == 1 && below > k->row->low / 8) {
+    while ((s = saturated(k, level, pattern, flits, below, answer)) == 1 &&
+           below > k->row->low / 8) {
         above = below;
         below /= step;
     }
     if (s < 0) return;
-    while (below >= k->row->low && above <= 1 && (s = saturated(k, level, pattern, flits, above, answer)) == 0) {
+    while (below >= k->row->low && above <= 1 &&
+           (s = saturated(k, level, pattern, flits, above, answer)) == 0) {
         below = above;
         above *= step;
     }
@@ -213,7 +229,8 @@ void netcheck_ask_saturation(struct netcheck_question *k, const char *pattern, i
 {
     for (int l = 0; l < LEVELS; l++) {
         if (l == LEVEL_LOGGP)
-            text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, "without contention nothing saturates");
+            text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, "without contention "
+                                                                           "nothing saturates");
         else if (k->n->level[l]) ask_one_saturation(k, (enum network_level)l, pattern, flits);
     }
 }

@@ -1,4 +1,5 @@
-/* netcheck_case.c - topologies by name, one-step patterns and random loads of the reference data. */
+/* netcheck_case.c - topologies by name, one-step patterns and random loads of the reference data.
+ */
 #include "study/netcheck_case.h"
 
 #include <ctype.h>
@@ -14,7 +15,8 @@
 #include "base/text.h"
 #include "machine/topology.h"
 
-/* most nodes whose routes are all followed; channels inside and between a dragonfly's groups [cycles] */
+/* most nodes whose routes are all followed; channels inside and between a dragonfly's groups
+ * [cycles] */
 enum { MOST_ROUTED_NODES = 4096, LOCAL_CHANNEL = 10, GLOBAL_CHANNEL = 100 };
 
 /* ---- topologies ---- */
@@ -31,7 +33,8 @@ static const struct family_name families[] = {
     {"ring", TOPOLOGY_TORUS},          {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
 };
 
-/* the number that begins at `text`; one beyond INT_MAX is INT_MAX, which no network is as large as */
+/* the number that begins at `text`; one beyond INT_MAX is INT_MAX, which no network is as large as
+ */
 static int number_at(const char *text, char **end)
 {
     errno = 0;
@@ -101,10 +104,12 @@ static bool size_fits(const char *name, const struct topology_spec *s, struct er
     size_of(s, &node, &link);
     for (int d = 0; d < s->ndim; d++)
         if (s->dims[d] < 1 && !(s->family == TOPOLOGY_DRAGONFLY && d == 3))
-            return err_set(e, ERR_DATA, "topology '%s': size %d; expected 1 or more", name, s->dims[d]);
+            return err_set(e, ERR_DATA, "topology '%s': size %d; expected 1 or more", name,
+                           s->dims[d]);
     if (node <= NETCHECK_MOST_NODES && link <= NETCHECK_MOST_LINKS) return true;
-    return err_set(e, ERR_DATA, "topology '%s' has %.4g nodes and %.4g links; expected at most %d and %d", name, node,
-                   link, NETCHECK_MOST_NODES, NETCHECK_MOST_LINKS);
+    return err_set(e, ERR_DATA,
+                   "topology '%s' has %.4g nodes and %.4g links; expected at most %d and %d", name,
+                   node, link, NETCHECK_MOST_NODES, NETCHECK_MOST_LINKS);
 }
 
 /* A name that is almost one of ours is a misspelt one, and no network that we lack. */
@@ -115,7 +120,8 @@ static bool unknown_family(const char *name, struct err *e)
     for (size_t i = 0; i < sizeof families / sizeof *families; i++) word[i] = families[i].word;
     snprintf(start, sizeof start, "%.*s", (int)strcspn(name, "0123456789_"), name);
     const char *near = text_nearest(start, word, sizeof families / sizeof *families);
-    if (near) return err_set(e, ERR_DATA, "unknown topology '%.64s'; did you mean '%s'?", name, near);
+    if (near)
+        return err_set(e, ERR_DATA, "unknown topology '%.64s'; did you mean '%s'?", name, near);
     return err_set(e, ERR_UNAVAILABLE, "topology '%.64s' is not supported", name);
 }
 
@@ -140,21 +146,27 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
     }
     if (!found) return unknown_family(name, e);
     if (adaptive_word(name))
-        return err_set(e, ERR_UNAVAILABLE, "adaptive routing ('%s') is not supported", adaptive_word(name));
+        return err_set(e, ERR_UNAVAILABLE, "adaptive routing ('%s') is not supported",
+                       adaptive_word(name));
     bool grid = s->family == TOPOLOGY_TORUS || s->family == TOPOLOGY_MESH;
     s->ndim = (grid ? radices_in : numbers_in)(found, s->dims, MACHINE_MAX_DIMS);
-    if (s->ndim == 0) s->ndim = (grid ? radices_in : numbers_in)(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
+    if (s->ndim == 0)
+        s->ndim =
+            (grid ? radices_in : numbers_in)(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
-    if (s->ndim < needed) return err_set(e, ERR_DATA, "topology '%s': its numbers are missing", name);
-    if (s->family == TOPOLOGY_DRAGONFLY) s->dims[3] = 0; /* what follows p, a and h is the number of nodes */
+    if (s->ndim < needed)
+        return err_set(e, ERR_DATA, "topology '%s': its numbers are missing", name);
+    if (s->family == TOPOLOGY_DRAGONFLY)
+        s->dims[3] = 0; /* what follows p, a and h is the number of nodes */
     if (!size_fits(name, s, e)) return false;
     if (strstr(name, "valiant")) s->routing = ROUTE_VALIANT;
-    if (s->family == TOPOLOGY_FAT_TREE) s->routing = ROUTE_VALIANT; /* the reference's way up is random */
+    if (s->family == TOPOLOGY_FAT_TREE)
+        s->routing = ROUTE_VALIANT; /* the reference's way up is random */
     return true;
 }
 
-struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int buffer, int packet_flits,
-                                     int head_cycles)
+struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int buffer,
+                                     int packet_flits, int head_cycles)
 {
     const double cycle = 1e-9;
     struct machine_spec m = {.name = "reference", .topology = *s};
@@ -186,12 +198,13 @@ static void traffic_take(struct traffic *q, int n, struct arena *a)
     q->time = TAKE(a, n + 1, sim_ps);
 }
 
-bool netcheck_step(const char *pattern, int distance, int nnode, int flits, struct arena *a, struct traffic *q,
-                   struct err *e)
+bool netcheck_step(const char *pattern, int distance, int nnode, int flits, struct arena *a,
+                   struct traffic *q, struct err *e)
 {
     bool shift = strcmp(pattern, "shift") == 0, trunc = strcmp(pattern, "trunc") == 0;
     if (!shift && !trunc && strcmp(pattern, "xor") != 0)
-        return err_set(e, ERR_DATA, "unknown pattern '%.64s' of a step; expected shift, trunc or xor", pattern);
+        return err_set(e, ERR_DATA,
+                       "unknown pattern '%.64s' of a step; expected shift, trunc or xor", pattern);
     traffic_take(q, nnode, a);
     q->nmessage = 0;
     for (int i = 0; i < nnode; i++) {
@@ -206,7 +219,18 @@ bool netcheck_step(const char *pattern, int distance, int nnode, int flits, stru
 
 /* ---- random loads ---- */
 
-enum rule { UNIFORM, BIT_COMPLEMENT, BIT_REVERSE, TRANSPOSE, SHUFFLE, TORNADO, NEIGHBOUR, SHIFT, XOR, BAD_DRAGONFLY };
+enum rule {
+    UNIFORM,
+    BIT_COMPLEMENT,
+    BIT_REVERSE,
+    TRANSPOSE,
+    SHUFFLE,
+    TORNADO,
+    NEIGHBOUR,
+    SHIFT,
+    XOR,
+    BAD_DRAGONFLY
+};
 
 struct pattern {
     enum rule rule;
@@ -228,8 +252,8 @@ static const struct {
 };
 enum { RULES = sizeof rules / sizeof *rules };
 
-/* The word before the bracket or the numbers must be one of ours. A misspelt one is refused; another pattern of the
- * reference's is one that we lack. */
+/* The word before the bracket or the numbers must be one of ours. A misspelt one is refused;
+ * another pattern of the reference's is one that we lack. */
 static int rule_of(const char *text, struct err *e)
 {
     const char *word[RULES];
@@ -244,27 +268,29 @@ static int rule_of(const char *text, struct err *e)
     if (near) err_set(e, ERR_DATA, "unknown pattern '%.64s'; did you mean '%s'?", text, near);
     else
         err_set(e, ERR_UNAVAILABLE,
-                "pattern '%.64s' is not supported; known: uniform, bitcomp, bitrev, transpose, shuffle, "
-                "tornado, neighbor, "
-                "shift, xor, bad_dragon",
+                "pattern '%.64s' is not supported; known: uniform, bitcomp, bitrev, transpose, "
+                "shuffle, tornado, neighbor, shift, xor, bad_dragon",
                 text);
     return -1;
 }
 
 /* tornado(k,n) and neighbor(k,n) move digits to the base k: there must be k^n nodes */
-static bool digits_read(const char *text, const struct topology *t, const int *number, int n, struct pattern *p,
-                        struct err *e)
+static bool digits_read(const char *text, const struct topology *t, const int *number, int n,
+                        struct pattern *p, struct err *e)
 {
-    bool given = n > 0, grid = t->spec->family == TOPOLOGY_TORUS || t->spec->family == TOPOLOGY_MESH;
+    bool given = n > 0,
+         grid = t->spec->family == TOPOLOGY_TORUS || t->spec->family == TOPOLOGY_MESH;
     p->radix = given ? number[0] : t->spec->dims[0];
     p->ndim = n > 1 ? number[1] : t->spec->ndim;
     if (!given && !grid) return err_set(e, ERR_DATA, "pattern '%.64s': its radix is missing", text);
-    if (p->radix >= 2 && p->ndim >= 1 && p->ndim < 32 && pow(p->radix, p->ndim) == t->nnode) return true;
-    return err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes", text, p->ndim,
-                   p->radix, t->nnode);
+    if (p->radix >= 2 && p->ndim >= 1 && p->ndim < 32 && pow(p->radix, p->ndim) == t->nnode)
+        return true;
+    return err_set(e, ERR_DATA, "pattern '%.64s': %d digits to the base %d do not number %d nodes",
+                   text, p->ndim, p->radix, t->nnode);
 }
 
-static bool pattern_read(const char *text, const struct topology *t, struct pattern *p, struct err *e)
+static bool pattern_read(const char *text, const struct topology *t, struct pattern *p,
+                         struct err *e)
 {
     int number[2] = {0, 0}, n = numbers_in(text, number, 2), found = rule_of(text, e);
     if (found < 0) return false;
@@ -276,7 +302,8 @@ static bool pattern_read(const char *text, const struct topology *t, struct patt
     bool far = p->rule == SHIFT || p->rule == XOR;
     if (far && n < 1) return err_set(e, ERR_DATA, "pattern '%.64s': its distance is missing", text);
     if (far && p->distance >= t->nnode)
-        return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text, t->nnode);
+        return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text,
+                       t->nnode);
     if (p->rule == BAD_DRAGONFLY) p->group = t->spec->dims[0] * t->spec->dims[1];
     if (p->rule == BAD_DRAGONFLY && t->spec->family != TOPOLOGY_DRAGONFLY)
         return err_set(e, ERR_DATA, "pattern '%.64s' needs a dragonfly", text);
@@ -287,7 +314,8 @@ static bool pattern_read(const char *text, const struct topology *t, struct patt
 static int digits_moved(const struct pattern *p, int i, int step)
 {
     int to = 0, stride = 1;
-    for (int d = 0; d < p->ndim; d++, stride *= p->radix) to += (i / stride + step) % p->radix * stride;
+    for (int d = 0; d < p->ndim; d++, stride *= p->radix)
+        to += (i / stride + step) % p->radix * stride;
     return to;
 }
 
@@ -321,7 +349,8 @@ static int destination(const struct pattern *p, int i, struct random *r)
     case XOR:
         return i ^ p->distance;
     case BAD_DRAGONFLY:
-        return ((i / p->group + 1) * p->group) % p->nnode + (int)random_below(r, (uint64_t)p->group);
+        return ((i / p->group + 1) * p->group) % p->nnode +
+               (int)random_below(r, (uint64_t)p->group);
     }
     CHECK(false);
     return 0;
@@ -335,27 +364,29 @@ static double geometric(struct random *r, double prob)
     return floor(log1p(-u) / log1p(-prob)) + 1;
 }
 
-bool netcheck_load(const char *pattern, const struct topology *t, int flits, double load, int cycles, uint64_t seed,
-                   struct arena *a, struct traffic *q, struct err *e)
+bool netcheck_load(const char *pattern, const struct topology *t, int flits, double load,
+                   int cycles, uint64_t seed, struct arena *a, struct traffic *q, struct err *e)
 {
     struct pattern p = {0};
     if (!pattern_read(pattern, t, &p, e)) return false;
     if (flits < 1 || !(load > 0) || load > 1 || cycles < 1)
         return err_set(
             e, ERR_DATA,
-            "load %g with packets of %d flits for %d cycles; expected a load above 0 and up to 1, packets of "
-            "at least 1 flit and at least 1 cycle",
+            "load %g with packets of %d flits for %d cycles; expected a load above 0 and up to 1, "
+            "packets of at least 1 flit and at least 1 cycle",
             load, flits, cycles);
     double prob = load / flits;
     double expected = prob * cycles * t->nnode;
     if (expected > NETCHECK_MOST_MESSAGES)
-        return err_set(e, ERR_DATA, "load %g for %d cycles on %d nodes is %.3g messages; expected at most %d", load,
-                       cycles, t->nnode, expected, NETCHECK_MOST_MESSAGES);
+        return err_set(e, ERR_DATA,
+                       "load %g for %d cycles on %d nodes is %.3g messages; expected at most %d",
+                       load, cycles, t->nnode, expected, NETCHECK_MOST_MESSAGES);
     int most = (int)(expected + 8 * sqrt(expected) + 64), n = 0;
     traffic_take(q, most, a);
     for (int i = 0; i < t->nnode; i++) {
         struct random r = random_make(seed, 0x6c6f6164, (uint64_t)i); /* "load" */
-        for (double at = geometric(&r, prob) - 1; at < cycles && n < most; at += geometric(&r, prob), n++) {
+        for (double at = geometric(&r, prob) - 1; at < cycles && n < most;
+             at += geometric(&r, prob), n++) {
             q->src[n] = i;
             q->dst[n] = destination(&p, i, &r);
             q->bytes[n] = (int64_t)flits * NETCHECK_FLIT_BYTES;
@@ -366,7 +397,8 @@ bool netcheck_load(const char *pattern, const struct topology *t, int flits, dou
     return true;
 }
 
-double netcheck_channel_load(const char *pattern, const struct topology *t, struct arena *a, struct err *e)
+double netcheck_channel_load(const char *pattern, const struct topology *t, struct arena *a,
+                             struct err *e)
 {
     struct pattern p;
     if (!pattern_read(pattern, t, &p, e)) return -1;
@@ -378,7 +410,8 @@ double netcheck_channel_load(const char *pattern, const struct topology *t, stru
     int per_source = p.rule == UNIFORM ? t->nnode : 1;
     for (int i = 0; i < t->nnode; i++)
         for (int k = 0; k < per_source; k++) {
-            int to = p.rule == UNIFORM ? k : destination(&p, i, &r), n = topology_route(t, i, to, 0, route);
+            int to = p.rule == UNIFORM ? k : destination(&p, i, &r),
+                n = topology_route(t, i, to, 0, route);
             for (int h = 0; h < n; h++) load[route[h].link] += 1.0 / per_source;
         }
     for (int l = 0; l < t->nlink; l++) most = fmax(most, load[l]);
@@ -386,7 +419,8 @@ double netcheck_channel_load(const char *pattern, const struct topology *t, stru
     return most;
 }
 
-double netcheck_channel_cycles(const struct topology *t, const struct traffic *q, sim_ps first, struct arena *a)
+double netcheck_channel_cycles(const struct topology *t, const struct traffic *q, sim_ps first,
+                               struct arena *a)
 {
     if (t->spec->family != TOPOLOGY_DRAGONFLY) return 0;
     int routers = t->spec->dims[1];

@@ -1,4 +1,5 @@
-/* netcheck_form.c - the keys of each form of reference case, and how a case is held against them. */
+/* netcheck_form.c - the keys of each form of reference case, and how a case is held against them.
+ */
 #include "study/netcheck_form.h"
 
 #include <math.h>
@@ -6,8 +7,8 @@
 
 #include "base/text.h"
 
-/* NEEDED always; CONDITION and ANSWER where the case has answers; CHECKED is compared where it stands; READ is used
- * where it stands; IGNORED is compared with nothing. */
+/* NEEDED always; CONDITION and ANSWER where the case has answers; CHECKED is compared where it
+ * stands; READ is used where it stands; IGNORED is compared with nothing. */
 enum use { NEEDED, CONDITION, ANSWER, ALIKE, CHECKED, READ, IGNORED };
 
 struct key {
@@ -171,7 +172,8 @@ static const struct key *keys_of(const struct node *c, enum netcheck_form form)
                                               [NETCHECK_HAND] = hand_keys,
                                               [NETCHECK_LOAD] = load_keys,
                                               [NETCHECK_SATURATION] = saturation_keys};
-    bool band = form == NETCHECK_STEP && !document_find(c, "completion") && !document_find(c, "makespan");
+    bool band =
+        form == NETCHECK_STEP && !document_find(c, "completion") && !document_find(c, "makespan");
     return band && document_find(c, "makespan_by_variant") ? band_keys : table[form];
 }
 
@@ -201,15 +203,18 @@ static bool unknown_key(struct netcheck_reader *r, const struct node *map, const
         if (!document_find(map, k->name)) lacking[n++] = k->name;
     const char *near = text_nearest(child->key, lacking, n);
     if (near)
-        return err_set_at(r->e, ERR_DATA, r->path, child->line, "unknown key '%.64s'; did you mean '%s'?", child->key,
-                          near);
-    if (strict) return err_set_at(r->e, ERR_DATA, r->path, child->line, "unknown key '%.64s' of a message", child->key);
+        return err_set_at(r->e, ERR_DATA, r->path, child->line,
+                          "unknown key '%.64s'; did you mean '%s'?", child->key, near);
+    if (strict)
+        return err_set_at(r->e, ERR_DATA, r->path, child->line, "unknown key '%.64s' of a message",
+                          child->key);
     note_ignored(r, child->key);
     return true;
 }
 
 /* the keys that are needed, with `answers` those of a case with answers, too */
-static bool complete(struct netcheck_reader *r, const struct node *map, const struct key *table, bool answers)
+static bool complete(struct netcheck_reader *r, const struct node *map, const struct key *table,
+                     bool answers)
 {
     for (const struct key *k = table; k->name; k++) {
         bool needed = k->use == NEEDED || (answers && (k->use == CONDITION || k->use == ANSWER));
@@ -218,8 +223,8 @@ static bool complete(struct netcheck_reader *r, const struct node *map, const st
     return true;
 }
 
-/* A key that other cases of the form have was dropped here, or the other way round. The first case with answers, or the
- * first point that has values, sets what is to stand. */
+/* A key that other cases of the form have was dropped here, or the other way round. The first case
+ * with answers, or the first point that has values, sets what is to stand. */
 static bool alike(struct netcheck_reader *r, const struct node *map, const struct key *table)
 {
     struct netcheck_alike *first = r->alike;
@@ -238,11 +243,13 @@ static bool alike(struct netcheck_reader *r, const struct node *map, const struc
     return true;
 }
 
-/* answers: also the keys of a case with answers are needed; strict: a key that is not in the table is an error */
-static bool look_at(struct netcheck_reader *r, const struct node *map, const struct key *table, bool answers,
-                    bool strict)
+/* answers: also the keys of a case with answers are needed; strict: a key that is not in the table
+ * is an error */
+static bool look_at(struct netcheck_reader *r, const struct node *map, const struct key *table,
+                    bool answers, bool strict)
 {
-    if (map->kind != NODE_MAP) return err_set_at(r->e, ERR_DATA, r->path, map->line, "expected keys with values");
+    if (map->kind != NODE_MAP)
+        return err_set_at(r->e, ERR_DATA, r->path, map->line, "expected keys with values");
     for (const struct node *x = map->child; x; x = x->next) {
         const struct key *k = find_key(table, x->key);
         if (!k && !strict) k = find_key(remark_keys, x->key);
@@ -255,8 +262,9 @@ static bool look_at(struct netcheck_reader *r, const struct node *map, const str
 static bool has_answer(const struct node *c, enum netcheck_form form)
 {
     if (form == NETCHECK_LOAD || form == NETCHECK_SATURATION) return true;
-    static const char *const answer[] = {"makespan", "completion",   "makespan_by_variant", "booksim",
-                                         "expected", "expected_vct", "expected_wormhole"};
+    static const char *const answer[] = {"makespan",         "completion", "makespan_by_variant",
+                                         "booksim",          "expected",   "expected_vct",
+                                         "expected_wormhole"};
     for (size_t i = 0; i < sizeof answer / sizeof *answer; i++)
         if (document_find(c, answer[i])) return true;
     return false;
@@ -266,7 +274,8 @@ static bool has_answer(const struct node *c, enum netcheck_form form)
 static int likeness(const struct node *c, enum netcheck_form form)
 {
     int n = 0;
-    for (const struct node *x = c->child; x; x = x->next) n += find_key(keys_of(c, form), x->key) ? 1 : -1;
+    for (const struct node *x = c->child; x; x = x->next)
+        n += find_key(keys_of(c, form), x->key) ? 1 : -1;
     return n;
 }
 
@@ -283,11 +292,12 @@ static bool guess_form(struct netcheck_reader *r, const struct node *c, enum net
     }
     return found ||
            err_set_at(r->e, ERR_DATA, r->path, c->line,
-                      "a case of no known form; known are: step (distance), list (trace), hand (messages), load "
-                      "(points), saturation (saturation_low)");
+                      "a case of no known form; known are: step (distance), list (trace), hand "
+                      "(messages), load (points), saturation (saturation_low)");
 }
 
-bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netcheck_form *form, bool *referred)
+bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netcheck_form *form,
+                      bool *referred)
 {
     bool told = false;
     if (c->kind != NODE_MAP) return guess_form(r, c, form);
@@ -301,7 +311,8 @@ bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netc
     return look_at(r, c, keys_of(c, *form), false, false);
 }
 
-bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c, enum netcheck_form form, bool referred)
+bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c,
+                            enum netcheck_form form, bool referred)
 {
     const struct key *table = keys_of(c, form);
     return complete(r, c, table, referred) && (!referred || alike(r, c, table));
@@ -311,7 +322,8 @@ bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c, enu
 bool netcheck_keys_of_point(struct netcheck_reader *r, const struct node *point)
 {
     bool unstable = false;
-    return netcheck_truth(r, point, "unstable", &unstable) && look_at(r, point, point_keys, !unstable, false) &&
+    return netcheck_truth(r, point, "unstable", &unstable) &&
+           look_at(r, point, point_keys, !unstable, false) &&
            (unstable || alike(r, point, point_keys));
 }
 
@@ -327,8 +339,8 @@ bool netcheck_keys_of_message(struct netcheck_reader *r, const struct node *mess
 
 /* ---- values ---- */
 
-bool netcheck_integer(struct netcheck_reader *r, const struct node *c, const char *key, int lo, int hi, int otherwise,
-                      int *i)
+bool netcheck_integer(struct netcheck_reader *r, const struct node *c, const char *key, int lo,
+                      int hi, int otherwise, int *i)
 {
     const struct node *x = document_find(c, key);
     *i = otherwise;
@@ -344,7 +356,8 @@ bool netcheck_truth(struct netcheck_reader *r, const struct node *c, const char 
     return err_set_at(r->e, ERR_DATA, r->path, x->line, "'%s' must be true or false", key);
 }
 
-bool netcheck_word(struct netcheck_reader *r, const struct node *c, const char *key, const char **word)
+bool netcheck_word(struct netcheck_reader *r, const struct node *c, const char *key,
+                   const char **word)
 {
     const struct node *x = document_find(c, key);
     *word = x && x->kind == NODE_TEXT ? x->text : "";

@@ -52,14 +52,16 @@ static void check_list(struct netcheck_question *k, const struct node *c)
 /* ---- steps ---- */
 
 /* the list of numbers `key` (lists of exactly n) */
-static double *numbers(const struct netcheck_reader *r, const struct node *map, const char *key, int n)
+static double *numbers(const struct netcheck_reader *r, const struct node *map, const char *key,
+                       int n)
 {
     double *x = TAKE(r->arena, n + 1, double);
     return document_numbers(map, key, r->path, x, n, r->e) ? x : NULL;
 }
 
 /* the arrivals and the makespan of a case, and whether they agree */
-static bool arrivals_read(struct netcheck_reader *r, const struct node *c, struct netcheck_question *k)
+static bool arrivals_read(struct netcheck_reader *r, const struct node *c,
+                          struct netcheck_question *k)
 {
     double makespan;
     if (!document_number(c, "makespan", r->path, &makespan, r->e)) return false;
@@ -77,9 +79,10 @@ static int by_number(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Variants of a router were measured between 0.45 and 1.35 of their median, and those that wait for the credits of
- * whole packets up to 3.0: one that is further off is no variant. */
-static void check_variants(struct netcheck_row *row, const struct node *band, const double *x, int n, struct arena *a)
+/* Variants of a router were measured between 0.45 and 1.35 of their median, and those that wait for
+ * the credits of whole packets up to 3.0: one that is further off is no variant. */
+static void check_variants(struct netcheck_row *row, const struct node *band, const double *x,
+                           int n, struct arena *a)
 {
     double *sorted = TAKE(a, n, double);
     memcpy(sorted, x, (size_t)n * sizeof *sorted);
@@ -93,12 +96,14 @@ static void check_variants(struct netcheck_row *row, const struct node *band, co
     }
 }
 
-static bool band_read(struct netcheck_reader *r, const struct node *band, struct netcheck_question *k)
+static bool band_read(struct netcheck_reader *r, const struct node *band,
+                      struct netcheck_question *k)
 {
     double *x = TAKE(r->arena, band->count + 1, double);
     int n = 0;
     if (band->kind != NODE_MAP || band->count == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, band->line, "'makespan_by_variant' must hold numbers by name");
+        return err_set_at(r->e, ERR_DATA, r->path, band->line, "'makespan_by_variant' must hold "
+                                                               "numbers by name");
     for (const struct node *v = band->child; v; v = v->next)
         if (!document_flat(v, v->key, r->path, &x[n++], 1, r->e)) return false;
     k->row->low = INFINITY;
@@ -109,7 +114,8 @@ static bool band_read(struct netcheck_reader *r, const struct node *band, struct
     check_variants(k->row, band, x, n, r->arena);
     double empty = 0;
     for (int m = 0; m < k->q.nmessage; m++) empty = fmax(empty, netcheck_empty(k, m));
-    if (k->row->low < 0.85 * empty - 1e-3) netcheck_flaw(k->row, "the shortest makespan", k->row->low / 0.85, empty);
+    if (k->row->low < 0.85 * empty - 1e-3)
+        netcheck_flaw(k->row, "the shortest makespan", k->row->low / 0.85, empty);
     return true;
 }
 
@@ -125,8 +131,8 @@ bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool re
         !document_integer(c, "distance", r->path, 0, NETCHECK_MOST_NODES, &distance, r->e) ||
         !document_integer(c, "flits", r->path, 1, NETCHECK_MOST_FLITS, &flits, r->e))
         return false;
-    snprintf(k.row->name, sizeof k.row->name, "%.24s %.16s(%d) S=%d vc=%d B=%d tie=%d", s.topology, pattern, distance,
-             flits, s.channels, s.buffer, s.tie < 0 ? 0 : s.tie);
+    snprintf(k.row->name, sizeof k.row->name, "%.24s %.16s(%d) S=%d vc=%d B=%d tie=%d", s.topology,
+             pattern, distance, flits, s.channels, s.buffer, s.tie < 0 ? 0 : s.tie);
     k.row->played = !referred;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
@@ -158,27 +164,30 @@ static void keep_messages(struct netcheck_reader *r, struct netcheck_question *k
 }
 
 /* Nodes that there are, and times whose sum stays far from the end of simulated time. */
-static bool list_is_sound(struct netcheck_reader *r, const struct node *at, const struct netcheck_question *k)
+static bool list_is_sound(struct netcheck_reader *r, const struct node *at,
+                          const struct netcheck_question *k)
 {
     const struct traffic *q = &k->q;
     double sum = 0;
     for (int m = 0; m < q->nmessage; m++) {
         int nnode = k->topology->nnode;
         if (q->src[m] >= nnode || q->dst[m] >= nnode)
-            return err_set_at(r->e, ERR_DATA, r->path, at->line,
-                              "message %d goes from node %d to node %d; the network has nodes 0 to %d", m, q->src[m],
-                              q->dst[m], nnode - 1);
+            return err_set_at(
+                r->e, ERR_DATA, r->path, at->line,
+                "message %d goes from node %d to node %d; the network has nodes 0 to %d", m,
+                q->src[m], q->dst[m], nnode - 1);
         sum += (double)q->time[m] + (q->delay ? (double)q->delay[m] : 0) +
                (double)q->bytes[m] / NETCHECK_FLIT_BYTES * NETCHECK_CYCLE_PS * 16;
     }
     return sum < 9e17 || err_set_at(r->e, ERR_DATA, r->path, at->line,
-                                    "times, delays and lengths add up to %.3g cycles; expected less than 9e14",
+                                    "times, delays and lengths add up to %.3g cycles; expected "
+                                    "less than 9e14",
                                     sum / NETCHECK_CYCLE_PS);
 }
 
 /* the list of n whole numbers `key` in 0 .. most; where it is missing: all 0 */
-static bool column_read(struct netcheck_reader *r, const struct node *trace, const char *key, int n, double most,
-                        double **x)
+static bool column_read(struct netcheck_reader *r, const struct node *trace, const char *key, int n,
+                        double most, double **x)
 {
     const struct node *list = document_find(trace, key);
     *x = TAKE(r->arena, n + 1, double);
@@ -187,15 +196,16 @@ static bool column_read(struct netcheck_reader *r, const struct node *trace, con
     for (int m = 0; m < n; m++)
         if ((*x)[m] < 0 || (*x)[m] > most || (*x)[m] != floor((*x)[m]))
             return err_set_at(r->e, ERR_DATA, r->path, list->line,
-                              "'%s' of message %d is %g; expected a whole number from 0 to %.10g", key, m, (*x)[m],
-                              most);
+                              "'%s' of message %d is %g; expected a whole number from 0 to %.10g",
+                              key, m, (*x)[m], most);
     return true;
 }
 
 /* one dependency of message m */
 static bool dependency_read(struct netcheck_reader *r, const struct node *x, int m, int n, int *to)
 {
-    if (x->kind == NODE_NUMBER && x->number >= 0 && x->number < n && x->number == floor(x->number) && x->number != m) {
+    if (x->kind == NODE_NUMBER && x->number >= 0 && x->number < n &&
+        x->number == floor(x->number) && x->number != m) {
         *to = (int)x->number;
         return true;
     }
@@ -210,14 +220,15 @@ static bool deps_read(struct netcheck_reader *r, const struct node *deps, struct
     q->dep_first = TAKE(r->arena, q->nmessage + 1, int);
     if (!deps) return true;
     if (deps->kind != NODE_LIST || deps->count != q->nmessage)
-        return err_set_at(r->e, ERR_DATA, r->path, deps->line, "'deps' must have %d entries; it has %d", q->nmessage,
-                          deps->count);
+        return err_set_at(r->e, ERR_DATA, r->path, deps->line,
+                          "'deps' must have %d entries; it has %d", q->nmessage, deps->count);
     for (const struct node *d = deps->child; d; d = d->next) ndep += d->count;
     q->dep = TAKE(r->arena, ndep + 1, int);
     ndep = 0;
     for (const struct node *d = deps->child; d; d = d->next, m++) {
         if (d->kind != NODE_LIST)
-            return err_set_at(r->e, ERR_DATA, r->path, d->line, "'deps' of message %d must be a list", m);
+            return err_set_at(r->e, ERR_DATA, r->path, d->line,
+                              "'deps' of message %d must be a list", m);
         q->dep_first[m] = ndep;
         for (const struct node *x = d->child; x; x = x->next)
             if (!dependency_read(r, x, m, q->nmessage, &q->dep[ndep++])) return false;
@@ -240,13 +251,14 @@ static struct traffic traffic_take(int n, struct arena *a)
 static bool trace_read(struct netcheck_reader *r, const struct node *trace, struct traffic *q)
 {
     static const char *const key[] = {"src", "dst", "flits", "time", "delay"};
-    static const double most[] = {NETCHECK_MOST_NODES, NETCHECK_MOST_NODES, NETCHECK_MOST_FLITS, NETCHECK_MOST_CYCLES,
-                                  NETCHECK_MOST_CYCLES};
+    static const double most[] = {NETCHECK_MOST_NODES, NETCHECK_MOST_NODES, NETCHECK_MOST_FLITS,
+                                  NETCHECK_MOST_CYCLES, NETCHECK_MOST_CYCLES};
     double *column[5];
     const struct node *src = document_find(trace, "src");
     int n = src->count;
     if (src->kind != NODE_LIST || n == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, src->line, "'src' must be a list of at least one node");
+        return err_set_at(r->e, ERR_DATA, r->path, src->line, "'src' must be a list of at least "
+                                                              "one node");
     for (int i = 0; i < 5; i++)
         if (!column_read(r, trace, key[i], n, most[i], &column[i])) return false;
     *q = traffic_take(n, r->arena);
@@ -257,7 +269,8 @@ static bool trace_read(struct netcheck_reader *r, const struct node *trace, stru
         q->time[m] = (sim_ps)column[3][m] * NETCHECK_CYCLE_PS;
         q->delay[m] = (sim_ps)column[4][m] * NETCHECK_CYCLE_PS;
         if (column[2][m] < 1)
-            return err_set_at(r->e, ERR_DATA, r->path, trace->line, "message %d has 0 flits; expected at least 1", m);
+            return err_set_at(r->e, ERR_DATA, r->path, trace->line,
+                              "message %d has 0 flits; expected at least 1", m);
     }
     return deps_read(r, document_find(trace, "deps"), q);
 }
@@ -270,17 +283,20 @@ bool netcheck_list_rows(struct netcheck_reader *r, const struct node *c, bool re
     int size, distance;
     const struct node *trace = document_find(c, "trace");
     if (!netcheck_setting_read(r, c, &s) || !netcheck_word(r, c, "name", &name) ||
-        !netcheck_integer(r, c, document_find(c, "S") ? "S" : "smax", 0, NETCHECK_MOST_FLITS, 0, &size) ||
+        !netcheck_integer(r, c, document_find(c, "S") ? "S" : "smax", 0, NETCHECK_MOST_FLITS, 0,
+                          &size) ||
         !netcheck_integer(r, c, "distance", 0, NETCHECK_MOST_NODES, 0, &distance) ||
         !netcheck_keys_of_trace(r, trace, referred))
         return false;
-    snprintf(k.row->name, sizeof k.row->name, "%.24s %.32s S=%d d=%d P=%d vc=%d B=%d", s.topology, name, size, distance,
-             s.packet_flits, s.channels, s.buffer);
+    snprintf(k.row->name, sizeof k.row->name, "%.24s %.32s S=%d d=%d P=%d vc=%d B=%d", s.topology,
+             name, size, distance, s.packet_flits, s.channels, s.buffer);
     k.row->played = !referred;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
     if (!trace_read(r, trace, &k.q) || !list_is_sound(r, trace, &k)) return false;
-    if (!netcheck_keys_complete(r, c, NETCHECK_LIST, referred) || (referred && !arrivals_read(r, c, &k))) return false;
+    if (!netcheck_keys_complete(r, c, NETCHECK_LIST, referred) ||
+        (referred && !arrivals_read(r, c, &k)))
+        return false;
     check_list(&k, c);
     keep_messages(r, &k);
     netcheck_ask(&k);
@@ -289,11 +305,13 @@ bool netcheck_list_rows(struct netcheck_reader *r, const struct node *c, bool re
 
 /* ---- by hand ---- */
 
-static bool hand_messages(struct netcheck_reader *r, const struct node *list, bool referred, struct traffic *q)
+static bool hand_messages(struct netcheck_reader *r, const struct node *list, bool referred,
+                          struct traffic *q)
 {
     int m = 0;
     *q = traffic_take(list->count, r->arena);
-    if (list->count == 0) return err_set_at(r->e, ERR_DATA, r->path, list->line, "'messages' is empty");
+    if (list->count == 0)
+        return err_set_at(r->e, ERR_DATA, r->path, list->line, "'messages' is empty");
     for (const struct node *x = list->child; x; x = x->next, m++) {
         int flits, t;
         if (!netcheck_keys_of_message(r, x, referred) ||
@@ -325,12 +343,14 @@ static bool hand_variant(struct netcheck_reader *r, const struct node *c, const 
         !netcheck_truth(r, c, "order_free", &k.any_order))
         return false;
     s.buffer = v->buffer;
-    snprintf(k.row->name, sizeof k.row->name, "%.64s %s B=%d", *name ? name : s.topology, v->kind, v->buffer);
+    snprintf(k.row->name, sizeof k.row->name, "%.64s %s B=%d", *name ? name : s.topology, v->kind,
+             v->buffer);
     k.row->played = strcmp(v->kind, "played") == 0;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
     snprintf(k.row->group, sizeof k.row->group, "%s", v->kind);
-    if (!hand_messages(r, messages, !k.row->played, &k.q) || !list_is_sound(r, messages, &k)) return false;
+    if (!hand_messages(r, messages, !k.row->played, &k.q) || !list_is_sound(r, messages, &k))
+        return false;
     if (!netcheck_keys_complete(r, c, NETCHECK_HAND, !k.row->played)) return false;
     k.row->expect_deadlock = !v->list && !k.row->played;
     if (v->list) {
@@ -353,12 +373,14 @@ static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buff
     long b = strtol(x->key, &end, 10);
     *buffer = (int)b;
     return (end != x->key && !*end && b >= 1 && b <= 1 << 20) ||
-           err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is not a buffer size; expected flits, 1 to %d",
+           err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is not a buffer size; expected "
+                                                        "flits, 1 to %d",
                       x->key, 1 << 20);
 }
 
 /* `agree` says for which buffers the times by hand are the reference's. */
-static bool check_agreement(struct netcheck_reader *r, const struct node *c, struct netcheck_row *row)
+static bool check_agreement(struct netcheck_reader *r, const struct node *c,
+                            struct netcheck_row *row)
 {
     const struct node *agree = document_find(c, "agree"), *booksim = document_find(c, "booksim");
     int n = document_find(c, "messages")->count;
@@ -379,22 +401,26 @@ static bool check_agreement(struct netcheck_reader *r, const struct node *c, str
         if (any_order) qsort(q, (size_t)n, sizeof *q, by_number);
         if (said != (memcmp(p, q, (size_t)n * sizeof *p) == 0) && !row->flaw[0])
             snprintf(row->flaw, sizeof row->flaw,
-                     "agree.%.16s is %s; the times by hand and the reference's say otherwise", x->key,
-                     said ? "true" : "false");
+                     "agree.%.16s is %s; the times by hand and the reference's say otherwise",
+                     x->key, said ? "true" : "false");
     }
     return true;
 }
 
-/* the reference's answer for each buffer; where a time by hand was derived for wormhole routers, that one */
-static bool wormhole_variants(struct netcheck_reader *r, const struct node *c, const struct node *booksim)
+/* the reference's answer for each buffer; where a time by hand was derived for wormhole routers,
+ * that one */
+static bool wormhole_variants(struct netcheck_reader *r, const struct node *c,
+                              const struct node *booksim)
 {
     const struct node *wormhole = document_find(c, "expected_wormhole");
     for (const struct node *b = booksim->child; b; b = b->next) {
-        const struct node *by_hand = document_find(wormhole, b->key), *list = by_hand && by_hand->count ? by_hand : b;
+        const struct node *by_hand = document_find(wormhole, b->key),
+                          *list = by_hand && by_hand->count ? by_hand : b;
         struct variant v = {"wormhole", 0, list};
         if (!buffer_of(r, b, &v.buffer)) return false;
         if (list->kind != NODE_LIST || list->count == 0)
-            return err_set_at(r->e, ERR_DATA, r->path, b->line, "'%.64s' must be a list of arrivals", b->key);
+            return err_set_at(r->e, ERR_DATA, r->path, b->line,
+                              "'%.64s' must be a list of arrivals", b->key);
         if (!hand_variant(r, c, &v)) return false;
     }
     return true;
@@ -402,7 +428,8 @@ static bool wormhole_variants(struct netcheck_reader *r, const struct node *c, c
 
 bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool referred)
 {
-    const struct node *cut_through = document_find(c, "expected_vct"), *booksim = document_find(c, "booksim");
+    const struct node *cut_through = document_find(c, "expected_vct"),
+                      *booksim = document_find(c, "booksim");
     int first = r->n->nrow, buffer;
     const char *expected;
     if (!netcheck_integer(r, c, "buf_flits_per_vc", 1, 1 << 20, referred ? 5 : 16, &buffer) ||
@@ -412,12 +439,15 @@ bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool re
     bool stuck = strncmp(expected, "deadlock", 8) == 0;
     if (*expected && !stuck)
         return err_set_at(r->e, ERR_DATA, r->path, document_find(c, "expected")->line,
-                          "'expected' is '%.64s'; expected a text that begins with deadlock", expected);
+                          "'expected' is '%.64s'; expected a text that begins with deadlock",
+                          expected);
     if (stuck) return hand_variant(r, c, &(struct variant){"wormhole", buffer, NULL});
     if (!cut_through) return document_need(c, "expected_vct", r->path, r->e) != NULL;
     if (!hand_variant(r, c, &(struct variant){"cut-through", 64, cut_through})) return false;
     if (!booksim) return document_need(c, "booksim", r->path, r->e) != NULL;
     if (booksim->kind != NODE_MAP)
-        return err_set_at(r->e, ERR_DATA, r->path, booksim->line, "'booksim' must hold lists of arrivals by buffer");
-    return wormhole_variants(r, c, booksim) && (first == r->n->nrow || check_agreement(r, c, &r->n->row[first]));
+        return err_set_at(r->e, ERR_DATA, r->path, booksim->line, "'booksim' must hold lists of "
+                                                                  "arrivals by buffer");
+    return wormhole_variants(r, c, booksim) &&
+           (first == r->n->nrow || check_agreement(r, c, &r->n->row[first]));
 }

@@ -1,4 +1,5 @@
-/* netcheck_loads.c - cases that are random loads: mean latencies, and the load at which a network saturates. */
+/* netcheck_loads.c - cases that are random loads: mean latencies, and the load at which a network
+ * saturates. */
 #include <math.h>
 #include <string.h>
 
@@ -25,40 +26,50 @@ static bool point_read(struct netcheck_reader *r, const struct node *point, stru
         return false;
     if (!(p->offered > 0) || p->offered > 1)
         return err_set_at(r->e, ERR_DATA, r->path, document_find(point, "offered")->line,
-                          "'offered' is %g; expected flits per node and cycle, above 0 and up to 1", p->offered);
+                          "'offered' is %g; expected flits per node and cycle, above 0 and up to 1",
+                          p->offered);
     if (p->unstable) return true;
     return document_number(point, "plat", r->path, &p->latency, r->e) &&
            document_integer(point, "cycles", r->path, 1, NETCHECK_MOST_CYCLES, &p->cycles, r->e);
 }
 
-/* What the reference says beside the latency: below it without the source's queue, above that of an empty network;
- * accepted not more than offered and not half of it, routers as many as on the routes, within six standard deviations.
+/* What the reference says beside the latency: below it without the source's queue, above that of an
+ * empty network; accepted not more than offered and not half of it, routers as many as on the
+ * routes, within six standard deviations.
  */
-static void check_point(struct netcheck_question *k, const struct node *point, const struct point *p, double empty)
+static void check_point(struct netcheck_question *k, const struct node *point,
+                        const struct point *p, double empty)
 {
-    const struct node *nlat = netcheck_given(k->row, point, "nlat"), *hops = netcheck_given(k->row, point, "hops");
+    const struct node *nlat = netcheck_given(k->row, point, "nlat"),
+                      *hops = netcheck_given(k->row, point, "hops");
     const struct node *accepted = netcheck_given(k->row, point, "accepted");
     double routers = 0, scatter = 6 / sqrt(fmax(k->q.nmessage, 1));
     for (int m = 0; m < k->q.nmessage; m++)
         routers += (topology_distance(k->topology, k->q.src[m], k->q.dst[m]) + 1.0) / k->q.nmessage;
     if (p->latency < empty * (0.98 - scatter)) netcheck_flaw(k->row, "plat", p->latency, empty);
     if (nlat) {
-        if (nlat->number > p->latency + 1e-3) netcheck_flaw(k->row, "nlat", nlat->number, p->latency);
-        if (nlat->number < empty * (0.98 - scatter)) netcheck_flaw(k->row, "nlat", nlat->number, empty);
+        if (nlat->number > p->latency + 1e-3)
+            netcheck_flaw(k->row, "nlat", nlat->number, p->latency);
+        if (nlat->number < empty * (0.98 - scatter))
+            netcheck_flaw(k->row, "nlat", nlat->number, empty);
     }
-    if (hops && fabs(hops->number / routers - 1) > 0.02 + scatter) netcheck_flaw(k->row, "hops", hops->number, routers);
+    if (hops && fabs(hops->number / routers - 1) > 0.02 + scatter)
+        netcheck_flaw(k->row, "hops", hops->number, routers);
     double rate = accepted ? accepted->number / p->offered : 1;
-    if (rate > 1.1 + scatter || rate < 0.5 - scatter) netcheck_flaw(k->row, "accepted", accepted->number, p->offered);
+    if (rate > 1.1 + scatter || rate < 0.5 - scatter)
+        netcheck_flaw(k->row, "accepted", accepted->number, p->offered);
     else k->row->counted = rate > 0.93 - scatter;
 }
 
-/* the messages of a load; false with an error, or with none where the pattern is not one of ours: told by the row */
-static bool messages_make(struct netcheck_reader *r, const struct node *c, const char *pattern, int flits,
-                          const struct point *p, struct netcheck_question *k)
+/* the messages of a load; false with an error, or with none where the pattern is not one of ours:
+ * told by the row */
+static bool messages_make(struct netcheck_reader *r, const struct node *c, const char *pattern,
+                          int flits, const struct point *p, struct netcheck_question *k)
 {
     struct err why;
     err_clear(&why);
-    if (netcheck_load(pattern, k->topology, flits, p->offered, p->cycles, LOAD_SEED, r->arena, &k->q, &why))
+    if (netcheck_load(pattern, k->topology, flits, p->offered, p->cycles, LOAD_SEED, r->arena,
+                      &k->q, &why))
         return true;
     if (why.kind == ERR_UNAVAILABLE) netcheck_unanswered(k->row, why.text);
     else err_set_at(r->e, ERR_DATA, r->path, c->line, "%s", why.text);
@@ -76,8 +87,8 @@ static bool ask_point(struct netcheck_reader *r, const struct node *c, const str
         !document_integer(c, "packet_flits", r->path, 1, NETCHECK_MOST_FLITS, &flits, r->e) ||
         !point_read(r, point, &p))
         return false;
-    snprintf(k.row->name, sizeof k.row->name, "%.24s %.24s S=%d vc=%d B=%d load %.4f", s.topology, pattern, flits,
-             s.channels, s.buffer, p.offered);
+    snprintf(k.row->name, sizeof k.row->name, "%.24s %.24s S=%d vc=%d B=%d load %.4f", s.topology,
+             pattern, flits, s.channels, s.buffer, p.offered);
     if (!netcheck_wanted(r, &k)) return true;
     k.row->counted = !p.unstable;
     k.row->low = k.row->high = p.latency;
@@ -103,7 +114,8 @@ bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c)
 {
     const struct node *points = document_find(c, "points");
     if (points->kind != NODE_LIST || points->count == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, points->line, "'points' must be a list of loads; it is empty");
+        return err_set_at(r->e, ERR_DATA, r->path, points->line, "'points' must be a list of "
+                                                                 "loads; it is empty");
     for (const struct node *p = points->child; p; p = p->next) {
         struct arena_mark mark = arena_mark(r->arena);
         if (!ask_point(r, c, p)) return false;
@@ -114,7 +126,8 @@ bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c)
 
 /* ---- saturation ---- */
 
-/* [[load, latency, accepted, held], ...]: the bracket is the highest load that held and the lowest that did not */
+/* [[load, latency, accepted, held], ...]: the bracket is the highest load that held and the lowest
+ * that did not */
 static bool probes_read(struct netcheck_reader *r, const struct node *c, struct netcheck_row *row)
 {
     const struct node *probes = document_find(c, "probes");
@@ -134,9 +147,10 @@ static bool probes_read(struct netcheck_reader *r, const struct node *c, struct 
     return true;
 }
 
-/* the mean latency of an empty network under the pattern, and the bound that the routes set to the load */
-static bool check_bounds(struct netcheck_reader *r, const struct node *c, struct netcheck_question *k,
-                         const char *pattern, int flits)
+/* the mean latency of an empty network under the pattern, and the bound that the routes set to the
+ * load */
+static bool check_bounds(struct netcheck_reader *r, const struct node *c,
+                         struct netcheck_question *k, const char *pattern, int flits)
 {
     const struct point low = {.offered = 0.02, .cycles = 20000};
     const struct node *zero = netcheck_given(k->row, c, "zero_load_latency");
@@ -144,8 +158,10 @@ static bool check_bounds(struct netcheck_reader *r, const struct node *c, struct
     struct err why;
     err_clear(&why);
     if (!messages_make(r, c, pattern, flits, &low, k)) return false;
-    double most = netcheck_channel_load(pattern, k->topology, r->arena, &why), empty = netcheck_empty_latency(k);
-    if (zero && fabs(zero->number / empty - 1) > 0.05) netcheck_flaw(k->row, "zero_load_latency", zero->number, empty);
+    double most = netcheck_channel_load(pattern, k->topology, r->arena, &why),
+           empty = netcheck_empty_latency(k);
+    if (zero && fabs(zero->number / empty - 1) > 0.05)
+        netcheck_flaw(k->row, "zero_load_latency", zero->number, empty);
     if (most > 0) netcheck_flaw_of_key(k->row, c, "max_channel_load_per_unit_injection", most);
     if (most > 0 && bound && fabs(bound->number * most - 1) > 1e-3)
         netcheck_flaw(k->row, "channel_bound", bound->number, 1 / most);
@@ -164,15 +180,17 @@ bool netcheck_saturation_rows(struct netcheck_reader *r, const struct node *c)
         !document_number(c, "saturation_low", r->path, &row->low, r->e) ||
         !document_number(c, "saturation_high", r->path, &row->high, r->e))
         return false;
-    snprintf(row->name, sizeof row->name, "%.24s %.24s S=%d vc=%d B=%d saturation", s.topology, pattern, flits,
-             s.channels, s.buffer);
+    snprintf(row->name, sizeof row->name, "%.24s %.24s S=%d vc=%d B=%d saturation", s.topology,
+             pattern, flits, s.channels, s.buffer);
     if (!netcheck_wanted(r, &k)) return true;
     if (!(row->low > 0) || row->high <= row->low || row->high > 1)
-        return err_set_at(r->e, ERR_DATA, r->path, c->line,
-                          "saturation between %g and %g; expected 0 < saturation_low < saturation_high <= 1", row->low,
-                          row->high);
+        return err_set_at(
+            r->e, ERR_DATA, r->path, c->line,
+            "saturation between %g and %g; expected 0 < saturation_low < saturation_high <= 1",
+            row->low, row->high);
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
-    if (!netcheck_keys_complete(r, c, NETCHECK_SATURATION, true) || !probes_read(r, c, row)) return false;
+    if (!netcheck_keys_complete(r, c, NETCHECK_SATURATION, true) || !probes_read(r, c, row))
+        return false;
     if (!check_bounds(r, c, &k, pattern, flits)) return netcheck_told(r);
     netcheck_ask_saturation(&k, pattern, flits);
     return true;

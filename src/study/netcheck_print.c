@@ -9,7 +9,8 @@
 
 const char *netcheck_level_name(enum network_level level) { return network_level_name(level); }
 
-struct netcheck_total netcheck_total(const struct netcheck *n, const char *group, enum network_level level)
+struct netcheck_total netcheck_total(const struct netcheck *n, const char *group,
+                                     enum network_level level)
 {
     struct netcheck_total t = {0};
     int compared = 0;
@@ -82,11 +83,13 @@ static void print_played(const struct netcheck *n, bool brief, FILE *out)
             if (n->level[l]) print_time(&row->answer[l], row->answer[l].found, out);
         fprintf(out, "\n");
         for (int m = 0; !brief && row->src && m < row->nmessage; m++) {
-            snprintf(name, sizeof name, "  message %d: %d -> %d, %d flits", m, row->src[m], row->dst[m], row->flits[m]);
+            snprintf(name, sizeof name, "  message %d: %d -> %d, %d flits", m, row->src[m],
+                     row->dst[m], row->flits[m]);
             fprintf(out, "%-66s %9s", name, "");
             for (int l = 0; l < LEVELS; l++)
                 if (n->level[l])
-                    print_time(&row->answer[l], row->answer[l].arrival ? row->answer[l].arrival[m] : 0, out);
+                    print_time(&row->answer[l],
+                               row->answer[l].arrival ? row->answer[l].arrival[m] : 0, out);
             fprintf(out, "\n");
         }
     }
@@ -99,8 +102,8 @@ static void print_total(const struct netcheck *n, const char *group, double with
         struct netcheck_verdict v = netcheck_verdict(n, group, (enum network_level)l, within);
         if (!n->level[l] || t.cases == 0) continue;
         fprintf(out, "%-30s %-7s %6d %7d %7d %9.3f %+9.2f %9.3f ", group ? group : "all",
-                network_level_name((enum network_level)l), t.cases, t.skipped, t.exact_cases, 100 * t.mean,
-                100 * t.worst, 100 * t.message_error);
+                network_level_name((enum network_level)l), t.cases, t.skipped, t.exact_cases,
+                100 * t.mean, 100 * t.worst, 100 * t.message_error);
         if (t.messages > 0) fprintf(out, "%9.3f ", 100.0 * (double)t.exact / (double)t.messages);
         else fprintf(out, "%9s ", "-");
         if (!group) fprintf(out, "\n");
@@ -118,13 +121,15 @@ static void print_reasons(const struct netcheck *n, FILE *out)
         for (int i = 0; n->level[l] && i < n->nrow; i++) {
             const struct netcheck_answer *a = &n->row[i].answer[l];
             if (a->ran || strcmp(a->why, last) == 0) continue;
-            fprintf(out, "%s skipped %s: %s\n", network_level_name((enum network_level)l), n->row[i].name, a->why);
+            fprintf(out, "%s skipped %s: %s\n", network_level_name((enum network_level)l),
+                    n->row[i].name, a->why);
             last = a->why;
         }
     }
 }
 
-/* the first reason of each verdict that is FAIL, contradictions of the file, and what was compared with nothing */
+/* the first reason of each verdict that is FAIL, contradictions of the file, and what was compared
+ * with nothing */
 static void print_findings(const struct netcheck *n, double within, FILE *out)
 {
     int silent = 0;
@@ -133,16 +138,20 @@ static void print_findings(const struct netcheck *n, double within, FILE *out)
         for (int l = 0; l < LEVELS; l++) any = any || n->row[i].answer[l].ran;
         silent += !any;
         if (n->row[i].flaw[0])
-            fprintf(out, "FAIL %s:%d: %s: %s\n", n->path, n->row[i].line, n->row[i].name, n->row[i].flaw);
+            fprintf(out, "FAIL %s:%d: %s: %s\n", n->path, n->row[i].line, n->row[i].name,
+                    n->row[i].flaw);
         for (int l = 0; netcheck_opens_group(n, i) && l < LEVELS; l++) {
-            struct netcheck_verdict v = netcheck_verdict(n, n->row[i].group, (enum network_level)l, within);
+            struct netcheck_verdict v =
+                netcheck_verdict(n, n->row[i].group, (enum network_level)l, within);
             if (n->level[l] && !v.pass)
                 fprintf(out, "FAIL %s, %s: %d of %d cases; %s\n", n->row[i].group,
                         network_level_name((enum network_level)l), v.failed, v.cases, v.why);
         }
     }
-    if (silent > 0) fprintf(out, "not judged: %d of %d cases, which no level can run\n", silent, n->nrow);
-    for (int i = 0; i < n->nignored; i++) fprintf(out, "%s%s", i ? ", " : "compared with nothing: ", n->ignored[i]);
+    if (silent > 0)
+        fprintf(out, "not judged: %d of %d cases, which no level can run\n", silent, n->nrow);
+    for (int i = 0; i < n->nignored; i++)
+        fprintf(out, "%s%s", i ? ", " : "compared with nothing: ", n->ignored[i]);
     if (n->nignored > 0) fprintf(out, "\n");
 }
 
@@ -154,19 +163,21 @@ void netcheck_print(const struct netcheck *n, double within, bool brief, FILE *o
     if (played > 0) print_played(n, brief, out);
     if (!brief) print_reasons(n, out);
     if (played < n->nrow) {
-        fprintf(out, "%s%-30s %-7s %6s %7s %7s %9s %9s %9s %9s %7s %6s %6s  %s\n", brief ? "" : "\n", "group", "level",
-                "cases", "skipped", "exact", "mean|e|%", "worst %", "message %", "exact m %", "mean to", "from", "to",
-                "verdict");
+        fprintf(out, "%s%-30s %-7s %6s %7s %7s %9s %9s %9s %9s %7s %6s %6s  %s\n",
+                brief ? "" : "\n", "group", "level", "cases", "skipped", "exact", "mean|e|%",
+                "worst %", "message %", "exact m %", "mean to", "from", "to", "verdict");
         for (int i = 0; i < n->nrow; i++)
-            if (netcheck_opens_group(n, i) && !n->row[i].played) print_total(n, n->row[i].group, within, out);
+            if (netcheck_opens_group(n, i) && !n->row[i].played)
+                print_total(n, n->row[i].group, within, out);
         print_total(n, NULL, within, out);
     }
     print_findings(n, within, out);
 }
 
-/* --- JSON --------------------------------------------------------------------------------------------------------- */
+/* --- JSON ------------------------------------------------------------------------------------- */
 
-/* What the columns are of: a case, its answer at a level, or the statistics of a group at a level. */
+/* What the columns are of: a case, its answer at a level, or the statistics of a group at a level.
+ */
 struct shown {
     const struct netcheck *all;
     const struct netcheck_row *row;
@@ -190,7 +201,10 @@ static bool has_error(const void *x) { return ran(x) && has_reference(x); }
 
 static bool is_judged(const void *x) { return has_error(x) && shown(x)->row->counted; }
 
-static bool is_compared(const void *x) { return ran(x) && shown(x)->row->compared && !shown(x)->answer->deadlock; }
+static bool is_compared(const void *x)
+{
+    return ran(x) && shown(x)->row->compared && !shown(x)->answer->deadlock;
+}
 
 static bool says_why(const void *x) { return shown(x)->answer->why[0]; }
 
@@ -214,12 +228,15 @@ static void set_word(struct column_value *v, const char *s)
 static void read_row_verdict(const struct column *c, const void *x, struct column_value *v)
 {
     (void)c;
-    set_word(v, netcheck_row_fails(shown(x)->row, shown(x)->level, shown(x)->within, NULL) ? "FAIL" : "pass");
+    set_word(v, netcheck_row_fails(shown(x)->row, shown(x)->level, shown(x)->within, NULL)
+                    ? "FAIL"
+                    : "pass");
 }
 
 /* A key that is there when `test` holds; a number that is not finite is null then. */
 #define WHEN(test) .known = (test), .flags = COLUMN_OPTIONAL
-#define ANSWER(member) .part = PART(struct shown, answer), .offset = offsetof(struct netcheck_answer, member)
+#define ANSWER(member)                                                                             \
+    .part = PART(struct shown, answer), .offset = offsetof(struct netcheck_answer, member)
 
 static const struct column answer_column[] = {
     {"arrival", COLUMN_STRING, .json = write_arrivals, .known = was_played, .doc = "of each message [cycles]"},
@@ -262,7 +279,8 @@ static void read_counted(const struct column *c, const void *x, struct column_va
 
 static bool has_flaw(const void *x) { return shown(x)->row->flaw[0]; }
 
-#define CASE(member) .part = PART(struct shown, row), .offset = offsetof(struct netcheck_row, member)
+#define CASE(member)                                                                               \
+    .part = PART(struct shown, row), .offset = offsetof(struct netcheck_row, member)
 
 static const struct column case_column[] = {
     {"case", COLUMN_CHARS, CASE(name), .doc = "its name"},
@@ -327,7 +345,8 @@ static const struct column_table total_columns = COLUMNS(total_column);
 static void json_totals(const struct netcheck *n, const char *group, double within, struct json *j)
 {
     for (int l = 0; l < LEVELS; l++) {
-        struct shown x = {.all = n, .level = (enum network_level)l, .within = within, .group = group};
+        struct shown x = {
+            .all = n, .level = (enum network_level)l, .within = within, .group = group};
         if (!n->level[l]) continue;
         x.total = netcheck_total(n, group, x.level);
         x.verdict = netcheck_verdict(n, group, x.level, within);
@@ -341,7 +360,8 @@ void netcheck_json_object(const struct netcheck *n, double within, struct json *
     json_key(j, "cases");
     json_array(j);
     for (int i = 0; i < n->nrow; i++)
-        columns_json(&case_columns, &(struct shown){.all = n, .row = &n->row[i], .within = within}, j);
+        columns_json(&case_columns, &(struct shown){.all = n, .row = &n->row[i], .within = within},
+                     j);
     json_end(j);
     json_key(j, "compared_with_nothing");
     json_array(j);
@@ -351,7 +371,8 @@ void netcheck_json_object(const struct netcheck *n, double within, struct json *
     json_key(j, "totals");
     json_array(j);
     for (int i = 0; i < n->nrow; i++)
-        if (netcheck_opens_group(n, i) && !n->row[i].played) json_totals(n, n->row[i].group, within, j);
+        if (netcheck_opens_group(n, i) && !n->row[i].played)
+            json_totals(n, n->row[i].group, within, j);
     json_totals(n, NULL, within, j);
     json_end(j);
     bool any = false;
@@ -368,8 +389,8 @@ static void print_percent(double x, FILE *out)
 
 void netcheck_print_stated(FILE *out)
 {
-    fprintf(out, "| level | cases | mean of absolute errors, %% | a case from, %% | to, %% | a message, %% |\n"
-                 "| --- | --- | --- | --- | --- | --- |\n");
+    fprintf(out, "| level | cases | mean of absolute errors, %% | a case from, %% | to, %% | a "
+                 "message, %% |\n| --- | --- | --- | --- | --- | --- |\n");
     const struct netcheck_accuracy *s;
     for (int i = 0; (s = netcheck_accuracies(i)); i++) {
         fprintf(out, "| %s | %s | %.3g |", s->levels, s->cases, 100 * s->mean);
@@ -380,7 +401,10 @@ void netcheck_print_stated(FILE *out)
     }
 }
 
-static bool has_message(const void *row) { return ((const struct netcheck_accuracy *)row)->message >= 0; }
+static bool has_message(const void *row)
+{
+    return ((const struct netcheck_accuracy *)row)->message >= 0;
+}
 
 #define STATED(member) .offset = offsetof(struct netcheck_accuracy, member)
 

@@ -1,4 +1,5 @@
-/* netcheck_rows.c - what the readers of all forms share: rows, settings, networks, contradictions. */
+/* netcheck_rows.c - what the readers of all forms share: rows, settings, networks, contradictions.
+ */
 #include "study/netcheck_rows.h"
 
 #include <math.h>
@@ -12,7 +13,8 @@ enum { MOST_CHANNELS = 256, MOST_BUFFER = 1 << 20 };
 
 /* ---- rows ---- */
 
-static struct netcheck_row *row_add(struct netcheck_reader *r, const struct node *c, enum netcheck_form form)
+static struct netcheck_row *row_add(struct netcheck_reader *r, const struct node *c,
+                                    enum netcheck_form form)
 {
     struct netcheck *n = r->n;
     if (n->nrow == r->capacity) {
@@ -27,7 +29,8 @@ static struct netcheck_row *row_add(struct netcheck_reader *r, const struct node
     return row;
 }
 
-struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct node *c, enum netcheck_form form)
+struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct node *c,
+                                        enum netcheck_form form)
 {
     struct netcheck_row *row = row_add(r, c, form);
     return (struct netcheck_question){.n = r->n, .row = row, .arena = r->arena, .rows = r->rows};
@@ -43,18 +46,21 @@ bool netcheck_wanted(const struct netcheck_reader *r, const struct netcheck_ques
 void netcheck_flaw(struct netcheck_row *row, const char *what, double found, double expected)
 {
     if (row->flaw[0] || fabs(found - expected) <= 1e-3 * fmax(1, fabs(expected))) return;
-    snprintf(row->flaw, sizeof row->flaw, "%s is %.10g; the case makes it %.10g", what, found, expected);
+    snprintf(row->flaw, sizeof row->flaw, "%s is %.10g; the case makes it %.10g", what, found,
+             expected);
 }
 
 const struct node *netcheck_given(struct netcheck_row *row, const struct node *c, const char *key)
 {
     const struct node *x = document_find(c, key);
-    if (!x || x->kind == NODE_NUMBER || x->kind == NODE_NULL) return x && x->kind == NODE_NUMBER ? x : NULL;
+    if (!x || x->kind == NODE_NUMBER || x->kind == NODE_NULL)
+        return x && x->kind == NODE_NUMBER ? x : NULL;
     if (!row->flaw[0]) snprintf(row->flaw, sizeof row->flaw, "%s is no number", key);
     return NULL;
 }
 
-void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key, double expected)
+void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key,
+                          double expected)
 {
     const struct node *x = netcheck_given(row, c, key);
     if (x) netcheck_flaw(row, key, x->number, expected);
@@ -62,7 +68,8 @@ void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const 
 
 /* ---- the network ---- */
 
-bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c, struct netcheck_setting *s)
+bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c,
+                           struct netcheck_setting *s)
 {
     return netcheck_word(r, c, "topology", &s->topology) &&
            netcheck_integer(r, c, "vcs", 1, MOST_CHANNELS, 0, &s->channels) &&
@@ -79,29 +86,33 @@ static int head_cycles(struct netcheck_reader *r, const struct node *c)
     if (!*pipeline || strcmp(pipeline, "P3") == 0) return 3;
     if (strcmp(pipeline, "P4") == 0) return 4;
     if (strcmp(pipeline, "P5") == 0) return 5;
-    err_set_at(r->e, ERR_DATA, r->path, c->line, "unknown pipeline '%.64s'; expected P3, P4 or P5", pipeline);
+    err_set_at(r->e, ERR_DATA, r->path, c->line, "unknown pipeline '%.64s'; expected P3, P4 or P5",
+               pipeline);
     return 0;
 }
 
-/* Routes that depend on the load, or on chance in another way than ours, are told from the routing's name. The
- * reference's own dimension order on a torus breaks ties by chance. */
-static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, const char *topology, int *tie,
-                            struct err *why)
+/* Routes that depend on the load, or on chance in another way than ours, are told from the
+ * routing's name. The reference's own dimension order on a torus breaks ties by chance. */
+static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, const char *topology,
+                            int *tie, struct err *why)
 {
     static const char *const ours[] = {"", "min", "nca", "dim_order"};
     const char *routing, *other;
-    if (!netcheck_word(r, c, "routing_function", &routing) || !netcheck_word(r, c, "routing", &other)) return false;
+    if (!netcheck_word(r, c, "routing_function", &routing) ||
+        !netcheck_word(r, c, "routing", &other))
+        return false;
     if (!*routing) routing = other;
     for (size_t i = 0; i < sizeof ours / sizeof *ours; i++) {
         if (strcmp(routing, ours[i]) != 0) continue;
         if (*tie < 0 && strcmp(routing, "dim_order") == 0) *tie = 1;
         return true;
     }
-    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not supported", routing, topology);
+    return err_set(why, ERR_UNAVAILABLE, "routing '%.64s' on '%.64s' is not supported", routing,
+                   topology);
 }
 
-bool netcheck_network(struct netcheck_reader *r, const struct node *c, const struct netcheck_setting *s,
-                      struct netcheck_question *k)
+bool netcheck_network(struct netcheck_reader *r, const struct node *c,
+                      const struct netcheck_setting *s, struct netcheck_question *k)
 {
     struct err why;
     struct topology_spec *t = TAKE(r->arena, 1, struct topology_spec);
@@ -109,12 +120,13 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c, const str
     int head = head_cycles(r, c), nodes, channels = s->channels, tie = s->tie;
     err_clear(&why);
     if (head == 0) return false;
-    snprintf(row->group, sizeof row->group, "%.*s vc=%d B=%d%s", (int)strcspn(s->topology, "0123456789_"), s->topology,
-             channels, s->buffer,
+    snprintf(row->group, sizeof row->group, "%.*s vc=%d B=%d%s",
+             (int)strcspn(s->topology, "0123456789_"), s->topology, channels, s->buffer,
              head == 3   ? ""
              : head == 4 ? " P4"
                          : " P5");
-    if (routing_is_ours(r, c, s->topology, &tie, &why) && netcheck_topology(s->topology, tie, t, &why))
+    if (routing_is_ours(r, c, s->topology, &tie, &why) &&
+        netcheck_topology(s->topology, tie, t, &why))
         k->topology = topology_create(t, r->arena, &why);
     if (why.kind == ERR_UNAVAILABLE) netcheck_unanswered(row, why.text);
     else if (why.kind != ERR_NONE) err_set_at(r->e, ERR_DATA, r->path, c->line, "%s", why.text);
@@ -122,10 +134,11 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c, const str
     row->family = t->family;
     row->channels = channels = channels > 0 ? channels : k->topology->nclass;
     k->machine = netcheck_machine(t, channels, s->buffer, s->packet_flits, head);
-    if (!netcheck_integer(r, c, "nodes", 1, NETCHECK_MOST_NODES, k->topology->nnode, &nodes)) return false;
+    if (!netcheck_integer(r, c, "nodes", 1, NETCHECK_MOST_NODES, k->topology->nnode, &nodes))
+        return false;
     if (nodes == k->topology->nnode) return true;
-    return err_set_at(r->e, ERR_DATA, r->path, document_find(c, "nodes")->line, "'nodes' is %d; '%s' has %d", nodes,
-                      s->topology, k->topology->nnode);
+    return err_set_at(r->e, ERR_DATA, r->path, document_find(c, "nodes")->line,
+                      "'nodes' is %d; '%s' has %d", nodes, s->topology, k->topology->nnode);
 }
 
 bool netcheck_told(const struct netcheck_reader *r) { return r->e->kind == ERR_NONE; }
@@ -140,7 +153,8 @@ void netcheck_check_arrivals(struct netcheck_question *k, double makespan)
         last = fmax(last, k->arrival[m]);
         if (k->arrival[m] < least - 1e-3 && !k->row->flaw[0] && !k->any_order)
             snprintf(k->row->flaw, sizeof k->row->flaw,
-                     "message %d arrives at %.10g; an empty network takes until %.10g", m, k->arrival[m], least);
+                     "message %d arrives at %.10g; an empty network takes until %.10g", m,
+                     k->arrival[m], least);
     }
     netcheck_flaw(k->row, "makespan", makespan, last);
 }

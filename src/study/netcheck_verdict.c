@@ -1,4 +1,5 @@
-/* netcheck_verdict.c - answers held against the stated accuracy, case by case and group by group. */
+/* netcheck_verdict.c - answers held against the stated accuracy, case by case and group by group.
+ */
 #include "study/netcheck_verdict.h"
 
 #include <math.h>
@@ -13,11 +14,12 @@ static bool judged(const struct netcheck_row *row, enum network_level level)
     return row->counted && !row->played && row->answer[level].ran;
 }
 
-static bool say(char why[160], const struct netcheck_row *row, const char *what, double found, double low, double high)
+static bool say(char why[160], const struct netcheck_row *row, const char *what, double found,
+                double low, double high)
 {
     if (why)
-        snprintf(why, 160, "%.80s: %s %+.4g %%, stated are %+.4g to %+.4g %%", row->name, what, 100 * found, 100 * low,
-                 100 * high);
+        snprintf(why, 160, "%.80s: %s %+.4g %%, stated are %+.4g to %+.4g %%", row->name, what,
+                 100 * found, 100 * low, 100 * high);
     return true;
 }
 
@@ -29,11 +31,14 @@ static bool breaks_stated(const struct netcheck_row *row, enum network_level lev
     if (x->error < s->low - slack || x->error > s->high + slack)
         return say(why, row, "error", x->error, s->low, s->high);
     if (!row->compared) return false;
-    if (s->message == 0 && x->differing > 0) return say(why, row, "a message's error", x->message_worst, 0, 0);
-    return x->message_worst > s->message + slack && say(why, row, "a message's error", x->message_worst, 0, s->message);
+    if (s->message == 0 && x->differing > 0)
+        return say(why, row, "a message's error", x->message_worst, 0, 0);
+    return x->message_worst > s->message + slack &&
+           say(why, row, "a message's error", x->message_worst, 0, s->message);
 }
 
-bool netcheck_row_fails(const struct netcheck_row *row, enum network_level level, double within, char why[160])
+bool netcheck_row_fails(const struct netcheck_row *row, enum network_level level, double within,
+                        char why[160])
 {
     if (!judged(row, level)) return false;
     if (row->flaw[0]) {
@@ -42,12 +47,14 @@ bool netcheck_row_fails(const struct netcheck_row *row, enum network_level level
     }
     const struct netcheck_answer *x = &row->answer[level];
     if (x->deadlock != row->expect_deadlock) {
-        if (why) snprintf(why, 160, "%.80s: %s", row->name, x->deadlock ? "a deadlock" : "no deadlock");
+        if (why)
+            snprintf(why, 160, "%.80s: %s", row->name, x->deadlock ? "a deadlock" : "no deadlock");
         return true;
     }
     if (row->expect_deadlock) return false;
     if (within < 0) return breaks_stated(row, level, why);
-    return fabs(x->error) > within + rounding(row) && say(why, row, "error", x->error, -within, within);
+    return fabs(x->error) > within + rounding(row) &&
+           say(why, row, "error", x->error, -within, within);
 }
 
 /* The mean of few cases may be as far off as one case, that of many not. */
@@ -56,15 +63,16 @@ static void judge_mean(struct netcheck_verdict *v, double mean_limit, double wor
     if (v->cases == 0) return;
     v->mean /= v->cases;
     mean_limit /= v->cases;
-    v->mean_limit = within >= 0 ? within : mean_limit + (worst / v->cases - mean_limit) / sqrt(v->cases);
+    v->mean_limit =
+        within >= 0 ? within : mean_limit + (worst / v->cases - mean_limit) / sqrt(v->cases);
     if (v->mean <= v->mean_limit + 1e-9 || !v->pass) return;
     v->pass = false;
-    snprintf(v->why, sizeof v->why, "mean |error| of %d cases %.4g %%, stated is %.4g %%", v->cases, 100 * v->mean,
-             100 * v->mean_limit);
+    snprintf(v->why, sizeof v->why, "mean |error| of %d cases %.4g %%, stated is %.4g %%", v->cases,
+             100 * v->mean, 100 * v->mean_limit);
 }
 
-struct netcheck_verdict netcheck_verdict(const struct netcheck *n, const char *group, enum network_level level,
-                                         double within)
+struct netcheck_verdict netcheck_verdict(const struct netcheck *n, const char *group,
+                                         enum network_level level, double within)
 {
     struct netcheck_verdict v = {.pass = true};
     double mean_limit = 0, worst = 0;
@@ -99,7 +107,8 @@ bool netcheck_pass(const struct netcheck *n, double within)
     for (int i = 0; i < n->nrow; i++) {
         if (n->row[i].flaw[0]) return false;
         for (int l = 0; netcheck_opens_group(n, i) && l < LEVELS; l++)
-            if (!netcheck_verdict(n, n->row[i].group, (enum network_level)l, within).pass) return false;
+            if (!netcheck_verdict(n, n->row[i].group, (enum network_level)l, within).pass)
+                return false;
     }
     return true;
 }

@@ -30,10 +30,11 @@ bool probe_contends(enum probe_quantity q, double at, int ranks)
     return (q == PROBE_BARRIER || q == PROBE_EXCHANGE || q == PROBE_HALVES) && at > 2;
 }
 
-/* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where two ranks talk, so
- * all network levels agree there and level link is the cheapest that knows of others. */
-static bool bench(const struct machine_spec *m, const char *kernel, int nrank, int64_t bytes, int repeat,
-                  struct measured *out, struct err *e)
+/* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where
+ * two ranks talk, so all network levels agree there and level link is the cheapest that knows of
+ * others. */
+static bool bench(const struct machine_spec *m, const char *kernel, int nrank, int64_t bytes,
+                  int repeat, struct measured *out, struct err *e)
 {
     struct run_spec spec = {.machine = *m, .nrank = nrank};
     struct run_result r;
@@ -50,7 +51,8 @@ static bool bench(const struct machine_spec *m, const char *kernel, int nrank, i
         double messages = s->messages > 0 ? (double)s->messages : 1;
         double of_last = last->messages > 0 ? (double)last->messages : 1;
         *out = (struct measured){r.measured_s, (double)s->send_ps * 1e-12 / messages,
-                                 (double)s->recv_ps * 1e-12 / messages, (double)last->send_ps * 1e-12 / of_last};
+                                 (double)s->recv_ps * 1e-12 / messages,
+                                 (double)last->send_ps * 1e-12 / of_last};
     }
     arena_destroy(a);
     return ok;
@@ -72,7 +74,8 @@ static bool asymptotic_rate(const struct machine_spec *m, double *rate, struct e
     return true;
 }
 
-/* Doubling, then halving the interval: the rate rises with the size but for steps of the protocol. */
+/* Doubling, then halving the interval: the rate rises with the size but for steps of the protocol.
+ */
 static bool half_rate_size(const struct machine_spec *m, double *size, struct err *e)
 {
     double rate, t;
@@ -96,13 +99,15 @@ static bool half_rate_size(const struct machine_spec *m, double *size, struct er
 static bool flood_gap(const struct machine_spec *m, double *gap, struct err *e)
 {
     struct measured a, b;
-    if (!bench(m, "hot-spot", 2, SMALL_BYTES, FLOOD, &a, e) || !bench(m, "hot-spot", 2, SMALL_BYTES, 2 * FLOOD, &b, e))
+    if (!bench(m, "hot-spot", 2, SMALL_BYTES, FLOOD, &a, e) ||
+        !bench(m, "hot-spot", 2, SMALL_BYTES, 2 * FLOOD, &b, e))
         return false;
     *gap = 2 * b.time - a.time;
     return true;
 }
 
-/* What one message costs its sender until the send is complete, held by a synchronous one: rank 1 sends and waits. */
+/* What one message costs its sender until the send is complete, held by a synchronous one: rank 1
+ * sends and waits. */
 static bool send_overhead(const struct machine_spec *m, int64_t bytes, double *value, struct err *e)
 {
     struct measured x;
@@ -111,7 +116,8 @@ static bool send_overhead(const struct machine_spec *m, int64_t bytes, double *v
     return true;
 }
 
-static bool overheads(const struct machine_spec *m, enum probe_quantity q, double at, double *value, struct err *e)
+static bool overheads(const struct machine_spec *m, enum probe_quantity q, double at, double *value,
+                      struct err *e)
 {
     struct measured x;
     const int64_t bytes = at > 0 ? (int64_t)at : SMALL_BYTES;
@@ -129,7 +135,8 @@ static int node_at(const struct machine_spec *m, int links, struct err *e)
     int found = -1;
     for (int i = 1; t && i < t->nnode && found < 0; i++)
         if (topology_distance(t, 0, i) == links) found = i;
-    if (t && found < 0) err_set(e, ERR_CONFIG, "%s: no route of %d links from node 0", m->name, links);
+    if (t && found < 0)
+        err_set(e, ERR_CONFIG, "%s: no route of %d links from node 0", m->name, links);
     arena_destroy(a);
     return found;
 }
@@ -148,15 +155,16 @@ static bool wire(const struct machine_spec *m, int links, double *t, struct err 
 }
 
 /* Nobody's processor but the caller's takes part; interface and wire are those of messages. */
-static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, double *t, struct err *e)
+static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, double *t,
+                      struct err *e)
 {
     const struct software_spec *s = &m->software;
     const double overhead = q == PROBE_GET ? s->get_overhead : s->put_overhead;
     struct machine_spec bare = *m;
     double request = 0;
     if (!(overhead > 0))
-        return err_set(e, ERR_CONFIG, "%s: software.%s.overhead is 0: no one-sided %s", m->name, probe_name(q),
-                       probe_name(q));
+        return err_set(e, ERR_CONFIG, "%s: software.%s.overhead is 0: no one-sided %s", m->name,
+                       probe_name(q), probe_name(q));
     bare.software = (struct software_spec){.eager_bytes = -1, .gap_per_byte = s->gap_per_byte};
     if (q == PROBE_GET && !one_way(&bare, 0, &request, e)) return false;
     if (!one_way(&bare, bytes, t, e)) return false;
@@ -164,8 +172,8 @@ static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64
     return true;
 }
 
-/* A read waits for two messages; what the memories and hubs take is the caller's to add. No network interface and no
- * message software is in its way: the end's latency does not count. */
+/* A read waits for two messages; what the memories and hubs take is the caller's to add. No network
+ * interface and no message software is in its way: the end's latency does not count. */
 static bool remote_read(const struct machine_spec *m, int routers, double *t, struct err *e)
 {
     struct machine_spec coherent = *m;
@@ -191,17 +199,20 @@ static double cut_rate(const struct machine_spec *m, const struct topology *t, i
         int from, to, port;
         topology_link_ends(t, l, &from, &to, &port);
         if (upper_half(t->spec, d, from) != upper_half(t->spec, d, to))
-            rate += m->network.link_bandwidth * topology_link_bandwidth(t, l, m->network.link_bandwidth);
+            rate += m->network.link_bandwidth *
+                    topology_link_bandwidth(t, l, m->network.link_bandwidth);
     }
     return rate;
 }
 
-static bool bisection_rate(const struct machine_spec *m, const struct topology *t, double *rate, struct err *e)
+static bool bisection_rate(const struct machine_spec *m, const struct topology *t, double *rate,
+                           struct err *e)
 {
     const struct topology_spec *s = t->spec;
     bool cube = s->family == TOPOLOGY_HYPERCUBE;
     if (!cube && s->family != TOPOLOGY_TORUS && s->family != TOPOLOGY_MESH)
-        return err_set(e, ERR_CONFIG, "%s: halves are defined for torus, mesh and hypercube", m->name);
+        return err_set(e, ERR_CONFIG, "%s: halves are defined for torus, mesh and hypercube",
+                       m->name);
     *rate = INFINITY;
     for (int d = 0; d < (cube ? s->dims[0] : s->ndim); d++) {
         if (!cube && s->dims[d] % 2) continue;
@@ -210,7 +221,8 @@ static bool bisection_rate(const struct machine_spec *m, const struct topology *
     return isfinite(*rate) || err_set(e, ERR_CONFIG, "%s: no dimension can be halved", m->name);
 }
 
-static bool global_rate(const struct machine_spec *m, const struct topology *t, double *rate, struct err *e)
+static bool global_rate(const struct machine_spec *m, const struct topology *t, double *rate,
+                        struct err *e)
 {
     if (t->spec->family != TOPOLOGY_DRAGONFLY)
         return err_set(e, ERR_CONFIG, "%s: only a dragonfly has groups", m->name);
@@ -219,7 +231,8 @@ static bool global_rate(const struct machine_spec *m, const struct topology *t, 
         int from, to, port, group = t->spec->dims[1];
         topology_link_ends(t, l, &from, &to, &port);
         if (from / group != to / group)
-            *rate += m->network.link_bandwidth * topology_link_bandwidth(t, l, m->network.link_bandwidth) / 2;
+            *rate += m->network.link_bandwidth *
+                     topology_link_bandwidth(t, l, m->network.link_bandwidth) / 2;
     }
     return true;
 }
@@ -228,7 +241,8 @@ static bool cut(const struct machine_spec *m, enum probe_quantity q, double *val
 {
     struct arena *a = arena_create();
     const struct topology *t = topology_create(&m->topology, a, e);
-    bool ok = t && (q == PROBE_BISECTION ? bisection_rate(m, t, value, e) : global_rate(m, t, value, e));
+    bool ok =
+        t && (q == PROBE_BISECTION ? bisection_rate(m, t, value, e) : global_rate(m, t, value, e));
     arena_destroy(a);
     return ok;
 }
@@ -241,36 +255,41 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
     return true;
 }
 
-/* What each rank sends in a kernel where it has `partners`; the start-up goes away between two lengths. Behind a
- * kernel's server copies hide while messages wait for it, until they are long. */
-static bool rate_among(const struct machine_spec *m, const char *kernel, int ranks, int partners, double *rate,
-                       struct err *e)
+/* What each rank sends in a kernel where it has `partners`; the start-up goes away between two
+ * lengths. Behind a kernel's server copies hide while messages wait for it, until they are long. */
+static bool rate_among(const struct machine_spec *m, const char *kernel, int ranks, int partners,
+                       double *rate, struct err *e)
 {
     struct measured once, twice;
     if (ranks < 2) return err_set(e, ERR_CONFIG, "%s: an exchange of %d ranks", m->name, ranks);
     const int64_t all = m->software.kernel_server ? SERVED_BYTES : EXCHANGE_BYTES;
     const int64_t bytes = all / partners / SMALL_BYTES * SMALL_BYTES;
-    if (!bench(m, kernel, ranks, bytes, 1, &once, e) || !bench(m, kernel, ranks, 2 * bytes, 1, &twice, e)) return false;
+    if (!bench(m, kernel, ranks, bytes, 1, &once, e) ||
+        !bench(m, kernel, ranks, 2 * bytes, 1, &twice, e))
+        return false;
     *rate = (double)(bytes * partners) / (twice.time - once.time);
     return true;
 }
 
 /* Codes of computing have a size that is an order or a length. */
-static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate, struct err *e)
+static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate,
+                      struct err *e)
 {
     int n = q == PROBE_LINPACK || q == PROBE_INNER_PRODUCT ? (int)at : VECTOR;
     struct rate_count c;
-    if (n < 1 || n > MEBIBYTE) return err_set(e, ERR_CONFIG, "%s: %s of %g elements", m->name, probe_name(q), at);
+    if (n < 1 || n > MEBIBYTE)
+        return err_set(e, ERR_CONFIG, "%s: %s of %g elements", m->name, probe_name(q), at);
     if (q == PROBE_LINPACK) c = rate_linpack(n);
     else if (q == PROBE_INNER_PRODUCT) c = rate_inner_product(n);
     else if (q == PROBE_MEMORY_COPY) c = rate_stream(RATE_COPY, n);
     else c = rate_stream((enum rate_stream)(q - PROBE_STREAM_COPY), n);
-    *rate = rate_of(&m->node, &c) * (q == PROBE_MEMORY_COPY ? 0.5 : 1); /* STREAM counts a byte copied twice */
+    *rate = rate_of(&m->node, &c) *
+            (q == PROBE_MEMORY_COPY ? 0.5 : 1); /* STREAM counts a byte copied twice */
     return true;
 }
 
-bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, int ranks, double *value,
-                   struct err *e)
+bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, int ranks,
+                   double *value, struct err *e)
 {
     switch (q) {
     case PROBE_ONE_WAY:
@@ -320,6 +339,7 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
     default:
         break;
     }
-    if (q >= PROBE_BROADCAST && q <= PROBE_B_EFF) return probe_collective(m, q, (int64_t)at, ranks, value, e);
+    if (q >= PROBE_BROADCAST && q <= PROBE_B_EFF)
+        return probe_collective(m, q, (int64_t)at, ranks, value, e);
     return err_set(e, ERR_CONFIG, "%s: no such quantity", m->name);
 }

@@ -1,4 +1,5 @@
-/* probe_collective.c - collectives, rings and the effective bandwidth of a simulated machine (probe_collective.h). */
+/* probe_collective.c - collectives, rings and the effective bandwidth of a simulated machine
+ * (probe_collective.h). */
 #include "study/probe_collective.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
 enum { EFFECTIVE_SIZES = 21, SMALL_SIZES = 13, PATTERNS = 6 };
 
 /* Seconds that `kernel` measures. */
-static bool seconds(const struct machine_spec *m, const char *kernel, int64_t bytes, int ranks, int ring_ranks,
-                    double *value, struct err *e)
+static bool seconds(const struct machine_spec *m, const char *kernel, int64_t bytes, int ranks,
+                    int ring_ranks, double *value, struct err *e)
 {
     struct run_spec spec = {.machine = *m, .nrank = ranks, .seed = 1};
     struct run_result r;
@@ -30,8 +31,8 @@ static bool seconds(const struct machine_spec *m, const char *kernel, int64_t by
 }
 
 /* Bytes a second that all ranks together send to their neighbours. */
-static bool ring_rate(const struct machine_spec *m, const char *kernel, int64_t bytes, int ranks, int ring_ranks,
-                      double *rate, struct err *e)
+static bool ring_rate(const struct machine_spec *m, const char *kernel, int64_t bytes, int ranks,
+                      int ring_ranks, double *rate, struct err *e)
 {
     double t;
     if (!seconds(m, kernel, bytes, ranks, ring_ranks, &t, e)) return false;
@@ -43,12 +44,13 @@ static int64_t effective_size(int k, int64_t largest)
 {
     if (k < SMALL_SIZES) return (int64_t)1 << k;
     double small = (double)((int64_t)1 << (SMALL_SIZES - 1)), part = (double)(k - SMALL_SIZES + 1);
-    return (int64_t)floor(small * pow((double)largest / small, part / (EFFECTIVE_SIZES - SMALL_SIZES)) + 0.5);
+    return (int64_t)floor(
+        small * pow((double)largest / small, part / (EFFECTIVE_SIZES - SMALL_SIZES)) + 0.5);
 }
 
 /* The logarithmic mean over the patterns of one order, each the mean over the sizes. */
-static bool order_rate(const struct machine_spec *m, const char *kernel, int64_t largest, int ranks, double *rate,
-                       struct err *e)
+static bool order_rate(const struct machine_spec *m, const char *kernel, int64_t largest, int ranks,
+                       double *rate, struct err *e)
 {
     const int quarter = ranks / 4 > 16 ? ranks / 4 : 16, half = ranks / 2 > 32 ? ranks / 2 : 32;
     const int ring[PATTERNS] = {2, 4, 8, quarter, half, ranks};
@@ -56,7 +58,8 @@ static bool order_rate(const struct machine_spec *m, const char *kernel, int64_t
     for (int p = 0; p < PATTERNS; p++) {
         double sum = 0, one;
         for (int k = 0; k < EFFECTIVE_SIZES; k++) {
-            if (!ring_rate(m, kernel, effective_size(k, largest), ranks, ring[p], &one, e)) return false;
+            if (!ring_rate(m, kernel, effective_size(k, largest), ranks, ring[p], &one, e))
+                return false;
             sum += one;
         }
         logarithm += log(sum / EFFECTIVE_SIZES) / PATTERNS;
@@ -65,7 +68,8 @@ static bool order_rate(const struct machine_spec *m, const char *kernel, int64_t
     return true;
 }
 
-static bool effective_bandwidth(const struct machine_spec *m, int64_t largest, int ranks, double *rate, struct err *e)
+static bool effective_bandwidth(const struct machine_spec *m, int64_t largest, int ranks,
+                                double *rate, struct err *e)
 {
     double in_order, random;
     if (!order_rate(m, "ring", largest, ranks, &in_order, e) ||
@@ -75,11 +79,13 @@ static bool effective_bandwidth(const struct machine_spec *m, int64_t largest, i
     return true;
 }
 
-bool probe_collective(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, int ranks, double *value,
-                      struct err *e)
+bool probe_collective(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, int ranks,
+                      double *value, struct err *e)
 {
-    if (ranks < 2) return err_set(e, ERR_CONFIG, "%s: a %s of %d ranks", m->name, probe_name(q), ranks);
+    if (ranks < 2)
+        return err_set(e, ERR_CONFIG, "%s: a %s of %d ranks", m->name, probe_name(q), ranks);
     if (q == PROBE_B_EFF) return effective_bandwidth(m, bytes, ranks, value, e);
-    if (q == PROBE_RING || q == PROBE_RANDOM_RING) return ring_rate(m, probe_name(q), bytes, ranks, 0, value, e);
+    if (q == PROBE_RING || q == PROBE_RANDOM_RING)
+        return ring_rate(m, probe_name(q), bytes, ranks, 0, value, e);
     return seconds(m, probe_name(q), bytes, ranks, 0, value, e);
 }

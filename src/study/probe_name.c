@@ -4,12 +4,12 @@
 #include "study/probe.h"
 
 static const char *const names[PROBE_QUANTITIES] = {
-    "one-way", "round-trip", "bandwidth", "r-inf", "n-half",    "o-send", "o-recv",
-    "latency", "gap",        "wire",      "read",  "bisection", "global", "barrier",
-    "exchange", "halves",
-    "linpack", "stream-copy", "stream-scale", "stream-add", "stream-triad", "inner-product", "memory-copy",
-    "broadcast", "reduce", "allreduce", "gather", "scatter", "allgather", "alltoall", "ring", "random-ring", "b-eff",
-    "put", "get",
+    "one-way",      "round-trip",  "bandwidth",    "r-inf",         "n-half",      "o-send",
+    "o-recv",       "latency",     "gap",          "wire",          "read",        "bisection",
+    "global",       "barrier",     "exchange",     "halves",        "linpack",     "stream-copy",
+    "stream-scale", "stream-add",  "stream-triad", "inner-product", "memory-copy", "broadcast",
+    "reduce",       "allreduce",   "gather",       "scatter",       "allgather",   "alltoall",
+    "ring",         "random-ring", "b-eff",        "put",           "get",
 };
 
 const char *probe_name(enum probe_quantity q) { return names[q]; }

@@ -89,7 +89,8 @@ static void matgen(double *a, double *b, int n)
 
 static double nominal_linpack(double n) { return 2 * n * n * n / 3 + 2 * n * n; }
 
-/* Calls: a pivot search, a scaling and an update of each later column a step; an update of b a step and back. */
+/* Calls: a pivot search, a scaling and an update of each later column a step; an update of b a step
+ * and back. */
 struct rate_count rate_linpack_summed(int n)
 {
     struct rate_count c = {.nominal = nominal_linpack(n)};
@@ -155,8 +156,9 @@ struct rate_count rate_stream(enum rate_stream kind, int n)
     for (int i = 0; i < n; i++) CHECK(a[i] == result[kind]);
     arena_destroy(memory);
     uint64_t bytes = (uint64_t)n * (uint64_t)vectors[kind] * sizeof(double);
-    return (struct rate_count){.nominal = (double)bytes,
-                               .work = {.call = 1, .flop = (uint64_t)(n * flops[kind]), .bytes = bytes / 2}};
+    return (struct rate_count){
+        .nominal = (double)bytes,
+        .work = {.call = 1, .flop = (uint64_t)(n * flops[kind]), .bytes = bytes / 2}};
 }
 
 struct rate_count rate_inner_product(int n)

@@ -1,5 +1,5 @@
-/* savings.c - see savings.h. Times are compared only with times taken in turn with them: what disturbs one round of
- * runs disturbs all that are compared. */
+/* savings.c - see savings.h. Times are compared only with times taken in turn with them: what
+ * disturbs one round of runs disturbs all that are compared. */
 #include "study/savings.h"
 
 #include <math.h>
@@ -31,8 +31,8 @@ static void shortest_add(struct shortest *s, double x)
 static double spread_of(const struct shortest *s) { return s->time[2] - s->time[0]; }
 
 /* A run as one of a campaign: its scene is there already. */
-static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cache *cache, struct shortest *host,
-                     int64_t *machine_ps, struct err *e)
+static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cache *cache,
+                     struct shortest *host, int64_t *machine_ps, struct err *e)
 {
     const struct run_order order = {.keep = keep};
     struct run_result result;
@@ -45,8 +45,8 @@ static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cach
     return ok;
 }
 
-/* The omissions that stand at one point, and the point without any put back, twice a round: what differs between its
- * two halves is chance. */
+/* The omissions that stand at one point, and the point without any put back, twice a round: what
+ * differs between its two halves is chance. */
 static bool measure_point(const struct run_spec *spec, struct savings *all, const int *item, int n,
                           struct run_cache *cache, struct err *e)
 {
@@ -59,7 +59,8 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
         if (round >= LEAST_ROUNDS && host_seconds() - begin > round_budget_s) break;
         if (!time_run(spec, 0, cache, &base[0], &base_ps, e)) return false;
         for (int i = 0; i < n; i++)
-            if (!time_run(spec, all->item[item[i]].omission.keep, cache, &with[i], &with_ps[i], e)) return false;
+            if (!time_run(spec, all->item[item[i]].omission.keep, cache, &with[i], &with_ps[i], e))
+                return false;
         if (!time_run(spec, 0, cache, &base[1], &base_ps, e)) return false;
     }
     double least = fmin(base[0].time[0], base[1].time[0]);
@@ -77,7 +78,8 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
     return true;
 }
 
-/* Whether run a tells more than run b: the larger of those that take a moment, otherwise the shorter. */
+/* Whether run a tells more than run b: the larger of those that take a moment, otherwise the
+ * shorter. */
 static bool tells_more(const struct run_estimate *a, const struct run_estimate *b)
 {
     bool a_short = a->host_s <= longest_run_s, b_short = b->host_s <= longest_run_s;
@@ -93,7 +95,8 @@ static int find(const struct savings *all, const char *what)
 }
 
 /* Each omission once, with the run where it is measured in point[]. */
-static void collect(const struct plan *p, const struct run_estimate *r, struct savings *all, int *point)
+static void collect(const struct plan *p, const struct run_estimate *r, struct savings *all,
+                    int *point)
 {
     for (int i = 0; i < p->nrun; i++)
         for (int k = 0; k < r[i].nomission; k++) {
@@ -102,7 +105,8 @@ static void collect(const struct plan *p, const struct run_estimate *r, struct s
             if (at < 0 && all->n == MOST_SAVINGS) continue;
             if (at >= 0 && !tells_more(&r[i], &r[point[at]])) continue;
             if (at < 0) at = all->n++;
-            all->item[at] = (struct saving){.omission = *o, .host_s = NAN, .host_saved_s = NAN, .noise_s = NAN};
+            all->item[at] =
+                (struct saving){.omission = *o, .host_s = NAN, .host_saved_s = NAN, .noise_s = NAN};
             point[at] = i;
         }
 }
@@ -114,18 +118,21 @@ static void name_point(const struct run_spec *spec, int64_t nbody, struct saving
     else snprintf(s->at, sizeof s->at, "P=%d", spec->nrank);
 }
 
-bool savings_measure(const struct plan *p, const struct run_estimate *r, struct savings *out, struct err *e)
+bool savings_measure(const struct plan *p, const struct run_estimate *r, struct savings *out,
+                     struct err *e)
 {
     int point[MOST_SAVINGS], item[MOST_SAVINGS];
     *out = (struct savings){0};
     if (p->nrun == 0) return true;
     text_copy(out->scenario, sizeof out->scenario, p->run[0].scenario);
     collect(p, r, out, point);
-    for (int i = 0; i < out->n; i++) name_point(&p->run[point[i]], r[point[i]].nbody, &out->item[i]);
+    for (int i = 0; i < out->n; i++)
+        name_point(&p->run[point[i]], r[point[i]].nbody, &out->item[i]);
     for (int i = 0; i < out->n; i++) {
         int n = 0;
         for (int k = 0; k < out->n; k++)
-            if (point[k] == point[i] && !out->item[k].measured && out->item[k].omission.keep) item[n++] = k;
+            if (point[k] == point[i] && !out->item[k].measured && out->item[k].omission.keep)
+                item[n++] = k;
         struct run_cache *cache = run_cache_create();
         bool ok = n == 0 || measure_point(&p->run[point[i]], out, item, n, cache, e);
         run_cache_destroy(cache);
@@ -134,7 +141,7 @@ bool savings_measure(const struct plan *p, const struct run_estimate *r, struct 
     return true;
 }
 
-/* --- telling ------------------------------------------------------------------------------------------------------ */
+/* --- telling ---------------------------------------------------------------------------------- */
 
 static void print_host(FILE *out, const struct saving *s)
 {
@@ -153,14 +160,17 @@ static void print_machine(FILE *out, const struct saving *s)
 {
     double with = (double)(s->machine_ps + s->machine_saved_ps);
     if (s->machine_saved_ps == 0) fprintf(out, "  nothing");
-    else fprintf(out, "  %s %.3f us of %.3f, %.2g %%", s->machine_saved_ps > 0 ? "saves" : "takes more:",
-                 fabs((double)s->machine_saved_ps) * 1e-6, with * 1e-6, 100 * fabs((double)s->machine_saved_ps) / with);
+    else
+        fprintf(out, "  %s %.3f us of %.3f, %.2g %%",
+                s->machine_saved_ps > 0 ? "saves" : "takes more:",
+                fabs((double)s->machine_saved_ps) * 1e-6, with * 1e-6,
+                100 * fabs((double)s->machine_saved_ps) / with);
 }
 
 void savings_print(FILE *out, const struct savings *all)
 {
-    fprintf(out, "\nmeasured, each undone alone\n  %-40s %-14s %-8s %-38s  %s\n", "what", "at", "class",
-            "this computer", "the machine, predicted");
+    fprintf(out, "\nmeasured, each undone alone\n  %-40s %-14s %-8s %-38s  %s\n", "what", "at",
+            "class", "this computer", "the machine, predicted");
     for (int i = 0; i < all->n; i++) {
         const struct saving *s = &all->item[i];
         fprintf(out, "  %-40s %-14s %-8s ", s->omission.what, s->at, omission_class(&s->omission));
@@ -189,17 +199,22 @@ static const struct column saving_column[] = {
     {"at", COLUMN_CHARS, SAVING(at), .doc = "point of the scenario that was measured: \"n=P=128\""},
     {"host_s", COLUMN_REAL, SAVING(host_s), .flags = COLUMN_NULL,
      .doc = "of the run without it; NULL here and below: nothing brings it back"},
-    {"host_saved_s", COLUMN_REAL, SAVING(host_saved_s), .flags = COLUMN_NULL, .doc = "what leaving it out saves"},
+    {"host_saved_s", COLUMN_REAL, SAVING(host_saved_s), .flags = COLUMN_NULL,
+     .doc = "what leaving it out saves"},
     {"host_noise_s", COLUMN_REAL, SAVING(noise_s), .flags = COLUMN_NULL,
      .doc = "savings below it cannot be told from nothing"},
-    {"machine_ps", COLUMN_INT64, SAVING(machine_ps), .known = is_measured, .flags = COLUMN_NULL, .key = "machine_s",
-     .json_scale = 1e-12, .doc = "predicted time of the run without it"},
-    {"machine_saved_ps", COLUMN_INT64, SAVING(machine_saved_ps), .known = is_measured, .flags = COLUMN_NULL,
-     .key = "machine_saved_s", .json_scale = 1e-12, .doc = "what leaving it out saves of that"},
+    {"machine_ps", COLUMN_INT64, SAVING(machine_ps), .known = is_measured, .flags = COLUMN_NULL,
+     .key = "machine_s", .json_scale = 1e-12, .doc = "predicted time of the run without it"},
+    {"machine_saved_ps", COLUMN_INT64, SAVING(machine_saved_ps), .known = is_measured,
+     .flags = COLUMN_NULL, .key = "machine_saved_s", .json_scale = 1e-12,
+     .doc = "what leaving it out saves of that"},
     {"what", COLUMN_CHARS, SAVING(omission.what), .doc = "was left out"},
-    {"why", COLUMN_CHARS, SAVING(omission.why), .flags = COLUMN_NO_JSON, .doc = "why no result needs it"},
-    {"class", COLUMN_STRING, .value = read_class, .flags = COLUMN_NO_JSON, .doc = "exact or bounded"},
-    {"bound", COLUMN_REAL, SAVING(omission.bound), .absent = ABSENT_ZERO, .flags = COLUMN_NULL | COLUMN_NO_JSON,
+    {"why", COLUMN_CHARS, SAVING(omission.why), .flags = COLUMN_NO_JSON,
+     .doc = "why no result needs it"},
+    {"class", COLUMN_STRING, .value = read_class, .flags = COLUMN_NO_JSON,
+     .doc = "exact or bounded"},
+    {"bound", COLUMN_REAL, SAVING(omission.bound), .absent = ABSENT_ZERO,
+     .flags = COLUMN_NULL | COLUMN_NO_JSON,
      .doc = "largest relative change of a result, of bounded ones"},
 };
 static const struct column_table saving_columns = COLUMNS(saving_column);
@@ -214,7 +229,8 @@ bool savings_store(struct store *s, const struct savings *all, struct err *e)
 {
     static const char *const name[] = {"scenario", "ordinal"};
     if (!store_begin(s, e)) return false;
-    bool ok = store_note_build(s, e) && store_delete(s, "omission", "scenario", store_text(all->scenario), e);
+    bool ok = store_note_build(s, e) &&
+              store_delete(s, "omission", "scenario", store_text(all->scenario), e);
     for (int i = 0; ok && i < all->n; i++) {
         const struct saving *x = &all->item[i];
         const struct store_value value[] = {store_text(all->scenario), store_int(i)};

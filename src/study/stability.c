@@ -18,7 +18,8 @@ static void name_scene(const struct stability_scene *c, const struct model *m, c
     else snprintf(name, (size_t)size, "%.40s, n = %d%s", c->name, m->nbody, base[c->spec.base]);
 }
 
-static bool measure_scene(struct stability_report *r, const struct stability_scene *c, int most_bodies, struct err *e)
+static bool measure_scene(struct stability_report *r, const struct stability_scene *c,
+                          int most_bodies, struct err *e)
 {
     struct arena *a = arena_create();
     struct model *m;
@@ -49,14 +50,16 @@ static bool measure_suite(struct stability_report *r, int most_bodies, bool quie
     return true;
 }
 
-/* The points of a scenario that are different scenes: kernels, levels and processors make no other. */
-static bool measure_points(struct stability_report *r, const struct run_spec *spec, int nspec, int most_bodies,
-                           bool quiet, struct err *e)
+/* The points of a scenario that are different scenes: kernels, levels and processors make no other.
+ */
+static bool measure_points(struct stability_report *r, const struct run_spec *spec, int nspec,
+                           int most_bodies, bool quiet, struct err *e)
 {
     struct progress p = progress_make("scenes", nspec, quiet);
     for (int i = 0; i < nspec; i++) {
         bool seen = false;
-        for (int k = 0; k < i && !seen; k++) seen = memcmp(&spec[k].model, &spec[i].model, sizeof spec[i].model) == 0;
+        for (int k = 0; k < i && !seen; k++)
+            seen = memcmp(&spec[k].model, &spec[i].model, sizeof spec[i].model) == 0;
         if (seen) continue;
         if (!kernel_spec_needs_model(&spec[i].kernel))
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
@@ -71,8 +74,8 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
     return true;
 }
 
-bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, bool quiet, struct arena *a,
-                       struct stability_report *r, struct err *e)
+bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, bool quiet,
+                       struct arena *a, struct stability_report *r, struct err *e)
 {
     double begin = host_seconds();
     *r = (struct stability_report){.arena = a, .suite = "suite"};
@@ -83,7 +86,7 @@ bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, 
     return good;
 }
 
-/* --- printing --------------------------------------------------------------------------------------------------- */
+/* --- printing --------------------------------------------------------------------------------- */
 
 static const char *const status_word[] = {"ok", "degraded", "failed"};
 static const char *const cause_word[] = {"", "rounding", "algorithm-fails"};
@@ -95,23 +98,32 @@ static const char *const cause_word[] = {"", "rounding", "algorithm-fails"};
      __VA_ARGS__}
 
 static const struct column stability_column[] = {
-    {"subject", COLUMN_CHARS, ROW(subject), .key = "case", .title = "case", .width = -27, .doc = "the case"},
+    {"subject", COLUMN_CHARS, ROW(subject), .key = "case", .title = "case", .width = -27,
+     .doc = "the case"},
     {"algorithm", COLUMN_CHARS, ROW(algorithm), .title = "algorithm", .before = " ", .width = -22,
      .doc = "which was asked"},
-    {"precision", COLUMN_CHARS, ROW(precision), .title = "prec", .before = " ", .width = -7, .doc = "of its numbers"},
-    {"status", COLUMN_WORD, ROW(status), WORDS(status_word), .title = "status", .before = " ", .width = -9,
+    {"precision", COLUMN_CHARS, ROW(precision), .title = "prec", .before = " ", .width = -7,
+     .doc = "of its numbers"},
+    {"status", COLUMN_WORD, ROW(status), WORDS(status_word), .title = "status", .before = " ",
+     .width = -9,
      .doc = "in double precision ok to 1e-8, degraded to 1e-2; in single 1e-3 and 1e-1"},
     NUMBER("relative_error", "error", error, .key = "error", .doc = "NULL: no number"),
     NUMBER("residual", "residual", residual,
-           .doc = "of the equation of motion over the largest joint force; with loops of the constraints"),
-    NUMBER("condition", "cond", condition, .doc = "of the case: change of the answer over that of the inputs"),
-    NUMBER("growth", "growth", growth, .doc = "of the reduction: largest diagonal element over its last pivot"),
-    {"refinements", COLUMN_INT, ROW(refinements), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE, .title = "ref",
-     .width = 4, .doc = "corrections that were applied, inner and outer"},
-    NUMBER("energy_drift", "energy", energy_drift, .doc = "of motions, relative; of accelerations: power of the error"),
+           .doc = "of the equation of motion over the largest joint force; with loops of the "
+                  "constraints"),
+    NUMBER("condition", "cond", condition,
+           .doc = "of the case: change of the answer over that of the inputs"),
+    NUMBER("growth", "growth", growth,
+           .doc = "of the reduction: largest diagonal element over its last pivot"),
+    {"refinements", COLUMN_INT, ROW(refinements), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE,
+     .title = "ref", .width = 4, .doc = "corrections that were applied, inner and outer"},
+    NUMBER("energy_drift", "energy", energy_drift,
+           .doc = "of motions, relative; of accelerations: power of the error"),
     NUMBER("step_s", "step", step_s, .doc = "largest stable or mean step, of integrators"),
-    {"cause", COLUMN_WORD, ROW(cause), WORDS(cause_word), .flags = COLUMN_NO_SQL, .doc = "why it is not ok"},
-    {"reason", COLUMN_CHARS, ROW(reason), .title = "", .before = "  ", .doc = "the same in words, and what helps"},
+    {"cause", COLUMN_WORD, ROW(cause), WORDS(cause_word), .flags = COLUMN_NO_SQL,
+     .doc = "why it is not ok"},
+    {"reason", COLUMN_CHARS, ROW(reason), .title = "", .before = "  ",
+     .doc = "the same in words, and what helps"},
 };
 const struct column_table stability_columns = COLUMNS(stability_column);
 
@@ -124,9 +136,10 @@ void stability_print(FILE *out, const struct stability_report *r)
         count[r->row[i].status]++;
         by_algorithm += r->row[i].cause == CAUSE_ALGORITHM;
     }
-    fprintf(out, "\n%d ok, %d degraded, %d failed of %d; in %d cases the cause is the algorithm, not "
-                 "rounding\n", count[0], count[1],
-            count[2], r->nrow, by_algorithm);
+    fprintf(out,
+            "\n%d ok, %d degraded, %d failed of %d; in %d cases the cause is the algorithm, not "
+            "rounding\n",
+            count[0], count[1], count[2], r->nrow, by_algorithm);
 }
 
 void stability_print_json(FILE *out, const struct stability_report *r)

@@ -1,4 +1,5 @@
-/* stability_forward.c - accelerations of one scene by every algorithm, held against quad precision. */
+/* stability_forward.c - accelerations of one scene by every algorithm, held against quad precision.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,9 +12,11 @@
 
 enum {
     MOST_RANKS = 64,
-    MOST_DENSE = 1024,   /* degrees of freedom for the mass matrix */
+    MOST_DENSE = 1024,    /* degrees of freedom for the mass matrix */
     MOST_MEASURED = 8192, /* bodies for the condition, which takes a second reference */
-    MOST_INNER = 20, FEW_INNER = 4, FEW_BODIES = 1000 /* passes of refinement; fewer where many bodies make them long */
+    MOST_INNER = 20,
+    FEW_INNER = 4,
+    FEW_BODIES = 1000 /* passes of refinement; fewer where many bodies make them long */
 };
 
 struct judge {
@@ -41,23 +44,26 @@ static double condition_of(const struct judge *j)
     struct arena_mark mark = arena_mark(j->a);
     struct state s = *j->s;
     double *qdd = TAKE(j->a, m->nu, double);
-    s.q = TAKE(j->a, m->nq, double), s.qd = TAKE(j->a, m->nu, double), s.tau = TAKE(j->a, m->nu, double);
+    s.q = TAKE(j->a, m->nq, double), s.qd = TAKE(j->a, m->nu, double),
+    s.tau = TAKE(j->a, m->nu, double);
     for (int i = 0; i < m->nq; i++) s.q[i] = j->s->q[i] * (1 + (i % 3 - 1) * change);
     for (int i = 0; i < m->nu; i++) s.qd[i] = j->s->qd[i] * (1 + (i % 2 ? change : -change));
     for (int i = 0; i < m->nu; i++) s.tau[i] = j->s->tau[i] * (1 + (i % 2 ? -change : change));
-    double moved = quad_forward(m, &s, j->a, qdd) ? trial_error(qdd, j->reference, m->nu) / change : NAN;
+    double moved =
+        quad_forward(m, &s, j->a, qdd) ? trial_error(qdd, j->reference, m->nu) / change : NAN;
     arena_release(j->a, mark);
     return moved;
 }
 
-/* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force, and their power. The
- * answer's own rounding is part of it. */
+/* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force,
+ * and their power. The answer's own rounding is part of it. */
 static double residual_of(const struct judge *j, double *qdd, double *power)
 {
     const struct model *m = j->m;
     struct arena_mark mark = arena_mark(j->a);
     struct state s = *j->s;
-    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0, rates = 0;
+    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0,
+           rates = 0;
     struct work w = {0};
     s.qdd = qdd;
     dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
@@ -89,7 +95,8 @@ static double force_of(const struct judge *j)
     return largest;
 }
 
-static void finish_row(const struct judge *j, struct stability_row *x, double *qdd, double own_residual, bool single)
+static void finish_row(const struct judge *j, struct stability_row *x, double *qdd,
+                       double own_residual, bool single)
 {
     row_grade(x, trial_error(qdd, j->reference, j->m->nu), single);
     x->residual = own_residual;
@@ -123,7 +130,8 @@ static const struct variant {
     enum formulation formulation;
     enum solver solver;
     int inner, outer;
-    bool twice; /* forces and residuals in twice the precision, and as many passes as the hardest scene takes */
+    bool twice; /* forces and residuals in twice the precision, and as many passes as the hardest
+                   scene takes */
     bool as_needed; /* what a run would switch on by itself */
 } variant_table[] = {
     {"paper cr", false, PRECISION_DOUBLE, FORMULATION_PAPER, SOLVER_CR, 0, 0, false, false},
@@ -144,15 +152,21 @@ static const struct variant {
     {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
 };
 
-static struct trial variant_trial(const struct judge *j, const struct variant *v, enum precision precision)
+static struct trial variant_trial(const struct judge *j, const struct variant *v,
+                                  enum precision precision)
 {
     int P = j->m->nbody < MOST_RANKS ? j->m->nbody : MOST_RANKS;
     struct run_spec spec = {.machine = trial_machine(P), .nrank = P};
     bool twice = v->twice && precision != PRECISION_QUAD;
-    spec.kernel = (struct kernel_spec){.name = "forward", .formulation = v->formulation, .solver = v->solver,
-                                       .part_solver = PART_CR, .precision = precision, .composites_incoming = true,
+    spec.kernel = (struct kernel_spec){.name = "forward",
+                                       .formulation = v->formulation,
+                                       .solver = v->solver,
+                                       .part_solver = PART_CR,
+                                       .precision = precision,
+                                       .composites_incoming = true,
                                        .residual = twice ? RESIDUAL_TWICE : RESIDUAL_WORKING,
-                                       .inner_refinements = v->inner, .outer_refinements = v->outer,
+                                       .inner_refinements = v->inner,
+                                       .outer_refinements = v->outer,
                                        .algebra = ALGEBRA_SPATIAL};
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
@@ -164,7 +178,8 @@ static struct trial variant_trial(const struct judge *j, const struct variant *v
 
 static void parallel_row(const struct judge *j, const struct variant *v)
 {
-    struct stability_row *x = row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
+    struct stability_row *x =
+        row_add(j->report, j->subject, v->name, dynamics_type_of(v->precision)->name);
     struct trial t = variant_trial(j, v, v->precision);
     if (!t.answered) {
         text_copy(x->reason, sizeof x->reason, t.text);
@@ -175,7 +190,7 @@ static void parallel_row(const struct judge *j, const struct variant *v)
     if (t.condition > 0) x->growth = t.condition;
 }
 
-/* --- why an answer is not good ------------------------------------------------------------------------------------ */
+/* --- why an answer is not good ---------------------------------------------------------------- */
 
 /* The error in quad precision of the algorithm of a row; INFINITY: it breaks down there too. */
 static double quad_error(const struct judge *j, const struct stability_row *x)
@@ -185,11 +200,13 @@ static double quad_error(const struct judge *j, const struct stability_row *x)
     struct work w = {0};
     for (int k = 0; k < FORWARD_METHODS; k++)
         if (strcmp(x->algorithm, forward_method_name((enum forward_method)k)) == 0 &&
-            dynamics_type_of(PRECISION_QUAD)->forward(j->m, j->s, (enum forward_method)k, j->a, qdd, NULL, NULL, &w))
+            dynamics_type_of(PRECISION_QUAD)
+                ->forward(j->m, j->s, (enum forward_method)k, j->a, qdd, NULL, NULL, &w))
             error = trial_error(qdd, j->reference, j->m->nu);
     for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
         const struct variant *v = &variant_table[k];
-        if (strcmp(x->algorithm, v->name) != 0 || strcmp(x->precision, dynamics_type_of(v->precision)->name) != 0)
+        if (strcmp(x->algorithm, v->name) != 0 ||
+            strcmp(x->precision, dynamics_type_of(v->precision)->name) != 0)
             continue;
         struct trial t = variant_trial(j, v, PRECISION_QUAD);
         if (t.answered) error = trial_error(t.qdd, j->reference, j->m->nu);
@@ -205,8 +222,10 @@ static bool is_serial(const struct stability_row *x)
     return false;
 }
 
-/* What answers the scene well in double precision: the last of the same kind, else the last of all; NULL: nothing. */
-static const char *remedy_of(const struct stability_report *r, int first, const struct stability_row *failed)
+/* What answers the scene well in double precision: the last of the same kind, else the last of all;
+ * NULL: nothing. */
+static const char *remedy_of(const struct stability_report *r, int first,
+                             const struct stability_row *failed)
 {
     const char *any = NULL, *same = NULL;
     for (int i = first; i < r->nrow; i++) {
@@ -225,9 +244,11 @@ static void cause_tell(const struct judge *j, int first, struct stability_row *x
     const char *remedy = remedy_of(j->report, first, x);
     double error = quad_error(j, x);
     x->cause = error <= 1e-8 ? CAUSE_ROUNDING : CAUSE_ALGORITHM;
-    if (x->cause == CAUSE_ROUNDING) snprintf(cause, sizeof cause, "rounding: %.1e in quad precision", error);
-    else snprintf(cause, sizeof cause, "algorithm-fails: %.1e in quad precision%s%s", error, remedy ? "; use " : "",
-                  remedy ? remedy : "");
+    if (x->cause == CAUSE_ROUNDING)
+        snprintf(cause, sizeof cause, "rounding: %.1e in quad precision", error);
+    else
+        snprintf(cause, sizeof cause, "algorithm-fails: %.1e in quad precision%s%s", error,
+                 remedy ? "; use " : "", remedy ? remedy : "");
     text_copy(before, sizeof before, x->reason);
     snprintf(x->reason, sizeof x->reason, "%.60s%s%s", before, before[0] ? "; " : "", cause);
 }
@@ -248,7 +269,8 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
     const int first = r->nrow;
     struct judge j = {r, subject, m, s, scratch, TAKE(scratch, m->nu + 1, double), 0, NAN};
     if (!quad_forward(m, s, scratch, j.reference)) {
-        text_copy(row_add(r, subject, "aba", "quad")->reason, 60, "the reference itself broke down");
+        text_copy(row_add(r, subject, "aba", "quad")->reason, 60,
+                  "the reference itself broke down");
         return;
     }
     j.force = force_of(&j);
@@ -257,7 +279,8 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
         struct arena_mark mark = arena_mark(scratch);
         if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && m->nu > MOST_DENSE)) continue;
         serial_row(&j, (enum forward_method)k, PRECISION_DOUBLE);
-        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT) serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
+        if (k == FORWARD_ABA || k == FORWARD_CFA_DIRECT)
+            serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
         arena_release(scratch, mark);
     }
     bool branched = !m->is_chain || m->nloop > 0;

@@ -1,4 +1,5 @@
-/* stability_motion.c - steppers: largest stable step and cost of each on stiff scenes; energy kept by all others. */
+/* stability_motion.c - steppers: largest stable step and cost of each on stiff scenes; energy kept
+ * by all others. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +10,13 @@
 #include "study/stability_scene.h"
 #include "study/trial.h"
 
-enum { STEPS = 400, MOST_EVALUATIONS = 300000, SHORT_STEPS = 32, MOST_MOVED = 8192, MOST_OWN = 40000 };
+enum {
+    STEPS = 400,
+    MOST_EVALUATIONS = 300000,
+    SHORT_STEPS = 32,
+    MOST_MOVED = 8192,
+    MOST_OWN = 40000
+};
 
 /* Steps [model's time] longer than this are not tried. */
 #define LONGEST 10.0
@@ -31,8 +38,10 @@ static double energy_of(const struct model *m, const struct state *s, struct are
     return t.kinetic + t.potential;
 }
 
-/* Whether `steps` steps of h stay within bounds: energy may not rise by more than gravity and motors can explain. */
-static bool is_stable(const struct model *m, const struct state *s, enum step_rule rule, double h, struct arena *a)
+/* Whether `steps` steps of h stay within bounds: energy may not rise by more than gravity and
+ * motors can explain. */
+static bool is_stable(const struct model *m, const struct state *s, enum step_rule rule, double h,
+                      struct arena *a)
 {
     struct arena_mark mark = arena_mark(a);
     struct state x = copy_of(m, s, a);
@@ -45,7 +54,8 @@ static bool is_stable(const struct model *m, const struct state *s, enum step_ru
 }
 
 /* By bisection of the logarithm, to 2%. 0: none of 1e-12 .. LONGEST. */
-static double largest_step(const struct model *m, const struct state *s, enum step_rule rule, struct arena *a)
+static double largest_step(const struct model *m, const struct state *s, enum step_rule rule,
+                           struct arena *a)
 {
     double low = 1e-12, high = LONGEST;
     if (!is_stable(m, s, rule, low, a)) return 0;
@@ -58,14 +68,19 @@ static double largest_step(const struct model *m, const struct state *s, enum st
     return low;
 }
 
-/* Simulated seconds of `steps` time steps of the parallel kernel, a body a processor. NaN: it cannot. */
-static double machine_time(const struct model *m, const struct state *s, enum step_rule rule, int steps, double h,
-                           struct arena *a)
+/* Simulated seconds of `steps` time steps of the parallel kernel, a body a processor. NaN: it
+ * cannot. */
+static double machine_time(const struct model *m, const struct state *s, enum step_rule rule,
+                           int steps, double h, struct arena *a)
 {
     struct arena_mark mark = arena_mark(a);
     struct run_spec spec = {.machine = trial_machine(m->nbody), .nrank = m->nbody};
-    spec.kernel = (struct kernel_spec){.name = "forward", .formulation = FORMULATION_DIRECT, .solver = SOLVER_CR,
-                                       .algebra = ALGEBRA_SPATIAL, .composites_incoming = true, .steps = steps,
+    spec.kernel = (struct kernel_spec){.name = "forward",
+                                       .formulation = FORMULATION_DIRECT,
+                                       .solver = SOLVER_CR,
+                                       .algebra = ALGEBRA_SPATIAL,
+                                       .composites_incoming = true,
+                                       .steps = steps,
                                        .step = rule,
                                        .step_size = h * m->second};
     struct trial t = trial_run(&spec, m, s, a);
@@ -73,27 +88,30 @@ static double machine_time(const struct model *m, const struct state *s, enum st
     return t.answered ? (double)t.makespan_ps * 1e-12 : NAN;
 }
 
-static double motion_error(const struct model *m, const struct state *begin, const struct state *end,
-                           const struct state *reference)
+static double motion_error(const struct model *m, const struct state *begin,
+                           const struct state *end, const struct state *reference)
 {
     return fmax(trial_change_error(end->q, reference->q, begin->q, m->nq),
                 trial_change_error(end->qd, reference->qd, begin->qd, m->nu));
 }
 
 /* Error of `steps` steps; their end in *end. INFINITY: broke down. */
-static double error_of(const struct model *m, const struct state *s, enum step_rule rule, double duration,
-                       double steps, const struct state *reference, struct state *end, struct arena *a)
+static double error_of(const struct model *m, const struct state *s, enum step_rule rule,
+                       double duration, double steps, const struct state *reference,
+                       struct state *end, struct arena *a)
 {
     struct work w = {0};
     *end = copy_of(m, s, a);
-    bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, end, rule, duration / steps, (int)steps, a, &w);
+    bool good = dynamics_type_of(PRECISION_DOUBLE)
+                    ->advance(m, end, rule, duration / steps, (int)steps, a, &w);
     if (!good) return INFINITY;
     return motion_error(m, s, end, reference);
 }
 
 /* The largest stable step, then as many steps, from half of that on, as an error of 1% takes. */
-static void own_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
-                    enum step_rule rule, double duration, const struct state *reference, struct arena *a)
+static void own_row(struct stability_report *r, const char *subject, const struct model *m,
+                    const struct state *s, enum step_rule rule, double duration,
+                    const struct state *reference, struct arena *a)
 {
     static const char *const name[] = {"own semi-implicit", "own kdk", "own rk4", "own implicit"};
     struct stability_row *x = row_add(r, subject, name[rule], "double");
@@ -105,7 +123,8 @@ static void own_row(struct stability_report *r, const char *subject, const struc
     const int each = rule == STEP_RK4 ? 4 : 1;
     double steps = ceil(2 * duration / x->step_s), error = INFINITY;
     if (steps * each > MOST_EVALUATIONS) {
-        snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run", steps * each);
+        snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run",
+                 steps * each);
         x->status = STABILITY_DEGRADED;
         return;
     }
@@ -115,18 +134,23 @@ static void own_row(struct stability_report *r, const char *subject, const struc
         if (error <= 0.01 || 2 * steps * each > MOST_OWN) break;
     }
     row_grade(x, error, false);
-    x->status = error <= 0.01 ? STABILITY_OK : isfinite(error) ? STABILITY_DEGRADED : STABILITY_FAILED;
+    x->status = error <= 0.01     ? STABILITY_OK
+                : isfinite(error) ? STABILITY_DEGRADED
+                                  : STABILITY_FAILED;
     double E = energy_of(m, reference, a), h = duration / steps;
     if (isfinite(error)) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
     double each_s = machine_time(m, s, rule, 2, h, a) - machine_time(m, s, rule, 1, h, a);
-    snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s on the machine%s%s", steps * each, steps * each_s,
-             error <= 0.01 ? "" : "; 1% needs more", x->step_s >= LONGEST ? "; longer steps not tried" : "");
+    snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s on the machine%s%s",
+             steps * each, steps * each_s, error <= 0.01 ? "" : "; 1% needs more",
+             x->step_s >= LONGEST ? "; longer steps not tried" : "");
 }
 
-static void library_row(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
-                        const char *stepper, double duration, const struct state *reference, struct arena *a)
+static void library_row(struct stability_report *r, const char *subject, const struct model *m,
+                        const struct state *s, const char *stepper, double duration,
+                        const struct state *reference, struct arena *a)
 {
-    const struct trajectory_options o = {.stepper = stepper, .tolerance = 1e-6, .most_evaluations = MOST_EVALUATIONS};
+    const struct trajectory_options o = {
+        .stepper = stepper, .tolerance = 1e-6, .most_evaluations = MOST_EVALUATIONS};
     struct stability_row *x = row_add(r, subject, stepper, "double");
     struct trajectory_report t = {0};
     struct state end = copy_of(m, s, a);
@@ -142,17 +166,21 @@ static void library_row(struct stability_report *r, const char *subject, const s
     x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
     double E = energy_of(m, reference, a);
     x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
-    snprintf(x->reason, sizeof x->reason, "%ld evaluations at tolerance 1e-6, %.3g s on the machine", t.evaluations,
+    snprintf(x->reason, sizeof x->reason,
+             "%ld evaluations at tolerance 1e-6, %.3g s on the machine", t.evaluations,
              (double)t.evaluations * machine_time(m, s, STEP_SEMI_IMPLICIT, 0, 0, a));
 }
 
-void stability_motion(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
-                      bool damped, struct arena *scratch)
+void stability_motion(struct stability_report *r, const char *subject, const struct model *m,
+                      const struct state *s, bool damped, struct arena *scratch)
 {
-    static const char *const stepper[] = {"rkf45", "rk8pd", "msadams", "rk2imp", "rk4imp", "bsimp", "msbdf"};
+    static const char *const stepper[] = {"rkf45",  "rk8pd", "msadams", "rk2imp",
+                                          "rk4imp", "bsimp", "msbdf"};
     double fast = largest_step(m, s, STEP_RK4, scratch);
-    if (m->nu > 40 || fast == 0) return; /* implicit steppers' dense Jacobians are for small systems */
-    /* Undamped: some twenty of the fastest oscillations. Damped: until the slow motion has been seen too. */
+    if (m->nu > 40 || fast == 0)
+        return; /* implicit steppers' dense Jacobians are for small systems */
+    /* Undamped: some twenty of the fastest oscillations. Damped: until the slow motion has been
+     * seen too. */
     double duration = damped ? fmin(0.05 / m->second, 1e6 * fast) : 50 * fast;
     struct trajectory_options tight = {.stepper = damped ? "bsimp" : "rk8pd", .tolerance = 1e-12};
     struct state reference = copy_of(m, s, scratch);
@@ -168,15 +196,17 @@ void stability_motion(struct stability_report *r, const char *subject, const str
         library_row(r, subject, m, s, stepper[k], duration, &reference, scratch);
 }
 
-/* --- energy of scenes that are not stiff ------------------------------------------------------------------------- */
+/* --- energy of scenes that are not stiff ------------------------------------------------------ */
 
 /* The time in which the fastest joint turns by a third of a radian. */
 static double short_time(const struct model *m, const struct state *s, struct arena *a)
 {
     double *qdd = TAKE(a, m->nu + 1, double), rate = 0, force = 0;
     struct work w = {0};
-    if (!dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w)) return 0;
-    for (int i = 0; i < m->nu; i++) rate = fmax(rate, fabs(s->qd[i])), force = fmax(force, fabs(qdd[i]));
+    if (!dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w))
+        return 0;
+    for (int i = 0; i < m->nu; i++)
+        rate = fmax(rate, fabs(s->qd[i])), force = fmax(force, fabs(qdd[i]));
     double fastest = fmax(rate, sqrt(force));
     return isfinite(fastest) ? fastest > 0 ? 0.3 / fastest : 1 : 0;
 }
@@ -196,12 +226,14 @@ static void judge_motion(struct stability_row *x, const struct model *m, const s
     if (x->status == STABILITY_OK && !(x->energy_drift <= 1e-6)) x->status = STABILITY_DEGRADED;
 }
 
-/* The end of a motion by a tight stepper; *duration shrinks by tens where the scene whips too fast to be followed. */
-static bool follow(const struct model *m, const struct state *begin, double *duration, struct state *end,
-                   struct arena *a, struct err *e)
+/* The end of a motion by a tight stepper; *duration shrinks by tens where the scene whips too fast
+ * to be followed. */
+static bool follow(const struct model *m, const struct state *begin, double *duration,
+                   struct state *end, struct arena *a, struct err *e)
 {
     const double most = fmin(fmax(1e6 / m->nbody, 300), 4000);
-    const struct trajectory_options tight = {.stepper = "rkck", .tolerance = 1e-12, .most_evaluations = (long)most};
+    const struct trajectory_options tight = {
+        .stepper = "rkck", .tolerance = 1e-12, .most_evaluations = (long)most};
     for (int k = 0; k < 4 && *duration > 0; k++, *duration /= 10) {
         *end = copy_of(m, begin, a);
         err_clear(e);
@@ -210,8 +242,8 @@ static bool follow(const struct model *m, const struct state *begin, double *dur
     return false;
 }
 
-void stability_energy(struct stability_report *r, const char *subject, const struct model *m, const struct state *s,
-                      struct arena *scratch)
+void stability_energy(struct stability_report *r, const char *subject, const struct model *m,
+                      const struct state *s, struct arena *scratch)
 {
     const struct trajectory_options usual = {.stepper = "rk8pd", .tolerance = 1e-10};
     struct state begin = copy_of(m, s, scratch), reference = {0}, end;
@@ -221,19 +253,22 @@ void stability_energy(struct stability_report *r, const char *subject, const str
     begin.fext = NULL;
     struct stability_row *x = row_add(r, subject, "motion rk4", "double");
     if (m->nbody > MOST_MOVED) {
-        snprintf(x->reason, sizeof x->reason, "no motion: an evaluation of %d bodies takes too long", m->nbody);
+        snprintf(x->reason, sizeof x->reason,
+                 "no motion: an evaluation of %d bodies takes too long", m->nbody);
         x->status = STABILITY_DEGRADED;
         return;
     }
     double duration = short_time(m, &begin, scratch);
     if (!follow(m, &begin, &duration, &reference, scratch, &e)) {
-        text_copy(x->reason, sizeof x->reason, duration > 0 ? e.text : "articulated bodies broke down");
+        text_copy(x->reason, sizeof x->reason, duration > 0 ? e.text : "articulated bodies broke "
+                                                                       "down");
         return;
     }
     struct work w = {0};
     end = copy_of(m, &begin, scratch);
     x->step_s = duration / SHORT_STEPS;
-    if (dynamics_type_of(PRECISION_DOUBLE)->advance(m, &end, STEP_RK4, x->step_s, SHORT_STEPS, scratch, &w))
+    if (dynamics_type_of(PRECISION_DOUBLE)
+            ->advance(m, &end, STEP_RK4, x->step_s, SHORT_STEPS, scratch, &w))
         judge_motion(x, m, &begin, &end, &reference, scratch);
     x = row_add(r, subject, "motion rk8pd", "double");
     end = copy_of(m, &begin, scratch);

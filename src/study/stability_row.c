@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "study/stability_scene.h"
 
-struct stability_row *row_add(struct stability_report *r, const char *subject, const char *algorithm,
-                              const char *precision)
+struct stability_row *row_add(struct stability_report *r, const char *subject,
+                              const char *algorithm, const char *precision)
 {
     if (r->nrow == r->room) {
         int room = r->room > 0 ? 2 * r->room : 256;
@@ -29,6 +29,9 @@ void row_grade(struct stability_row *row, double error, bool single)
 {
     double fine = single ? 1e-3 : 1e-8, poor = single ? 1e-1 : 1e-2;
     row->error = isfinite(error) ? error : NAN;
-    row->status = error <= fine ? STABILITY_OK : error <= poor ? STABILITY_DEGRADED : STABILITY_FAILED;
-    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the result is not a finite number");
+    row->status = error <= fine   ? STABILITY_OK
+                  : error <= poor ? STABILITY_DEGRADED
+                                  : STABILITY_FAILED;
+    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the result is not a finite "
+                                                                     "number");
 }

@@ -8,7 +8,8 @@
 #include "dynamics/system.h"
 #include "model/pose.h"
 
-/* What is not said: unit rods on revolute joints under gravity, joint rates and forces of order one. */
+/* What is not said: unit rods on revolute joints under gravity, joint rates and forces of order
+ * one. */
 #define CHAIN(n) .nbody = (n)
 #define COIL(n) .nbody = (n), .pose = POSE_COILED, .axes = AXES_TWISTED
 #define TWIST(n) .nbody = (n), .pose = POSE_STRAIGHT, .axes = AXES_TWISTED
@@ -26,15 +27,32 @@ static const struct stability_scene scenes[] = {
     {.name = "mass graded down 1e12", .spec = {COIL(64)}, .spread = SPREAD_DOWN, .ratio = 1e12},
     {.name = "mass random 1e6", .spec = {COIL(64)}, .spread = SPREAD_RANDOM, .ratio = 1e6},
     {.name = "mass random 1e12", .spec = {COIL(64)}, .spread = SPREAD_RANDOM, .ratio = 1e12},
-    {.name = "mass alternating 1e2", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e2},
-    {.name = "mass alternating 1e6", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e6},
-    {.name = "mass alternating 1e8", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e8},
-    {.name = "mass alternating 1e12", .spec = {COIL(64)}, .spread = SPREAD_ALTERNATING, .ratio = 1e12},
-    {.name = "mass light base 1e12", .spec = {COIL(64)}, .spread = SPREAD_LIGHT_BASE, .ratio = 1e12},
+    {.name = "mass alternating 1e2",
+     .spec = {COIL(64)},
+     .spread = SPREAD_ALTERNATING,
+     .ratio = 1e2},
+    {.name = "mass alternating 1e6",
+     .spec = {COIL(64)},
+     .spread = SPREAD_ALTERNATING,
+     .ratio = 1e6},
+    {.name = "mass alternating 1e8",
+     .spec = {COIL(64)},
+     .spread = SPREAD_ALTERNATING,
+     .ratio = 1e8},
+    {.name = "mass alternating 1e12",
+     .spec = {COIL(64)},
+     .spread = SPREAD_ALTERNATING,
+     .ratio = 1e12},
+    {.name = "mass light base 1e12",
+     .spec = {COIL(64)},
+     .spread = SPREAD_LIGHT_BASE,
+     .ratio = 1e12},
     {.name = "length 1e-10 m", .spec = {COIL(64), .length = 1e-10, .radius = 5e-12}},
     {.name = "length 1e3 m", .spec = {COIL(64), .length = 1e3, .radius = 50}},
-    {.name = "molecular SI", .spec = {COIL(64), .length = 1.5e-10, .radius = 1e-11, .mass = 2.3e-26}},
-    {.name = "molecular amu", .spec = {COIL(64), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
+    {.name = "molecular SI",
+     .spec = {COIL(64), .length = 1.5e-10, .radius = 1e-11, .mass = 2.3e-26}},
+    {.name = "molecular amu",
+     .spec = {COIL(64), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
     {.name = "pose straight planar", .spec = {CHAIN(64)}},
     {.name = "pose nearly straight", .spec = {CHAIN(64)}, .nudge = 1e-8},
     {.name = "pose straight twisted", .spec = {TWIST(64)}},
@@ -50,7 +68,8 @@ static const struct stability_scene scenes[] = {
     {.name = "n 1024 planar", .spec = {CHAIN(1024)}},
     {.name = "n 4096", .spec = {COIL(4096)}},
     {.name = "n 4096 twisted", .spec = {TWIST(4096)}},
-    {.name = "n 4096 torsion", .spec = {COIL(4096), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
+    {.name = "n 4096 torsion",
+     .spec = {COIL(4096), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
     {.name = "n 65536", .spec = {COIL(65536)}},
     {.name = "rates 1e3 rad/s", .spec = {COIL(64), .rate = 1e3}},
     {.name = "rates 1e6 rad/s", .spec = {COIL(64), .rate = 1e6}},
@@ -61,25 +80,34 @@ static const struct stability_scene scenes[] = {
     {.name = "zero gravity at rest", .spec = {COIL(64)}, .weightless = true, .at_rest = true},
     {.name = "zero gravity", .spec = {COIL(64)}, .weightless = true},
     {.name = "free-floating", .spec = {COIL(64), .base = BASE_FLOATING}},
-    {.name = "free-floating 1e6", .spec = {COIL(64), .base = BASE_FLOATING, .inertia = INERTIA_RANDOM,
-                                           .mass_ratio = 1e6}},
+    {.name = "free-floating 1e6",
+     .spec = {COIL(64), .base = BASE_FLOATING, .inertia = INERTIA_RANDOM, .mass_ratio = 1e6}},
     {.name = "spherical joints", .spec = {COIL(64), .joint = JOINT_SPHERICAL}},
     {.name = "star of 64", .spec = {COIL(64), .generator = MODEL_STAR}},
     {.name = "comb of 64", .spec = {COIL(64), .generator = MODEL_COMB, .branch = 4}},
     {.name = "dendrimer of 127", .spec = {COIL(127), .generator = MODEL_DENDRIMER, .branch = 2}},
     {.name = "star of 1024", .spec = {COIL(1024), .generator = MODEL_STAR}},
     {.name = "dendrimer of 1023", .spec = {COIL(1023), .generator = MODEL_DENDRIMER, .branch = 2}},
-    {.name = "random tree 1e6", .spec = {COIL(64), .generator = MODEL_RANDOM_TREE, .inertia = INERTIA_RANDOM,
-                                         .mass_ratio = 1e6}},
-    {.name = "four-bar at its singularity", .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}}},
-    {.name = "four-bar near 1e-3", .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}},
+    {.name = "random tree 1e6",
+     .spec = {COIL(64), .generator = MODEL_RANDOM_TREE, .inertia = INERTIA_RANDOM,
+              .mass_ratio = 1e6}},
+    {.name = "four-bar at its singularity",
+     .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}}},
+    {.name = "four-bar near 1e-3",
+     .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}},
      .nudge = 1e-3},
-    {.name = "four-bar near 1e-6", .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}},
+    {.name = "four-bar near 1e-6",
+     .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}},
      .nudge = 1e-6},
-    {.name = "redundant ring of 5", .spec = {CHAIN(5), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
-    {.name = "redundant ring of 63", .spec = {CHAIN(63), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
+    {.name = "redundant ring of 5",
+     .spec = {CHAIN(5), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
+    {.name = "redundant ring of 63",
+     .spec = {CHAIN(63), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
     {.name = "denormal masses 1e-308", .spec = {COIL(16), .mass = 1e-308, .torque = 1e-308}},
-    {.name = "denormal torques", .spec = {COIL(16), .torque = 1e-310}, .weightless = true, .at_rest = true},
+    {.name = "denormal torques",
+     .spec = {COIL(16), .torque = 1e-310},
+     .weightless = true,
+     .at_rest = true},
     {.name = "springs 1e2 undamped", .spec = {STIFF(1e2, 0)}, .moves = true},
     {.name = "springs 1e4 undamped", .spec = {STIFF(1e4, 0)}, .moves = true},
     {.name = "springs 1e6 undamped", .spec = {STIFF(1e6, 0)}, .moves = true},
@@ -107,14 +135,17 @@ static double mass_factor(const struct stability_scene *c, int i, int n)
     case SPREAD_UP: return pow(c->ratio, (double)i / (n - 1) - 1); /* the heaviest weighs 1 */
     case SPREAD_DOWN: return pow(c->ratio, -(double)i / (n - 1));
     case SPREAD_RANDOM: return pow(c->ratio, random_uniform(&r, -0.5, 0.5));
-    case SPREAD_ALTERNATING: return i % 2 ? 1 : 1 / c->ratio; /* the tip heavy, or its acceleration hides all others */
+    case SPREAD_ALTERNATING:
+        return i % 2 ? 1 : 1 / c->ratio; /* the tip heavy, or its acceleration hides all others */
     case SPREAD_EVEN: break;
     }
     return 1;
 }
 
-/* The generated model with its masses and inertias changed; the model itself when nothing is to change. */
-static struct model *reshape(const struct stability_scene *c, struct model *m, struct arena *a, struct err *e)
+/* The generated model with its masses and inertias changed; the model itself when nothing is to
+ * change. */
+static struct model *reshape(const struct stability_scene *c, struct model *m, struct arena *a,
+                             struct err *e)
 {
     double point = c->point > 0 ? c->point : 1;
     if (c->spread == SPREAD_EVEN && point == 1) return m;
@@ -148,7 +179,8 @@ static struct model_spec complete(const struct stability_scene *c)
     return x;
 }
 
-bool scene_build(const struct stability_scene *c, struct arena *a, struct model **m, struct state **s, struct err *e)
+bool scene_build(const struct stability_scene *c, struct arena *a, struct model **m,
+                 struct state **s, struct err *e)
 {
     struct model_spec spec = complete(c);
     *m = model_build(&spec, a, e);

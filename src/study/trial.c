@@ -35,17 +35,23 @@ struct machine_spec trial_machine(int nrank)
 {
     return (struct machine_spec){
         .name = "crossbar",
-        .topology = {.family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nrank}, .nodes_per_router = 1,
+        .topology = {.family = TOPOLOGY_CROSSBAR,
+                     .ndim = 1,
+                     .dims = {nrank},
+                     .nodes_per_router = 1,
                      .processors_per_node = 1},
         .node = {.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9},
-        .network = {.level = LEVEL_LOGGP, .link_bandwidth = 1e9, .hop_latency = 1e-7, .end_latency = 1e-7,
+        .network = {.level = LEVEL_LOGGP,
+                    .link_bandwidth = 1e9,
+                    .hop_latency = 1e-7,
+                    .end_latency = 1e-7,
                     .virtual_channels = 1},
         .software = {.send_overhead = 1e-6, .recv_overhead = 1e-6, .eager_bytes = -1},
     };
 }
 
-bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m, const struct state *s,
-                struct arena *a, struct err *e)
+bool trial_open(struct program_run *r, const struct run_spec *spec, const struct model *m,
+                const struct state *s, struct arena *a, struct err *e)
 {
     *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
     if (!r->type) return err_set(e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
@@ -69,7 +75,8 @@ static void answer(struct trial *t, const struct program_run *r, const struct ru
     t->refined = (int)*program_output(r, OUTPUT_REFINED);
 }
 
-struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s, struct arena *a)
+struct trial trial_run(const struct run_spec *spec, const struct model *m, const struct state *s,
+                       struct arena *a)
 {
     struct trial t = {.residual = NAN};
     struct run_result *result = TAKE(a, 1, struct run_result);

@@ -1,4 +1,5 @@
-/* verify_answers.c - the answers of a reference vector, exact ones, and how far roundings of the inputs move them. */
+/* verify_answers.c - the answers of a reference vector, exact ones, and how far roundings of the
+ * inputs move them. */
 #include "study/verify_answers.h"
 
 #include <math.h>
@@ -9,19 +10,30 @@
 #include "model/vector_model.h"
 #include "model/vector_perturb.h"
 
-/* Inputs are moved by 2^-40 of themselves, and the answers' changes taken 2^13 times smaller: in quad precision that is
- * the effect of 2^-53 to 12 bits, as long as the condition is below 2^40. */
+/* Inputs are moved by 2^-40 of themselves, and the answers' changes taken 2^13 times smaller: in
+ * quad precision that is the effect of 2^-53 to 12 bits, as long as the condition is below 2^40. */
 static const double moved = 0x1p-40;
 
 const char *verify_quantity_name(enum verify_quantity k)
 {
-    static const char *const name[VERIFY_QUANTITIES] = {
-        "tau_id", "bias", "gravity_torque", "joint_wrench_id", "fk", "energy.kinetic", "energy.potential",
-        "momentum.linear", "momentum.angular", "com_world", "total_mass", "M", "qdd_fd", "lambda"};
+    static const char *const name[VERIFY_QUANTITIES] = {"tau_id",
+                                                        "bias",
+                                                        "gravity_torque",
+                                                        "joint_wrench_id",
+                                                        "fk",
+                                                        "energy.kinetic",
+                                                        "energy.potential",
+                                                        "momentum.linear",
+                                                        "momentum.angular",
+                                                        "com_world",
+                                                        "total_mass",
+                                                        "M",
+                                                        "qdd_fd",
+                                                        "lambda"};
     return name[k];
 }
 
-/* --- the list ---------------------------------------------------------------------------------------------------- */
+/* --- the list --------------------------------------------------------------------------------- */
 
 /* Append n numbers, in vectors of `part` numbers each. */
 static void append(struct verify_answers *x, const double *from, int n, int part)
@@ -50,14 +62,16 @@ static void parts_find(struct verify_answers *x, const struct vector_case *c)
     }
 }
 
-/* The mass matrix: what one joint's linear or angular part has to do with another's is one block. */
+/* The mass matrix: what one joint's linear or angular part has to do with another's is one block.
+ */
 static void append_matrix(struct verify_answers *x, const struct vector_case *c)
 {
     int nv = c->nv, start = x->n;
     if (!c->mass_matrix) return;
     append(x, c->mass_matrix, nv * nv, 1);
     for (int i = 0; i < nv; i++)
-        for (int k = 0; k < nv; k++) x->group[start + i * nv + k] = start + x->part[i] * nv + x->part[k];
+        for (int k = 0; k < nv; k++)
+            x->group[start + i * nv + k] = start + x->part[i] * nv + x->part[k];
 }
 
 static void append_poses(struct verify_answers *x, const struct vector_case *c)
@@ -73,7 +87,8 @@ static void append_poses(struct verify_answers *x, const struct vector_case *c)
     }
 }
 
-static void append_quantity(struct verify_answers *x, const struct vector_case *c, enum verify_quantity k)
+static void append_quantity(struct verify_answers *x, const struct vector_case *c,
+                            enum verify_quantity k)
 {
     switch (k) {
     case VERIFY_TAU_ID: append_joints(x, c, c->tau_id); break;
@@ -96,21 +111,27 @@ static void append_quantity(struct verify_answers *x, const struct vector_case *
 
 static size_t room_for(const struct vector_case *c)
 {
-    size_t nv = (size_t)c->nv, n = 4 * nv + 6 * (size_t)c->nbody + POSE_NUMBERS * (size_t)c->npose + 16;
+    size_t nv = (size_t)c->nv,
+           n = 4 * nv + 6 * (size_t)c->nbody + POSE_NUMBERS * (size_t)c->npose + 16;
     return n + (c->mass_matrix ? nv * nv : 0) + (size_t)c->nrow;
 }
 
-static int count_of(const struct verify_answers *x, enum verify_quantity k) { return x->at[k + 1] - x->at[k]; }
+static int count_of(const struct verify_answers *x, enum verify_quantity k)
+{
+    return x->at[k + 1] - x->at[k];
+}
 
-/* --- computing --------------------------------------------------------------------------------------------------- */
+/* --- computing -------------------------------------------------------------------------------- */
 
-static void put(const struct verify_answers *x, enum verify_quantity k, const double *from, double *y)
+static void put(const struct verify_answers *x, enum verify_quantity k, const double *from,
+                double *y)
 {
     if (count_of(x, k) > 0) memcpy(y + x->at[k], from, (size_t)count_of(x, k) * sizeof *y);
 }
 
-static void put_inverse(const struct verify_answers *x, const struct model *m, const struct state *s,
-                        const struct dynamics_type *type, struct arena *a, double *y)
+static void put_inverse(const struct verify_answers *x, const struct model *m,
+                        const struct state *s, const struct dynamics_type *type, struct arena *a,
+                        double *y)
 {
     struct state bias = *s, rest = *s;
     struct work w = {0};
@@ -141,18 +162,22 @@ static void put_totals(const struct verify_answers *x, const struct model *m, co
     put(x, VERIFY_TOTAL_MASS, &t.mass, y);
 }
 
-static void put_poses(const struct verify_answers *x, const struct vector_case *c, const struct model *m,
-                      const struct state *s, const struct dynamics_type *type, struct arena *a, double *y)
+static void put_poses(const struct verify_answers *x, const struct vector_case *c,
+                      const struct model *m, const struct state *s,
+                      const struct dynamics_type *type, struct arena *a, double *y)
 {
     if (c->npose == 0) return;
-    double *pose = TAKE(a, size_product(POSE_NUMBERS, m->nbody), double), *to = y + x->at[VERIFY_FK];
+    double *pose = TAKE(a, size_product(POSE_NUMBERS, m->nbody), double),
+           *to = y + x->at[VERIFY_FK];
     type->kinematics(m, s, a, pose);
     for (int i = 0; i < c->npose; i++)
-        memcpy(to + POSE_NUMBERS * i, pose + POSE_NUMBERS * (size_t)c->pose[i].body, POSE_NUMBERS * sizeof *to);
+        memcpy(to + POSE_NUMBERS * i, pose + POSE_NUMBERS * (size_t)c->pose[i].body,
+               POSE_NUMBERS * sizeof *to);
 }
 
-void verify_answers_compute(const struct verify_answers *x, const struct vector_case *c, const struct model *m,
-                            const struct state *s, enum precision precision, struct arena *a, double *y)
+void verify_answers_compute(const struct verify_answers *x, const struct vector_case *c,
+                            const struct model *m, const struct state *s, enum precision precision,
+                            struct arena *a, double *y)
 {
     const struct dynamics_type *type = dynamics_type_of(precision);
     struct arena_mark mark = arena_mark(a);
@@ -160,19 +185,21 @@ void verify_answers_compute(const struct verify_answers *x, const struct vector_
     put_inverse(x, m, s, type, a, y);
     put_totals(x, m, s, type, a, y);
     put_poses(x, c, m, s, type, a, y);
-    if (count_of(x, VERIFY_MASS_MATRIX) > 0) type->mass_matrix(m, s, a, y + x->at[VERIFY_MASS_MATRIX], &w);
+    if (count_of(x, VERIFY_MASS_MATRIX) > 0)
+        type->mass_matrix(m, s, a, y + x->at[VERIFY_MASS_MATRIX], &w);
     arena_release(a, mark);
 }
 
 /* Accelerations and loop forces in quad precision. redundant (may be NULL): see verify_answers. */
-static bool put_forward(const struct verify_answers *x, const struct model *m, const struct state *s, struct arena *a,
-                        double *y, int *redundant)
+static bool put_forward(const struct verify_answers *x, const struct model *m,
+                        const struct state *s, struct arena *a, double *y, int *redundant)
 {
     struct arena_mark mark = arena_mark(a);
     double *qdd = TAKE(a, m->nu + 1, double), *lambda = TAKE(a, m->nrow + 1, double);
     struct forward_report report = {0};
     struct work w = {0};
-    bool good = dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, lambda, &report, &w);
+    bool good =
+        dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, lambda, &report, &w);
     if (redundant) *redundant = good && m->nloop > 0 ? report.nrow - report.rank : 0;
     if (good) put(x, VERIFY_QDD_FD, qdd, y);
     if (good) put(x, VERIFY_LAMBDA, lambda, y);
@@ -180,12 +207,14 @@ static bool put_forward(const struct verify_answers *x, const struct model *m, c
     return good;
 }
 
-/* --- scales ------------------------------------------------------------------------------------------------------ */
+/* --- scales ----------------------------------------------------------------------------------- */
 
-/* What joints transmit, as a force and a moment for each body, in the states that answers are given for. A joint's
- * force is a component of it. Where that component cancels whatever the inputs are, as a ball's gyroscopic moment does,
- * no input can move it; then, and only then, a rounding of what it is a component of is what moves it. */
-static const double cancels = 1e-18; /* of the other scale: what quad precision leaves of a number that cancels */
+/* What joints transmit, as a force and a moment for each body, in the states that answers are given
+ * for. A joint's force is a component of it. Where that component cancels whatever the inputs are,
+ * as a ball's gyroscopic moment does, no input can move it; then, and only then, a rounding of what
+ * it is a component of is what moves it. */
+static const double cancels =
+    1e-18; /* of the other scale: what quad precision leaves of a number that cancels */
 
 enum load { LOAD_INVERSE, LOAD_BIAS, LOAD_REST, LOAD_FORWARD, LOADS };
 
@@ -197,8 +226,8 @@ struct sampler {
     double *qdd;                          /* (nv) exact */
 };
 
-static void wrenches_of(const struct sampler *p, const struct model *m, const struct state *s, enum load load,
-                        double *wrench)
+static void wrenches_of(const struct sampler *p, const struct model *m, const struct state *s,
+                        enum load load, double *wrench)
 {
     struct state at = *s;
     double *zero = TAKE(p->a, m->nu + 1, double);
@@ -209,7 +238,8 @@ static void wrenches_of(const struct sampler *p, const struct model *m, const st
 }
 
 /* Scales at least what the wrenches are, and at least what they move by. */
-static void wrenches_take(const struct sampler *p, const struct model *m, const struct state *s, enum load load)
+static void wrenches_take(const struct sampler *p, const struct model *m, const struct state *s,
+                          enum load load)
 {
     struct arena_mark mark = arena_mark(p->a);
     double *w = TAKE(p->a, size_product(6, m->nbody), double);
@@ -225,7 +255,8 @@ static void wrenches_take(const struct sampler *p, const struct model *m, const 
 static double wrench_scale(const struct sampler *p, enum load load, int i, int v)
 {
     enum vector_joint joint = p->c->body[i].joint;
-    bool linear = joint == VECTOR_PRISMATIC || (joint == VECTOR_FLOATING && v - p->c->body[i].v < 3);
+    bool linear =
+        joint == VECTOR_PRISMATIC || (joint == VECTOR_FLOATING && v - p->c->body[i].v < 3);
     return p->scale[load][2 * i + (linear ? 0 : 1)];
 }
 
@@ -234,15 +265,17 @@ static void forces_mend(const struct sampler *p, enum verify_quantity k, enum lo
 {
     if (count_of(p->x, k) == 0) return;
     for (int i = 0; i < p->c->nbody; i++)
-        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint); v++) {
+        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint);
+             v++) {
             double *scale = &p->x->scale[p->x->at[k] + v], other = wrench_scale(p, load, i, v);
             if (*scale < cancels * other) *scale = other;
         }
 }
 
-/* Accelerations that cancel: how far they move when joint forces move by roundings of what these are components of. */
-static void accelerations_mend(const struct sampler *p, const struct model *m, const struct state *s, struct random *r,
-                               double *y)
+/* Accelerations that cancel: how far they move when joint forces move by roundings of what these
+ * are components of. */
+static void accelerations_mend(const struct sampler *p, const struct model *m,
+                               const struct state *s, struct random *r, double *y)
 {
     struct verify_answers *x = p->x;
     struct state shaken = *s;
@@ -255,8 +288,10 @@ static void accelerations_mend(const struct sampler *p, const struct model *m, c
     if (!x->forward || least > 1e-10 * largest) return; /* nothing cancels */
     shaken.tau = TAKE(p->a, m->nu + 1, double);
     for (int i = 0; i < p->c->nbody; i++)
-        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint); v++)
-            shaken.tau[v] = s->tau[v] + moved * wrench_scale(p, LOAD_FORWARD, i, v) * random_uniform(r, -1, 1);
+        for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint);
+             v++)
+            shaken.tau[v] =
+                s->tau[v] + moved * wrench_scale(p, LOAD_FORWARD, i, v) * random_uniform(r, -1, 1);
     if (!put_forward(x, m, &shaken, p->a, y, NULL)) return;
     for (int k = first; k < first + n; k++) {
         double other = fabs(y[k] - x->exact[k]) / moved;
@@ -281,13 +316,14 @@ static bool sample(const struct sampler *p, struct random *r, double *y, struct 
     verify_answers_compute(x, c, m, s, PRECISION_QUAD, p->a, y);
     bool forward = x->forward && put_forward(x, m, s, p->a, y, NULL);
     for (int i = 0; i < x->n; i++)
-        if (i < x->at[VERIFY_QDD_FD] || forward) x->scale[i] = fmax(x->scale[i], fabs(y[i] - x->exact[i]) / moved);
+        if (i < x->at[VERIFY_QDD_FD] || forward)
+            x->scale[i] = fmax(x->scale[i], fabs(y[i] - x->exact[i]) / moved);
     arena_release(p->a, mark);
     return true;
 }
 
-static struct sampler sampler_make(struct verify_answers *x, const struct vector_case *c, const struct model *m,
-                                   const struct state *s, struct arena *a)
+static struct sampler sampler_make(struct verify_answers *x, const struct vector_case *c,
+                                   const struct model *m, const struct state *s, struct arena *a)
 {
     struct sampler p = {.x = x, .c = c, .a = a, .qdd = TAKE(a, c->nv + 1, double)};
     if (x->forward) memcpy(p.qdd, x->exact + x->at[VERIFY_QDD_FD], (size_t)c->nv * sizeof *p.qdd);
@@ -299,21 +335,24 @@ static struct sampler sampler_make(struct verify_answers *x, const struct vector
     return p;
 }
 
-/* One scale for all numbers of a vector. What cannot move is zero; of 77 digits that cancel, some 1e-77 is left. */
+/* One scale for all numbers of a vector. What cannot move is zero; of 77 digits that cancel, some
+ * 1e-77 is left. */
 static void share(struct verify_answers *x)
 {
     const double digits_left = 1e-50;
     for (int k = 0; k < VERIFY_QUANTITIES; k++) {
         double largest = 0;
         for (int i = x->at[k]; i < x->at[k + 1]; i++) largest = fmax(largest, fabs(x->exact[i]));
-        for (int i = x->at[k]; i < x->at[k + 1]; i++) x->scale[i] = fmax(x->scale[i], digits_left * largest);
+        for (int i = x->at[k]; i < x->at[k + 1]; i++)
+            x->scale[i] = fmax(x->scale[i], digits_left * largest);
     }
     for (int i = 0; i < x->n; i++) x->scale[x->group[i]] = fmax(x->scale[x->group[i]], x->scale[i]);
     for (int i = 0; i < x->n; i++) x->scale[i] = x->scale[x->group[i]];
 }
 
-bool verify_answers_make(struct verify_answers *x, const struct vector_case *c, const struct model *m,
-                         const struct state *s, struct arena *a, struct err *e)
+bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
+                         const struct model *m, const struct state *s, struct arena *a,
+                         struct err *e)
 {
     size_t room = room_for(c);
     *x = (struct verify_answers){.group = TAKE(a, room, int), .reference = TAKE(a, room, double),
@@ -341,7 +380,7 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c, 
     return true;
 }
 
-/* --- judging ----------------------------------------------------------------------------------------------------- */
+/* --- judging ---------------------------------------------------------------------------------- */
 
 double verify_answers_error(const struct verify_answers *x, enum verify_quantity k, const double *y)
 {

@@ -1,4 +1,5 @@
-/* verify_even.c - the case with fixed joints lumped, and the same scene with even masses (verify_rows.h). */
+/* verify_even.c - the case with fixed joints lumped, and the same scene with even masses
+ * (verify_rows.h). */
 #include "dynamics/system.h"
 #include "model/lump.h"
 #include "model/vector_model.h"
@@ -6,7 +7,8 @@
 #include "study/trial.h"
 #include "study/verify_rows.h"
 
-/* Constraint forces need every body's inertia: bodies on fixed joints are lumped when that helps. */
+/* Constraint forces need every body's inertia: bodies on fixed joints are lumped when that helps.
+ */
 bool verify_lump(struct verify_case *v, struct err *e)
 {
     v->lumped = v->model;
@@ -34,8 +36,8 @@ bool verify_even(struct verify_case *v, struct err *e)
     x->state = vector_state(x->vector, m, v->arena);
     double *qdd = TAKE(v->arena, m->nu + 1, double);
     x->answers.exact = qdd;
-    x->answers.forward = dynamics_type_of(PRECISION_QUAD)->forward(m, x->state, FORWARD_ABA, v->arena, qdd, NULL, NULL,
-                                                                   &w);
+    x->answers.forward = dynamics_type_of(PRECISION_QUAD)
+                             ->forward(m, x->state, FORWARD_ABA, v->arena, qdd, NULL, NULL, &w);
     if (!verify_lump(x, e)) return false;
     v->even = x;
     return true;

@@ -1,4 +1,5 @@
-/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several numbers of ranks. */
+/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several numbers
+ * of ranks. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +11,8 @@
 #include "study/trial.h"
 #include "study/verify_rows.h"
 
-/* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators, block partition. */
+/* One way to run a kernel; what is not named is zero: paper, pcr-symmetric, structured operators,
+ * block partition. */
 struct variant {
     const char *name;
     struct kernel_spec kernel;
@@ -21,7 +23,8 @@ static const struct variant variant_table[] = {
     {"parallel inverse outgoing", {.name = "inverse"}},
     {"parallel inverse dense operators",
      {.name = "inverse", .composites_incoming = true, .operators = OPERATORS_DENSE}},
-    {"parallel inverse balanced", {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
+    {"parallel inverse balanced",
+     {.name = "inverse", .composites_incoming = true, .partition = PARTITION_BALANCED}},
 #define FORWARD(text, ...) {"parallel forward " text, {.name = "forward", .composites_incoming = true, __VA_ARGS__}}
 #define BOTH(text, ...)                                                                                                \
     FORWARD("paper " text, .formulation = FORMULATION_PAPER, __VA_ARGS__),                                             \
@@ -36,11 +39,12 @@ static const struct variant variant_table[] = {
     BOTH("cr-pcr", .solver = SOLVER_CR_PCR, .hybrid_levels = 1),
     BOTH("partition+pcr", .solver = SOLVER_PARTITION, .part_solver = PART_PCR),
     BOTH("partition+cr", .solver = SOLVER_PARTITION, .part_solver = PART_CR),
-    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PCR_SYMMETRIC,
-            .operators = OPERATORS_DENSE),
-    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION, .part_solver = PART_CR,
-            .partition = PARTITION_BALANCED),
-    {"parallel inverse planar", {.name = "inverse", .composites_incoming = true, .algebra = ALGEBRA_PLANAR}},
+    FORWARD("direct dense operators", .formulation = FORMULATION_DIRECT,
+            .solver = SOLVER_PCR_SYMMETRIC, .operators = OPERATORS_DENSE),
+    FORWARD("direct balanced", .formulation = FORMULATION_DIRECT, .solver = SOLVER_PARTITION,
+            .part_solver = PART_CR, .partition = PARTITION_BALANCED),
+    {"parallel inverse planar",
+     {.name = "inverse", .composites_incoming = true, .algebra = ALGEBRA_PLANAR}},
     FORWARD("paper planar", .formulation = FORMULATION_PAPER, .algebra = ALGEBRA_PLANAR),
     FORWARD("direct planar", .formulation = FORMULATION_DIRECT, .algebra = ALGEBRA_PLANAR),
 };
@@ -68,12 +72,13 @@ struct outcome {
 };
 
 /* Run a kernel on nrank virtual processors; in space unless the plane is asked for. */
-static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank, struct outcome *out,
-                       struct err *e)
+static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank,
+                       struct outcome *out, struct err *e)
 {
     struct program_run *r = TAKE(v->arena, 1, struct program_run);
     struct run_result *result = TAKE(v->arena, 1, struct run_result);
-    struct run_spec spec = {.machine = v->options->machine ? *v->options->machine : trial_machine(nrank),
+    struct run_spec spec = {.machine =
+                                v->options->machine ? *v->options->machine : trial_machine(nrank),
                             .kernel = *kernel,
                             .nrank = nrank};
     const bool lumped = strcmp(kernel->name, "inverse") != 0;
@@ -81,12 +86,14 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
     err_clear(&refused);
     if (spec.kernel.algebra == ALGEBRA_AUTO) spec.kernel.algebra = ALGEBRA_SPATIAL;
     *out = (struct outcome){.kind = REFUSED};
-    if (!trial_open(r, &spec, lumped ? v->lumped : v->model, lumped ? v->lumped_state : v->state, v->arena, &refused) ||
+    if (!trial_open(r, &spec, lumped ? v->lumped : v->model, lumped ? v->lumped_state : v->state,
+                    v->arena, &refused) ||
         !r->type->prepare(r, v->arena, &refused)) {
         text_copy(out->text, sizeof out->text, refused.text);
         return true;
     }
-    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena, v->arena, result, e))
+    if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena,
+                    v->arena, result, e))
         return false;
     *out = (struct outcome){.kind = result->status == RUN_OK ? ANSWERED : BROKEN,
                             .x = program_output(r, lumped ? OUTPUT_QDD : OUTPUT_TAU),
@@ -98,7 +105,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
 /* The worst answers of a variant over all numbers of ranks. */
 struct spread {
     struct verify_row answer, lambda; /* judged; worst_rank 0: none */
-    char ranks[32], text[128];        /* numbers of ranks tried; why one was refused or broke down */
+    char ranks[32], text[128]; /* numbers of ranks tried; why one was refused or broke down */
 };
 
 static void worst_take(struct verify_row *worst, struct verify_row *row, int nrank)
@@ -108,7 +115,8 @@ static void worst_take(struct verify_row *worst, struct verify_row *row, int nra
     *worst = *row;
 }
 
-static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x, int nrank, bool inverse)
+static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x,
+                       int nrank, bool inverse)
 {
     const struct verify_options *o = v->options;
     bool good = x->kind == ANSWERED;
@@ -122,14 +130,17 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
     worst_take(&s->answer, &row, nrank);
     if (inverse || !v->vector->lambda) return;
     struct verify_row lambda = {.worst_rank = 0};
-    verify_row_judge(v, &lambda, VERIFY_LAMBDA, good ? x->lambda : NULL, verify_tolerance_forward(o));
+    verify_row_judge(v, &lambda, VERIFY_LAMBDA, good ? x->lambda : NULL,
+                     verify_tolerance_forward(o));
     worst_take(&s->lambda, &lambda, nrank);
 }
 
-static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s, struct err *e)
+static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s,
+                        struct err *e)
 {
     bool inverse = strcmp(kernel->name, "inverse") == 0;
-    int rank[MAX_RANKS], n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
+    int rank[MAX_RANKS],
+        n = ranks_choose(v->options, inverse ? v->model->nbody : v->lumped->nbody, rank);
     *s = (struct spread){.ranks = ""};
     for (int i = 0; i < n; i++) {
         struct outcome x;
@@ -145,7 +156,8 @@ static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel,
 }
 
 /* Is the variant in quad precision, on nrank processors, right about the scene without extremes? */
-static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int nrank, bool *sane, struct err *e)
+static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int nrank, bool *sane,
+                    struct err *e)
 {
     if (!verify_even(v, e)) return false;
     struct arena_mark mark = arena_mark(v->arena);
@@ -156,7 +168,8 @@ static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int n
     return true;
 }
 
-/* A row above its tolerance by the same variant in quad precision, on as many ranks as were worst. */
+/* A row above its tolerance by the same variant in quad precision, on as many ranks as were worst.
+ */
 static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enum verify_quantity k,
                     struct verify_row *row, struct err *e)
 {
@@ -178,8 +191,9 @@ static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enu
 }
 
 /* A row of the report from what a spread found. */
-static bool row_keep(struct verify_case *v, const struct variant *variant, const struct kernel_spec *kernel,
-                     enum verify_quantity k, const struct spread *s, struct err *e)
+static bool row_keep(struct verify_case *v, const struct variant *variant,
+                     const struct kernel_spec *kernel, enum verify_quantity k,
+                     const struct spread *s, struct err *e)
 {
     struct verify_row *row = verify_row_add(v, variant->name, verify_quantity_name(k));
     struct verify_row found = k == VERIFY_LAMBDA ? s->lambda : s->answer;

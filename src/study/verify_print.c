@@ -7,13 +7,17 @@
 #include "measure/column.h"
 #include "study/verify.h"
 
-static const char *const verdict_word[] = {"pass", "rounding", "algorithm-fails", "fail", "not-applicable"};
+static const char *const verdict_word[] = {"pass", "rounding", "algorithm-fails", "fail",
+                                           "not-applicable"};
 
 const char *verify_verdict_word(enum verify_verdict v) { return verdict_word[v]; }
 
 #define ROW(member) .offset = offsetof(struct verify_row, member)
 
-static bool applies(const void *row) { return ((const struct verify_row *)row)->verdict != VERIFY_NOT_APPLICABLE; }
+static bool applies(const void *row)
+{
+    return ((const struct verify_row *)row)->verdict != VERIFY_NOT_APPLICABLE;
+}
 
 static void read_ranks(const struct column *c, const void *row, struct column_value *v)
 {
@@ -38,17 +42,19 @@ static const struct column row_column[] = {
      .doc = "the field of the reference"},
     {"parallel", COLUMN_BOOL, ROW(parallel), .doc = "whether it runs on several ranks"},
     {"ranks", COLUMN_CHARS, ROW(ranks), .doc = "numbers of ranks that were tried"},
-    {"ranks_shown", COLUMN_STRING, .value = read_ranks, .flags = COLUMN_NO_JSON, .title = "ranks", .before = " ",
-     .width = -20, .doc = "the same for people"},
-    {"worst_rank_count", COLUMN_INT, ROW(worst_rank), .doc = "with how many of them the error was largest"},
-    {"error", COLUMN_REAL, ROW(error), .known = applies, .title = "error", .before = " ", .width = 8, .style = 'e',
-     .digits = 1, .doc = "by the numbers' own scales"},
-    {"error_of_largest", COLUMN_REAL, ROW(plain), .known = applies, .doc = "over the largest number of the reference"},
-    {"tolerance", COLUMN_REAL, ROW(tolerance), .known = applies, .title = "at most", .before = " ", .width = 8,
-     .style = 'e', .digits = 1, .doc = "largest error that passes"},
+    {"ranks_shown", COLUMN_STRING, .value = read_ranks, .flags = COLUMN_NO_JSON, .title = "ranks",
+     .before = " ", .width = -20, .doc = "the same for people"},
+    {"worst_rank_count", COLUMN_INT, ROW(worst_rank),
+     .doc = "with how many of them the error was largest"},
+    {"error", COLUMN_REAL, ROW(error), .known = applies, .title = "error", .before = " ",
+     .width = 8, .style = 'e', .digits = 1, .doc = "by the numbers' own scales"},
+    {"error_of_largest", COLUMN_REAL, ROW(plain), .known = applies,
+     .doc = "over the largest number of the reference"},
+    {"tolerance", COLUMN_REAL, ROW(tolerance), .known = applies, .title = "at most", .before = " ",
+     .width = 8, .style = 'e', .digits = 1, .doc = "largest error that passes"},
     {"verdict", COLUMN_WORD, ROW(verdict), WORDS(verdict_word), .doc = "what the comparison says"},
-    {"verdict_shown", COLUMN_WORD, .value = read_verdict, WORDS(verdict_word), .flags = COLUMN_NO_JSON,
-     .title = "verdict", .before = "  ", .doc = "the same for people"},
+    {"verdict_shown", COLUMN_WORD, .value = read_verdict, WORDS(verdict_word),
+     .flags = COLUMN_NO_JSON, .title = "verdict", .before = "  ", .doc = "the same for people"},
     {"note", COLUMN_CHARS, ROW(note), .doc = "why"},
     {"remedy", COLUMN_CHARS, ROW(remedy), .doc = "what answers this quantity of this case"},
 };
@@ -84,18 +90,22 @@ static const struct column_table case_columns = COLUMNS(case_column);
 
 static void print_heading(FILE *out, const struct verify_report *r)
 {
-    fprintf(out, "%s: %d bod%s, %d degrees of freedom", r->name, r->nbody, r->nbody == 1 ? "y" : "ies", r->nu);
+    fprintf(out, "%s: %d bod%s, %d degrees of freedom", r->name, r->nbody,
+            r->nbody == 1 ? "y" : "ies", r->nu);
     if (r->nrow_loop > 0) fprintf(out, ", %d loop constraints", r->nrow_loop);
     fprintf(out, ": %s%s%s\n", r->passed ? "pass" : "FAIL", r->passed ? "" : ": ", r->text);
     if (isfinite(r->floor_fd) || isfinite(r->peer_fd))
-        fprintf(out, "  inputs rounded: tau %.1e, qdd %.1e; best library: tau %.1e (%s), qdd %.1e (%s)\n", r->floor_id,
-                r->floor_fd, r->peer_id, r->peer_id_name, r->peer_fd, r->peer_fd_name);
+        fprintf(
+            out,
+            "  inputs rounded: tau %.1e, qdd %.1e; best library: tau %.1e (%s), qdd %.1e (%s)\n",
+            r->floor_id, r->floor_fd, r->peer_id, r->peer_id_name, r->peer_fd, r->peer_fd_name);
 }
 
 static void print_row(FILE *out, const struct verify_row *row)
 {
     columns_cells(&row_columns, row, out);
-    fprintf(out, "%s%s%s%s\n", row->note[0] ? ": " : "", row->note, row->remedy[0] ? "; use " : "", row->remedy);
+    fprintf(out, "%s%s%s%s\n", row->note[0] ? ": " : "", row->note, row->remedy[0] ? "; use " : "",
+            row->remedy);
 }
 
 void verify_print(FILE *out, const struct verify_report *r, bool brief)
@@ -103,7 +113,8 @@ void verify_print(FILE *out, const struct verify_report *r, bool brief)
     print_heading(out, r);
     if (!brief) columns_title(&row_columns, out);
     for (int i = 0; i < r->nrow; i++)
-        if (!brief || (r->row[i].verdict != VERIFY_PASS && r->row[i].verdict != VERIFY_NOT_APPLICABLE))
+        if (!brief ||
+            (r->row[i].verdict != VERIFY_PASS && r->row[i].verdict != VERIFY_NOT_APPLICABLE))
             print_row(out, &r->row[i]);
 }
 
@@ -116,9 +127,10 @@ void verify_print_summary(FILE *out, const struct verify_report *r, int n)
         for (int k = 0; k < r[i].nrow; k++) count[r[i].row[k].verdict]++;
     }
     fprintf(out,
-            "%d case%s, %d failed; %d rows: %d pass, %d rounding, %d algorithm-fails, %d fail, %d not-applicable\n", n,
-            n == 1 ? "" : "s", failed, rows, count[VERIFY_PASS], count[VERIFY_ROUNDING], count[VERIFY_ALGORITHM_FAILS],
-            count[VERIFY_FAIL], count[VERIFY_NOT_APPLICABLE]);
+            "%d case%s, %d failed; %d rows: %d pass, %d rounding, %d algorithm-fails, %d fail, %d "
+            "not-applicable\n",
+            n, n == 1 ? "" : "s", failed, rows, count[VERIFY_PASS], count[VERIFY_ROUNDING],
+            count[VERIFY_ALGORITHM_FAILS], count[VERIFY_FAIL], count[VERIFY_NOT_APPLICABLE]);
 }
 
 /* A column of the matrix: rows whose algorithm begins with `algorithm`, in the quantity. */
@@ -148,7 +160,8 @@ static void print_cell(FILE *out, const struct verify_report *r, const struct ma
     for (int i = 0; i < r->nrow; i++) {
         const struct verify_row *row = &r->row[i];
         bool here = strncmp(row->algorithm, column->algorithm, strlen(column->algorithm)) == 0 &&
-                    strcmp(row->quantity, column->quantity) == 0 && row->verdict != VERIFY_NOT_APPLICABLE;
+                    strcmp(row->quantity, column->quantity) == 0 &&
+                    row->verdict != VERIFY_NOT_APPLICABLE;
         if (here) largest = fmax(largest, row->plain);
     }
     if (largest < 0)

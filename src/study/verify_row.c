@@ -1,4 +1,5 @@
-/* verify_row.c - one row of a comparison: how it is judged, explained or skipped (verify_rows.h). */
+/* verify_row.c - one row of a comparison: how it is judged, explained or skipped (verify_rows.h).
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,7 +7,8 @@
 #include "base/text.h"
 #include "study/verify_rows.h"
 
-struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm, const char *quantity)
+struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm,
+                                  const char *quantity)
 {
     struct verify_report *r = v->report;
     if (r->nrow == r->row_room) {
@@ -22,7 +24,8 @@ struct verify_row *verify_row_add(struct verify_case *v, const char *algorithm, 
     return row;
 }
 
-void verify_row_skip(struct verify_case *v, const char *algorithm, const char *quantity, const char *why)
+void verify_row_skip(struct verify_case *v, const char *algorithm, const char *quantity,
+                     const char *why)
 {
     struct verify_row *row = verify_row_add(v, algorithm, quantity);
     row->verdict = VERIFY_NOT_APPLICABLE;
@@ -34,23 +37,28 @@ bool verify_loops_skip(struct verify_case *v, const char *algorithm)
     char why[96];
     int nrow = v->vector->nrow, redundant = v->answers.redundant;
     if (redundant == 0) return false;
-    snprintf(why, sizeof why, "redundant loops (rank %d of %d): lambda is not unique", nrow - redundant, nrow);
+    snprintf(why, sizeof why, "redundant loops (rank %d of %d): lambda is not unique",
+             nrow - redundant, nrow);
     verify_row_skip(v, algorithm, "lambda", why);
     return true;
 }
 
 double verify_tolerance_inverse(const struct verify_options *o)
 {
-    return o->tolerance_inverse > 0 ? o->tolerance_inverse : o->precision == PRECISION_FLOAT ? 1e-4 : 1e-12;
+    return o->tolerance_inverse > 0          ? o->tolerance_inverse
+           : o->precision == PRECISION_FLOAT ? 1e-4
+                                             : 1e-12;
 }
 
 double verify_tolerance_forward(const struct verify_options *o)
 {
-    return o->tolerance_forward > 0 ? o->tolerance_forward : o->precision == PRECISION_FLOAT ? 1e-3 : 1e-10;
+    return o->tolerance_forward > 0          ? o->tolerance_forward
+           : o->precision == PRECISION_FLOAT ? 1e-3
+                                             : 1e-10;
 }
 
-void verify_row_judge(const struct verify_case *v, struct verify_row *row, enum verify_quantity k, const double *y,
-                      double tolerance)
+void verify_row_judge(const struct verify_case *v, struct verify_row *row, enum verify_quantity k,
+                      const double *y, double tolerance)
 {
     const struct verify_answers *x = &v->answers;
     row->tolerance = tolerance;
@@ -71,7 +79,8 @@ bool verify_row_refuted(const struct verify_case *v, struct verify_row *row, enu
     char before[sizeof row->note];
     text_copy(before, sizeof before, row->note);
     snprintf(row->note, sizeof row->note, "%.80s%s%s", before, before[0] ? "; " : "",
-             exact ? "quad precision contradicts the file too" : "articulated bodies break down in quad precision");
+             exact ? "quad precision contradicts the file too"
+                   : "articulated bodies break down in quad precision");
     return true;
 }
 
@@ -82,8 +91,8 @@ void verify_row_explain(struct verify_row *row, double quad, bool sane)
     row->verdict = mended ? VERIFY_ROUNDING : sane ? VERIFY_ALGORITHM_FAILS : VERIFY_FAIL;
     row->quad = quad;
     text_copy(before, sizeof before, row->note);
-    snprintf(row->note, sizeof row->note, "%.80s%sin quad precision %.1e%s", before, before[0] ? "; " : "", quad,
-             mended || sane ? "" : "; wrong about an even scene too");
+    snprintf(row->note, sizeof row->note, "%.80s%sin quad precision %.1e%s", before,
+             before[0] ? "; " : "", quad, mended || sane ? "" : "; wrong about an even scene too");
 }
 
 bool verify_unfit_body(const struct model *m, char *why, int size)
@@ -93,7 +102,8 @@ bool verify_unfit_body(const struct model *m, char *why, int size)
         const struct body_def *b = &m->body[i];
         double trace = b->inertia[0] + b->inertia[3] + b->inertia[5];
         if (b->mass > 0 && trace > 0) continue;
-        snprintf(why, (size_t)size, "%s body %d ('%s')", b->mass > 0 ? "point mass in" : "massless", i, b->name);
+        snprintf(why, (size_t)size, "%s body %d ('%s')", b->mass > 0 ? "point mass in" : "massless",
+                 i, b->name);
         return true;
     }
     snprintf(why, (size_t)size, "a body's inertia has no inverse");

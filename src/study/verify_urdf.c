@@ -1,4 +1,5 @@
-/* verify_urdf.c - rows of the URDF file that a reference vector names: our own reading of it is the same robot. */
+/* verify_urdf.c - rows of the URDF file that a reference vector names: our own reading of it is the
+ * same robot. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,8 +11,8 @@
 #include "model/urdf_model.h"
 #include "study/verify_rows.h"
 
-/* The largest difference of n numbers, of their largest. Both are decimal texts read once, or turned by a few rounded
- * operations: a vector's length is what these round against. */
+/* The largest difference of n numbers, of their largest. Both are decimal texts read once, or
+ * turned by a few rounded operations: a vector's length is what these round against. */
 static double difference(const double *x, const double *ref, int n)
 {
     double largest = 0, scale = 0;
@@ -57,24 +58,27 @@ static void row_plain(struct verify_case *v, const char *quantity, double error,
 static void body_rows(struct verify_case *v, const struct model *m)
 {
     enum { JOINT, AXIS, FRAME, MASS, COM, INERTIA, KINDS };
-    static const char *const name[KINDS] = {"joint, parent, name", "axis", "placement", "mass", "com", "inertia_com"};
+    static const char *const name[KINDS] = {
+        "joint, parent, name", "axis", "placement", "mass", "com", "inertia_com"};
     double worst[KINDS] = {0};
     const char *at[KINDS] = {NULL};
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *x = &m->body[i], *ref = &v->model->body[i];
         bool moves = x->joint == JOINT_REVOLUTE || x->joint == JOINT_PRISMATIC;
-        const double error[KINDS] = {
-            [JOINT] = same_joint(x, ref) ? 0 : INFINITY,       [AXIS] = moves ? difference(x->axis, ref->axis, 3) : 0,
-            [FRAME] = frame_difference(&x->placement, &ref->placement), [MASS] = difference(&x->mass, &ref->mass, 1),
-            [COM] = difference(x->com, ref->com, 3),           [INERTIA] = difference(x->inertia, ref->inertia, 6)};
+        const double error[KINDS] = {[JOINT] = same_joint(x, ref) ? 0 : INFINITY,
+                                     [AXIS] = moves ? difference(x->axis, ref->axis, 3) : 0,
+                                     [FRAME] = frame_difference(&x->placement, &ref->placement),
+                                     [MASS] = difference(&x->mass, &ref->mass, 1),
+                                     [COM] = difference(x->com, ref->com, 3),
+                                     [INERTIA] = difference(x->inertia, ref->inertia, 6)};
         for (int k = 0; k < KINDS; k++)
             if (error[k] > worst[k]) worst[k] = error[k], at[k] = ref->name;
     }
     for (int k = 0; k < KINDS; k++) row_plain(v, name[k], worst[k], at[k]);
 }
 
-/* The file's answers from the URDF's model: joint forces, and accelerations without the damping that robots have and
- * the reference does not. */
+/* The file's answers from the URDF's model: joint forces, and accelerations without the damping
+ * that robots have and the reference does not. */
 static void answer_rows(struct verify_case *v, struct model *m)
 {
     const struct dynamics_type *type = dynamics_type_of(v->options->precision);
@@ -82,13 +86,13 @@ static void answer_rows(struct verify_case *v, struct model *m)
     struct work w = {0};
     if (v->vector->tau_id) {
         type->inverse(m, v->state, v->arena, tau, &w);
-        verify_row_judge(v, verify_row_add(v, "rnea of the URDF file", "tau_id"), VERIFY_TAU_ID, tau,
-                         verify_tolerance_inverse(v->options));
+        verify_row_judge(v, verify_row_add(v, "rnea of the URDF file", "tau_id"), VERIFY_TAU_ID,
+                         tau, verify_tolerance_inverse(v->options));
     }
     if (v->vector->qdd_fd) {
         bool good = type->forward(m, v->state, FORWARD_ABA, v->arena, qdd, NULL, NULL, &w);
-        verify_row_judge(v, verify_row_add(v, "aba of the URDF file", "qdd_fd"), VERIFY_QDD_FD, good ? qdd : NULL,
-                         verify_tolerance_forward(v->options));
+        verify_row_judge(v, verify_row_add(v, "aba of the URDF file", "qdd_fd"), VERIFY_QDD_FD,
+                         good ? qdd : NULL, verify_tolerance_forward(v->options));
     }
 }
 
@@ -99,19 +103,22 @@ bool verify_urdf(struct verify_case *v, struct err *e)
     const char *slash = strrchr(c->path, '/');
     int folder = slash ? (int)(slash - c->path) + 1 : 0;
     struct urdf_robot robot;
-    struct urdf_options o = {
-        .floating = c->body[0].joint == VECTOR_FLOATING, .keep_fixed = true, .allow_nonphysical = true};
+    struct urdf_options o = {.floating = c->body[0].joint == VECTOR_FLOATING,
+                             .keep_fixed = true,
+                             .allow_nonphysical = true};
     if (!c->urdf[0]) return true;
     snprintf(path, sizeof path, "%.*s%s", folder, c->path, c->urdf);
     if (access(path, R_OK) != 0)
-        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "the URDF file '%.200s' does not exist; it "
-                                                              "must be in the folder of "
+        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "the URDF file '%.200s' does not "
+                                                              "exist; it must be in the folder of "
                           "this file", c->urdf);
     memcpy(o.gravity, c->gravity, sizeof o.gravity);
-    struct model *m = urdf_read(path, &robot, v->arena, e) ? urdf_model(&robot, &o, v->arena, e) : NULL;
+    struct model *m =
+        urdf_read(path, &robot, v->arena, e) ? urdf_model(&robot, &o, v->arena, e) : NULL;
     if (!m) return false;
     if (m->nbody != c->nbody || m->nu != c->nv)
-        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "'%.200s' has %d bodies and %d degrees of freedom, this "
+        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "'%.200s' has %d bodies and %d "
+                                                              "degrees of freedom, this "
                           "file %d and %d", c->urdf, m->nbody, m->nu, c->nbody, c->nv);
     for (int i = 0; i < m->nbody; i++) m->body[i].damping = 0;
     system_prepare(m);
