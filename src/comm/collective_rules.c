@@ -58,9 +58,10 @@ static bool take_size(const char **s, int64_t *bytes, char *why, int size)
     for (const char *next = *s; *next;) {
         take_word(&next, word);
         if (strcmp(word, "on") == 0) break;
-        size_t used = strlen(quantity);
-        if (used + strlen(word) + 2 > sizeof quantity) return refuse(why, size, "'from %s ...' is no size", quantity);
-        sprintf(quantity + used, "%s%s", used ? " " : "", word);
+        size_t used = strlen(quantity), more = strlen(word);
+        if (used + more + 2 > sizeof quantity) return refuse(why, size, "'from %s ...' is no size", quantity);
+        if (used > 0) quantity[used++] = ' ';
+        memcpy(quantity + used, word, more + 1);
         *s = next;
     }
     if (!units_parse(quantity, UNIT_BYTES, &value, why, size)) return false;

@@ -37,7 +37,7 @@ static bool scan_ints(const struct field *f, const char *text, int *value, int c
     int n = 0;
     s = skip_blanks(s + bracket);
     while (*s != '\0' && *s != ']') {
-        int v;
+        int v = 0;
         if (!take_int(f, &s, &v, why, size)) return false;
         if (n == capacity) return field_refuse(why, size, "too many entries");
         if (value != NULL) value[n] = v;
@@ -53,7 +53,7 @@ static bool scan_ints(const struct field *f, const char *text, int *value, int c
 
 bool field_ints_set(const struct field *f, void *base, const char *text, char *why, int size)
 {
-    int n, *place = (int *)(void *)((char *)base + f->offset);
+    int n = 0, *place = (int *)(void *)((char *)base + f->offset);
     if (!scan_ints(f, text, NULL, f->capacity, &n, why, size)) return false;
     if (n == 0) return field_refuse(why, size, "an empty list; expected at least one number");
     memset(place, 0, (size_t)f->capacity * sizeof *place);
@@ -64,7 +64,7 @@ bool field_ints_set(const struct field *f, void *base, const char *text, char *w
 
 bool field_int_list_set(const struct field *f, void *base, const char *text, struct arena *a, char *why, int size)
 {
-    int n, *list = NULL;
+    int n = 0, *list = NULL;
     if (!scan_ints(f, text, NULL, LIST_MAX_ENTRIES, &n, why, size)) return false;
     if (n > 0) list = TAKE(a, n, int);
     scan_ints(f, text, list, n, &n, why, size);

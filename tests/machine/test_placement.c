@@ -25,7 +25,7 @@ static struct machine_spec machine(enum topology_family family, int ndim, const 
 static struct placement place(const struct machine_spec *m, int nrank, struct arena *a)
 {
     struct err e;
-    struct placement p;
+    struct placement p = {0};
     err_clear(&e);
     struct topology *t = topology_create(&m->topology, a, &e);
     if (!t || !placement_create(&p, m, t, nrank, a, &e)) fail_msg("%s", e.text);

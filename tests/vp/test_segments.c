@@ -67,7 +67,8 @@ static struct outcome go(const struct machine_spec *m, int nrank, world_program 
     struct record_spec record = {0};
     struct err e;
     err_clear(&e);
-    struct world_load load = {nrank, program, context, 1, stage_name, -1, NULL};
+    struct world_load load = {.nrank = nrank, .program = program, .context = context, .nstage = 1,
+                              .stage_name = stage_name, .largest_message = -1};
     if (!world_run(m, &load, &record, 1, o.arena, &o.r, &e)) fail_msg("%s", e.text);
     assert_int_equal(o.r.status, RUN_OK);
     return o;
