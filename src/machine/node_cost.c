@@ -3,6 +3,15 @@
 
 static double cycles_ps(double cycles, double clock) { return clock > 0 ? cycles / clock * 1e12 : 0; }
 
+/* Where no machine file says it: one instruction a cycle, or, on processors that issue several, as many as a scalar
+ * product needs at the flop rate: five (load, load and multiply, add, advance, branch) for its two flops. */
+static double instruction_ps(const struct node_spec *s)
+{
+    if (s->instruction_cycles > 0) return cycles_ps(s->instruction_cycles, s->clock);
+    const double cycle = cycles_ps(1, s->clock), product = s->flop_rate > 0 ? 1e12 / (2.5 * s->flop_rate) : cycle;
+    return cycle < product ? cycle : product;
+}
+
 struct node_cost node_cost_make(const struct node_spec *s)
 {
     return (struct node_cost){
@@ -12,5 +21,6 @@ struct node_cost node_cost_make(const struct node_spec *s)
         .trig = cycles_ps(s->trig_cycles, s->clock),
         .byte = s->copy_bandwidth > 0 ? 1e12 / s->copy_bandwidth : 0,
         .call = s->call_time * 1e12,
+        .instruction = instruction_ps(s),
     };
 }

@@ -249,6 +249,10 @@ static const struct field fields[] = {
      .fallback = "0 cycles", .doc = "time of one square root"},
     {.key = "node.trig", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.trig_cycles), .min = 0, .max = 1e6,
      .fallback = "0 cycles", .doc = "time of one sine or cosine"},
+    {.key = "node.instruction", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.instruction_cycles), .min = 0,
+     .max = 1e6, .fallback = "0 cycles",
+     .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where node.flop_rate tells "
+            "that several are issued at once"},
     {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0, .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},
     {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(node.copy_bandwidth), .min = 0,

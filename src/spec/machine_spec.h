@@ -54,6 +54,7 @@ struct node_spec {
     double div_cycles;     /* one division [cycles] */
     double sqrt_cycles;    /* one square root [cycles] */
     double trig_cycles;    /* one sine or cosine [cycles] */
+    double instruction_cycles; /* one instruction of a program compiled by `mimdsim cc` [cycles], 0: node_cost.c */
     double call_time;      /* overhead of one small operator call [s] */
     double copy_bandwidth; /* memory copies [B/s] */
 };

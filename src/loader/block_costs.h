@@ -1,0 +1,35 @@
+/* block_costs.h - what each basic block of an image costs on a machine, written into its code. */
+#ifndef LOADER_BLOCK_COSTS_H
+#define LOADER_BLOCK_COSTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/err.h"
+#include "loader/block_table.h"
+#include "machine/node_cost.h"
+
+/* Reads: the bytes of an image that may be written, by their address in the file; NULL: they are not all there. */
+typedef void *block_at_fn(const void *image, uint64_t address, size_t size);
+
+/* A table as it lies in memory. */
+struct block_table {
+    const struct block_entry *entry; /* (n) */
+    size_t n;
+    uint64_t address; /* of entry[0] in the file */
+};
+
+/* block_cost_ps: cost of a block on a node [ps]: node_cost_code_ps, times `factor`, to the nearest picosecond. */
+int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts, double factor);
+
+/* block_costs_patch: write the cost of every block of `table` into the code of the image.
+ *
+ *   at, image  in      where the image's bytes are; they are written
+ *   c, factor  in      the node of the run's machine, and what its times are multiplied by (1: as they are)
+ *
+ * Returns false with ERR_DATA (the table does not fit the code: not made by `mimdsim cc`, or damaged) or ERR_CONFIG (a
+ * block takes 2.1 ms or more: it does not fit in 31 bits of picoseconds); the image is then not to be used. */
+bool block_costs_patch(const struct block_table *table, block_at_fn *at, const void *image, const struct node_cost *c,
+                       double factor, struct err *e);
+
+#endif
