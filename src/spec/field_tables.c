@@ -4,7 +4,8 @@
 
 #include "spec/spec_fields.h"
 
-static const struct field_table *const tables[] = {&run_table, &machine_table, &model_table, &kernel_table};
+static const struct field_table *const tables[] = {&run_table, &machine_table, &model_table, &kernel_table,
+                                                  &program_table};
 
 const struct field_table *const *field_tables(int *n)
 {

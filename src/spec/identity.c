@@ -7,8 +7,10 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "spec/spec_fields.h"
 
 static const char file_key[] = "model.file = sha256 ";
+static const char program_key[] = "program.file = sha256 ";
 
 /* One table: the lines of its defaults, and what was printed last from which bytes. */
 struct part {
@@ -123,7 +125,7 @@ static void sort_lines(struct text *text)
     *text = sorted;
 }
 
-void identity_texts(struct identity *x, const void *base, const char *file, struct text *full,
+void identity_texts(struct identity *x, const void *base, const char *more, struct text *full,
                     struct text *own)
 {
     struct text lines = {0};
@@ -132,10 +134,8 @@ void identity_texts(struct identity *x, const void *base, const char *file, stru
         text_add_bytes(full, p->full.s, p->full.length);
         if (p->own.length > 0) text_add_bytes(&lines, p->own.s, p->own.length);
     }
-    if (file[0] != '\0') {
-        text_add(full, "%s%s\n", file_key, file);
-        text_add(&lines, "%s%s\n", file_key, file);
-    }
+    text_add_bytes(full, more, strlen(more));
+    text_add_bytes(&lines, more, strlen(more));
     sort_lines(&lines);
     text_add_bytes(own, lines.s != NULL ? lines.s : "", lines.length);
     text_free(&lines);
@@ -143,11 +143,21 @@ void identity_texts(struct identity *x, const void *base, const char *file, stru
 
 void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
 {
-    struct text full = {0}, own = {0};
+    struct text full = {0}, own = {0}, more = {0};
     struct run_spec plain = *run;
-    /* The content of the file is named: where it lies is no matter. */
-    if (run->model_file[0] != '\0') memset(plain.model.path, 0, sizeof plain.model.path);
-    identity_texts(x, &plain, run->model_file, &full, &own);
+    text_add(&more, "%s", "");
+    /* The content of a file is named: where it lies is no matter. */
+    if (run->model_file[0] != '\0') {
+        memset(plain.model.path, 0, sizeof plain.model.path);
+        text_add(&more, "%s%s\n", file_key, run->model_file);
+    }
+    if (run->program.hash[0] != '\0') {
+        memset(plain.program.file, 0, sizeof plain.program.file);
+        text_add(&more, "%s%s\n", program_key, run->program.hash);
+    }
+    program_lines_print(run->program.parameters, &more);
+    identity_texts(x, &plain, more.s, &full, &own);
+    text_free(&more);
     digest_sha256_hex(own.s, own.length, run->config_hash);
     run->config_text = arena_text(a, full.s);
     text_free(&full);
@@ -166,6 +176,17 @@ void run_identify(struct run_spec *run, struct arena *a)
 /* --- back from a text
  * --------------------------------------------------------------------------------------------- */
 
+/* What a person's own program declares is known to its image alone: kept as it stands. */
+static bool add_parameter(struct run_spec *run, const char *name, const char *value, struct arena *a)
+{
+    struct text lines = {0};
+    text_add(&lines, "%s", run->program.parameters != NULL ? run->program.parameters : "");
+    program_lines_add(&lines, name, value);
+    run->program.parameters = arena_text(a, lines.s);
+    text_free(&lines);
+    return true;
+}
+
 /* The setting `key` gets the text `value`. */
 static bool take_setting(struct run_spec *run, const char *key, const char *value, struct arena *a, char *why,
                          int size)
@@ -174,6 +195,9 @@ static bool take_setting(struct run_spec *run, const char *key, const char *valu
     const struct field *f = field_find_full(key, &table);
     struct text shown = {0};
     char clause[160] = "";
+    const size_t n = strlen(program_table.prefix);
+    if (f == NULL && strncmp(key, program_table.prefix, n) == 0 && key[n] == '.')
+        return add_parameter(run, key + n + 1, value, a);
     if (f == NULL) return snprintf(why, (size_t)size, "there is no setting '%.80s' any more", key), false;
     /* What has its default already is not read: some defaults, such as an empty list, cannot be given. */
     void *base = (char *)run + table->offset;
@@ -192,6 +216,10 @@ static bool take_line(struct run_spec *run, char *line, struct arena *a, char *w
     if (strncmp(line, file_key, strlen(file_key)) == 0) {
         text_copy(run->model_file, sizeof run->model_file, line + strlen(file_key));
         return true;
+    }
+    if (strncmp(line, program_key, strlen(program_key)) == 0) {
+        text_copy(run->program.hash, sizeof run->program.hash, line + strlen(program_key));
+        return run->kernel.own = true;
     }
     if (equals == NULL) return snprintf(why, (size_t)size, "'%.80s' is no setting", line), false;
     *equals = '\0';

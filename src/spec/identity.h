@@ -29,14 +29,15 @@ void identity_forget(struct identity *x);
 /* identity_texts: the two canonical texts of the structs at `base`, appended, as "key = value" lines.
  *
  *   base  in   what the tables' offsets count from: a struct run_spec
- *   file  in   SHA-256 of the model's file, which is then part of both texts; "": the model is no file
+ *   more  in   further "key = value" lines, which are part of both texts: what is told of files
  *   full  out  all settings, in table order: the configuration for people
  *   own   out  those that differ from their defaults, sorted by key: its SHA-256 is the identity */
-void identity_texts(struct identity *x, const void *base, const char *file, struct text *full,
+void identity_texts(struct identity *x, const void *base, const char *more, struct text *full,
                     struct text *own);
 
-/* identity_set: fill config_text (in `a`) and config_hash of a run whose settings and model_file are final. A
- * model's file counts by its content, wherever it lies. */
+/* identity_set: fill config_text (in `a`) and config_hash of a run whose settings, model_file and
+ * program are final. Files of models and programs count by their content, wherever they lie; the
+ * parameters of a program count as settings do. */
 void identity_set(struct identity *x, struct run_spec *run, struct arena *a);
 
 /* run_identify: identity_set for one run that was made from another one by changing settings. */
@@ -45,7 +46,7 @@ void run_identify(struct run_spec *run, struct arena *a);
 /* run_from_text: the settings of a stored configuration `text` (config_text); what it does not name has its
  * default.
  *
- *   run  out  settings and model_file, no identity yet; lists in `a`
+ *   run  out  settings, model_file and program, no identity yet; lists in `a`
  *   why  out  on failure, in `size` bytes: which line, and why
  *
  *   Returns false when a setting does not exist any more or does not take this value any more. */

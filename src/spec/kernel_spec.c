@@ -29,6 +29,7 @@ bool kernel_spec_has(const struct kernel_spec *k, enum program_trait trait)
         PROGRAM_LIST(X)
 #undef X
     };
+    if (k->own) return false;
     for (size_t i = 0; i < sizeof list / sizeof *list; i++)
         if (strcmp(k->name, list[i].name) == 0) return (list[i].traits & trait) != 0;
     return (trait & (PROGRAM_SCENE | PROGRAM_FORWARD)) != 0; /* a name that the plan is about to refuse */
@@ -36,13 +37,17 @@ bool kernel_spec_has(const struct kernel_spec *k, enum program_trait trait)
 
 bool kernel_spec_needs_model(const struct kernel_spec *k) { return kernel_spec_has(k, PROGRAM_SCENE); }
 
+static const char built_in_alone[] = "only built-in programs have it";
+
 static const char *idle_without_model(const struct run_spec *r)
 {
+    if (r->kernel.own) return built_in_alone;
     return kernel_spec_needs_model(&r->kernel) ? NULL : "this kernel only sends messages and computes nothing";
 }
 
 static const char *idle_with_model(const struct run_spec *r)
 {
+    if (r->kernel.own) return built_in_alone;
     return kernel_spec_needs_model(&r->kernel) ? "only the message benchmarks have it" : NULL;
 }
 

@@ -19,6 +19,7 @@ enum refinement_rule { REFINEMENT_AS_NEEDED, REFINEMENT_AS_GIVEN };
 enum step_rule { STEP_SEMI_IMPLICIT, STEP_KDK, STEP_RK4, STEP_LINEARLY_IMPLICIT };
 
 struct kernel_spec {
+    bool own;                    /* a person's own program of this name (program_spec.h): no built-in one */
     char name[32];               /* "inverse", "forward", "dynamics" (both), "pingpong", ...: see room kernel */
     enum formulation formulation;
     enum solver solver;

@@ -23,6 +23,7 @@ static bool from_file(const struct run_spec *r)
 
 static const char *idle_without_model(const struct run_spec *r)
 {
+    if (r->kernel.own) return "only built-in programs have a model";
     return kernel_spec_needs_model(&r->kernel) ? NULL : "this kernel only sends messages and has no model";
 }
 

@@ -33,6 +33,7 @@ static const char *const baseline_rules[] = {"all", "needed", NULL};
 
 static const char *idle_without_choice(const struct run_spec *r)
 {
+    if (r->kernel.own) return NULL;
     if (!kernel_spec_needs_model(&r->kernel)) return "this kernel only sends messages and has no serial code";
     return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL : "inverse dynamics has one serial code";
 }

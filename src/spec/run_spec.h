@@ -9,6 +9,7 @@
 #include "spec/kernel_spec.h"
 #include "spec/machine_spec.h"
 #include "spec/model_spec.h"
+#include "spec/program_spec.h"
 
 /* Serial codes that a run is held against: all, or those that can be the fastest. */
 enum baseline_rule { BASELINES_ALL, BASELINES_NEEDED };
@@ -49,6 +50,7 @@ struct run_spec {
     struct machine_spec machine;
     struct model_spec model;
     struct kernel_spec kernel;
+    struct program_spec program;
     struct record_spec record;
     int nrank;               /* P */
     uint64_t seed;           /* of noise; the model has its own */

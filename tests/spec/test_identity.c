@@ -110,6 +110,36 @@ static void repetitions_and_where_files_lie_are_no_part_of_it(void **state)
     assert_string_not_equal(run.config_hash, other.config_hash);
 }
 
+/* Where a program's image lies is no matter; what it is, and each of its parameters, is. */
+static void a_program_counts_by_its_content_and_its_parameters(void **state)
+{
+    (void)state;
+    struct run_spec run, other, back;
+    char why[128];
+    set_defaults(&run);
+    text_copy(run.program.file, sizeof run.program.file, "here/ring.c");
+    text_copy(run.program.hash, sizeof run.program.hash, "0123");
+    run.program.parameters = "n = 1000\nblock = 8 KiB\n";
+    run_identify(&run, arena);
+    other = run;
+    text_copy(other.program.file, sizeof other.program.file, "there/ring.c");
+    run_identify(&other, arena);
+    assert_string_equal(run.config_hash, other.config_hash);
+    assert_int_equal(names(run.config_text, "program.n"), 1);
+    /* The text tells all but the folder. */
+    if (!run_from_text(&back, run.config_text, arena, why, sizeof why)) fail_msg("%s", why);
+    assert_true(back.kernel.own);
+    run_identify(&back, arena);
+    assert_string_equal(run.config_hash, back.config_hash);
+    other.program.parameters = "n = 1001\nblock = 8 KiB\n";
+    run_identify(&other, arena);
+    assert_string_not_equal(run.config_hash, other.config_hash);
+    other = run;
+    text_copy(other.program.hash, sizeof other.program.hash, "0124");
+    run_identify(&other, arena);
+    assert_string_not_equal(run.config_hash, other.config_hash);
+}
+
 /* A run as a later version of this program may have it: with one setting more. */
 struct later_run {
     struct run_spec run;
@@ -298,6 +328,7 @@ int main(void)
     const struct CMUnitTest test[] = {
         cmocka_unit_test(a_change_of_any_setting_changes_the_identity),
         cmocka_unit_test(repetitions_and_where_files_lie_are_no_part_of_it),
+        cmocka_unit_test(a_program_counts_by_its_content_and_its_parameters),
         cmocka_unit_test(a_new_setting_with_a_default_changes_no_identity),
         cmocka_unit_test(the_order_of_tables_and_rows_is_no_part_of_it),
         cmocka_unit_test(remembered_texts_are_those_of_the_run_at_hand),
