@@ -5,6 +5,8 @@
 
 #include "linalg/dense.h"
 
+/* Phi is constant in the body's frame (physics 1.8); a code with dense operators inverts it
+ * anew. */
 void assembly_inverse_inertia(struct chain *ch, int i, real *phi)
 {
     const struct body *b = &ch->shared->body[i];
@@ -28,17 +30,21 @@ static void transpose(real *M)
         }
 }
 
-/* move_rows: row_k <- X^T row_k: M X for the square matrix M, in place. */
+/* move_rows: row_k <- X^T row_k: M X for the square matrix M, in place, by the structured
+ * transform. */
 static void move_rows(struct chain *ch, const real *X, real *M)
 {
-    for (int k = 0; k < SPACE; k++) xform_motion(M + SPACE * k, (const struct xform *)X, M + SPACE * k);
+    for (int k = 0; k < SPACE; k++)
+        xform_motion(M + SPACE * k, (const struct xform *)X, M + SPACE * k);
     ch->work.flop += SPACE * XFORM_MOTION_FLOP;
     ch->work.call++;
 }
 
+/* physics (4.1). E is built first, because X^T Phi X is E X up to the sign. */
 void assembly_operators(struct chain *ch, int i, real *D, real *E)
 {
     if (D) assembly_inverse_inertia(ch, i, D);
+    /* Joint 0 hangs on the base, which contributes nothing: D_00 = Phi_0. */
     if (i == 0) {
         memset(E, 0, SQUARE * sizeof *E);
         return;
@@ -50,6 +56,8 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E)
         dense_product_tn(SPACE, SPACE, SPACE, X, phi, E, &ch->work);
         if (D) dense_product(SPACE, SPACE, SPACE, E, X, moved, &ch->work);
     } else {
+        /* (Phi X)^T = X^T Phi, as Phi is symmetric: the transform acts on rows, the cheap way,
+         * twice. */
         memcpy(E, phi, sizeof phi);
         move_rows(ch, X, E);
         transpose(E); /* X^T Phi */
@@ -75,9 +83,10 @@ static void expand(const struct subspace *s, real *out)
     }
 }
 
-/* turn_part: out (na x nb) = (columns from a0 of Q_a)^T M (columns from b0 of Q_b), by full products. */
-static void turn_part(struct chain *ch, const struct subspace *a, int a0, const real *M, const struct subspace *b,
-                      int b0, real *out)
+/* turn_part: out (na x nb) = (columns from a0 of Q_a)^T M (columns from b0 of Q_b), by full
+ * products. H comes first in Q: a0 = 0 means all columns, a0 = d those of W. */
+static void turn_part(struct chain *ch, const struct subspace *a, int a0, const real *M,
+                      const struct subspace *b, int b0, real *out)
 {
     const int na = SPACE - a0, nb = SPACE - b0;
     real left[SQUARE], right[SQUARE], product[SQUARE], part[SQUARE];
@@ -91,23 +100,28 @@ static void turn_part(struct chain *ch, const struct subspace *a, int a0, const 
     dense_product_tn(na, nb, SPACE, part, product, out, &ch->work);
 }
 
-void assembly_project(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out)
+/* Axes that pick components cost nothing; a general Q costs its products (physics 4.2). */
+void assembly_project(struct chain *ch, const struct subspace *a, const real *M,
+                      const struct subspace *b, real *out)
 {
     if (ch->dense) {
         turn_part(ch, a, a->d, M, b, b->d, out);
         return;
     }
     subspace_project(a, true, M, b, true, out);
-    ch->work.flop += (uint64_t)((b->pick ? 0 : SQUARE_VEC_FLOP * b->c) + (a->pick ? 0 : SCREW_DOT_FLOP * a->c * b->c));
+    ch->work.flop += (uint64_t)((b->pick ? 0 : SQUARE_VEC_FLOP * b->c) +
+                                (a->pick ? 0 : SCREW_DOT_FLOP * a->c * b->c));
     ch->work.call++;
 }
 
-void assembly_turn(struct chain *ch, const struct subspace *a, const real *M, const struct subspace *b, real *out)
+void assembly_turn(struct chain *ch, const struct subspace *a, const real *M,
+                   const struct subspace *b, real *out)
 {
     if (ch->dense || !a->pick || !b->pick) {
         turn_part(ch, a, 0, M, b, 0, out);
         return;
     }
+    /* Q permutes axes: the blocks of A, B and C are the same numbers in another order. */
     for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < SPACE; j++) out[SPACE * i + j] = M[SPACE * a->pick[i] + b->pick[j]];
 }

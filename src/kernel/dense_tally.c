@@ -6,6 +6,7 @@
 /* An a x b matrix by a b x k one. */
 static uint64_t product(int a, int b, int k) { return (uint64_t)(a * k * (2 * b - 1)); }
 
+/* flops for one body, sizes as in the column "dense" of physics 2.5. */
 enum {
     PLACE = 58 + 396,      /* joint transform, expanded and multiplied by the tree's */
     SCAN = 66 + 6,         /* X v + w */
@@ -18,33 +19,37 @@ enum {
 /* Newton-Euler: place, velocity, acceleration, load, force, projection. 14 operator calls. */
 static uint64_t newton_euler(int d)
 {
-    return PLACE + 6 * (uint64_t)d + SCAN + BIAS + 12 * (uint64_t)d + SCAN + MOVED_INERTIA + GYROSCOPIC + 66 + SCAN +
-           12 * (uint64_t)d;
+    return PLACE + 6 * (uint64_t)d + SCAN + BIAS + 12 * (uint64_t)d + SCAN + MOVED_INERTIA +
+           GYROSCOPIC + 66 + SCAN + 12 * (uint64_t)d;
 }
 
-/* Articulated bodies: U = I H, D = H^T U, I - U D^-1 U^T, X^T I X, X^T p, the accelerations outwards. 18 calls. */
+/* Articulated bodies (physics 2.6, 2.7): U = I H, D = H^T U, I - U D^-1 U^T, X^T I X, X^T p, the
+ * accelerations outwards. 18 calls. */
 static uint64_t articulated(int d)
 {
     const uint64_t velocity = PLACE + 6 * (uint64_t)d + SCAN + BIAS + MOVED_INERTIA + GYROSCOPIC;
-    const uint64_t reduce =
-        product(6, 6, d) + product(d, 6, d) + 12 * (uint64_t)d + product(6, d, d) + product(6, d, 6) + 36;
+    const uint64_t reduce = product(6, 6, d) + product(d, 6, d) + 12 * (uint64_t)d +
+                            product(6, d, d) + product(6, d, 6) + 36;
     const uint64_t inwards = SCAN + product(6, d, 1) + 6 + 2 * product(6, 6, 6) + 36 + SCAN;
     return velocity + reduce + inwards + SCAN + 24 * (uint64_t)d + product(d, d, 1);
 }
 
-/* Composite bodies: the inertia moved inwards, one column of the mass matrix for each ancestor. */
+/* Composite bodies (physics 2.3): the inertia moved inwards, one column of the mass matrix for each
+ * ancestor. */
 static uint64_t composite(int d, int ancestors)
 {
     const uint64_t project = product(6, 6, d) + product(d, 6, d);
     return 2 * product(6, 6, 6) + 36 + project + (uint64_t)ancestors * project;
 }
 
-/* Constraint forces: blocks of A (with B and C in the paper's form), factors and back-substitution. 31 calls. */
+/* Constraint forces (physics 4.2): blocks of A (with B and C in the paper's form), factors and
+ * back-substitution. 31 calls. The direct form needs no force sweep, hence the subtraction. */
 static uint64_t constraint_forces(int d, bool paper)
 {
     const int c = 6 - d;
     const uint64_t block = product(6, 6, c) + product(c, 6, c), other = product(6, 6, d);
-    uint64_t flops = newton_euler(d) + MOVED_INERTIA + INVERTED_INERTIA + 2 * product(6, 6, 6) + 36 + 2 * block + 60;
+    uint64_t flops = newton_euler(d) + MOVED_INERTIA + INVERTED_INERTIA + 2 * product(6, 6, 6) +
+                     36 + 2 * block + 60;
     if (paper) flops += 2 * other + product(c, 6, d) + product(d, 6, d);
     else flops -= SCAN + 12 * (uint64_t)d;
     return flops + (uint64_t)(2 * c * c * c) + 2 * product(c, c, c) + 4 * product(c, c, 1);
@@ -66,6 +71,7 @@ void dense_tally_inverse(const struct model *m, struct work *w)
     for (int i = 0; i < m->nbody; i++) w->flop += newton_euler(joint_freedom(m, i));
 }
 
+/* Newton-Euler for the bias, Cholesky n (n+1) (2n+1)/6 and two triangular solutions 2 n^2. */
 static void mass_matrix(const struct model *m, struct work *w)
 {
     const uint64_t n = (uint64_t)m->nu;
@@ -88,6 +94,7 @@ void dense_tally_forward(const struct model *m, enum forward_method method, stru
     w->call = (method == FORWARD_ABA ? 18u : 31u) * (uint64_t)m->nbody;
     for (int i = 0; i < m->nbody; i++) {
         int d = joint_freedom(m, i);
-        w->flop += method == FORWARD_ABA ? articulated(d) : constraint_forces(d, method == FORWARD_CFA_PAPER);
+        w->flop += method == FORWARD_ABA ? articulated(d)
+                                         : constraint_forces(d, method == FORWARD_CFA_PAPER);
     }
 }

@@ -12,7 +12,10 @@
 void motion_carve(struct motion *m, struct carve *c, const struct kernel_job *job, int nq, int nu)
 {
     const struct kernel_spec *spec = &job->spec->kernel;
-    const bool rk4 = spec->steps > 0 && spec->step == STEP_RK4, kdk = spec->steps > 0 && spec->step == STEP_KDK;
+    /* Room only for what the scheme needs: a run without time steps, or with semi-implicit steps,
+     * keeps no second copy of the state. */
+    const bool rk4 = spec->steps > 0 && spec->step == STEP_RK4,
+               kdk = spec->steps > 0 && spec->step == STEP_KDK;
     m->job = job;
     m->nq = nq, m->nu = nu;
     m->q0 = CARVE(c, rk4 ? nq : 0, real);
@@ -35,7 +38,8 @@ static void kick(struct motion *m, const real *x, real h)
     m->work->flop += (uint64_t)(2 * m->nu);
 }
 
-/* drift: q moves for the time h at constant u; h = 0 normalises. */
+/* drift: q moves for the time h at constant u; h = 0 normalises. Joint by joint along its group, so
+ * that a quaternion stays a rotation (physics 9). */
 static void drift(struct motion *m, real h)
 {
     int q = 0, u = 0;
@@ -47,7 +51,7 @@ static void drift(struct motion *m, real h)
     }
 }
 
-/* slope: dq = N(q) u. */
+/* slope: dq = N(q) u (physics 1.3): quaternions as plain numbers, for the stages of Runge-Kutta. */
 static void slope(struct motion *m)
 {
     int q = 0, u = 0;
@@ -59,6 +63,8 @@ static void slope(struct motion *m)
     }
 }
 
+/* physics 9: order 1. The new rates move the coordinates, which keeps the energy of an oscillation
+ * bounded where explicit Euler makes it grow. */
 static void semi_implicit(struct motion *m, real h)
 {
     m->evaluate(m->program);
@@ -66,7 +72,8 @@ static void semi_implicit(struct motion *m, real h)
     drift(m, h);
 }
 
-/* kick_drift_kick: one evaluation a step, at rates predicted with the accelerations before. */
+/* kick_drift_kick: one evaluation a step, at rates predicted with the accelerations before (physics
+ * 9). Order 2. */
 static void kick_drift_kick(struct motion *m, real h, bool first)
 {
     if (first) {
@@ -76,6 +83,8 @@ static void kick_drift_kick(struct motion *m, real h, bool first)
     const real half = (real)0.5 * h;
     kick(m, m->a, half);
     drift(m, h);
+    /* The second kick must start from the rates after the first one; the prediction serves the
+     * evaluation only, because accelerations depend on rates. */
     memcpy(m->u0, m->u, (size_t)m->nu * sizeof(real));
     kick(m, m->a, half);
     m->evaluate(m->program);
@@ -85,7 +94,10 @@ static void kick_drift_kick(struct motion *m, real h, bool first)
     m->work->flop++; /* half */
 }
 
-/* runge_kutta: the classical method of order four; y = y0 + h (k1 + 2 k2 + 2 k3 + k4) / 6. */
+/* runge_kutta: the classical method of order four; y = y0 + h (k1 + 2 k2 + 2 k3 + k4) / 6.
+ *
+ * part[] is the step from y0 to the point of the next stage; the last one applies to the weighted
+ * sum. */
 static void runge_kutta(struct motion *m, real h)
 {
     static const int weight[4] = {1, 2, 2, 1};
@@ -101,11 +113,14 @@ static void runge_kutta(struct motion *m, real h)
         for (int i = 0; i < m->nu; i++) m->usum[i] += (real)weight[stage] * m->ud[i];
         const real *dq = stage < 3 ? m->dq : m->qsum, *du = stage < 3 ? m->ud : m->usum;
         for (int i = 0; i < m->nq; i++) m->q[i] = m->q0[i] + part[stage] * dq[i];
+        /* For each number: weight and add, scale and add. */
         for (int i = 0; i < m->nu; i++) m->u[i] = m->u0[i] + part[stage] * du[i];
         m->work->flop += (uint64_t)(4 * (m->nq + m->nu));
     }
     m->work->flop++; /* half */
     m->work->div++;  /* h / 6 */
+    /* Stages leave quaternions slightly off the unit sphere; a drift for no time normalises
+     * them. */
     drift(m, 0);
 }
 
@@ -132,6 +147,7 @@ static void publish_seen(const struct motion *m)
 void motion_run(struct motion *m)
 {
     const struct kernel_spec *spec = &m->job->spec->kernel;
+    /* The model counts time in its own unit (seconds for machines, picoseconds for molecules). */
     const real h = (real)(spec->step_size / m->job->model->second);
     for (int k = 0; k < spec->steps; k++) {
         if (spec->step == STEP_RK4) runge_kutta(m, h);
@@ -150,13 +166,19 @@ void motion_run(struct motion *m)
 void motion_watch(struct motion_seen *seen, real residual, real scale, real condition)
 {
     const double size = (double)scale, violation = (double)residual * size;
-    if (!isnan(seen->condition) && !((double)condition <= seen->condition)) seen->condition = (double)condition;
+    /* A comparison with "not a number" is false: such a condition replaces any other and then
+     * stays. */
+    if (!isnan(seen->condition) && !((double)condition <= seen->condition))
+        seen->condition = (double)condition;
     if (isnan(seen->residual)) return;
     if (!seen->any) {
         *seen = (struct motion_seen){(double)residual, size, seen->condition, true};
         return;
     }
-    const double before = seen->residual * seen->scale, worst = violation <= before ? before : violation;
+    /* Violations are compared as absolute sizes, and told relative to the largest scale seen: a
+     * ratio from an evaluation at rest, where all terms are small, says nothing about the run. */
+    const double before = seen->residual * seen->scale,
+                 worst = violation <= before ? before : violation;
     seen->scale = fmax(seen->scale, size);
     seen->residual = seen->scale > 0 ? worst / seen->scale : (double)residual;
 }

@@ -7,6 +7,8 @@
 
 enum { SCREW_BYTES = SPACE * (int)sizeof(real) };
 
+/* Dense operators are general 6 x 6 products: what the paper's code does, and 66 flops instead of
+ * 42 (physics 1.2). Results go by way of g, because a product may not write over its argument. */
 void transform_force(bool dense, real *y, const real *T, const real *f, struct work *w)
 {
     if (dense) {
@@ -55,6 +57,8 @@ void transform_compose(bool dense, real *c, const real *a, const real *b, struct
     w->call++;
 }
 
+/* The paper's transform is a product of a shift and a rotation; a code that multiplies them out for
+ * every joint pays for it, so this one is counted too. */
 void transform_expand(bool dense, real *T, const struct xform *x, struct work *w)
 {
     if (!dense) {
@@ -79,6 +83,8 @@ void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int 
     s->dense = dense;
     s->incoming = incoming;
     s->size = dense ? SQUARE : XFORM_NUMBERS;
+    /* One vector more than the transforms, since v follows the newest transform in the first
+     * scan. */
     s->level = CARVE(c, s->size * levels(incoming ? rank : nrank - 1 - rank) + SPACE, real);
     s->in = CARVE(c, s->size + SPACE, real);
 }
@@ -92,8 +98,11 @@ static void add_motion(struct scan *s, real *v, const real *T, const real *u, st
     w->flop += SCREW_ADD_FLOP;
 }
 
-/* first_incoming: composites first, then v right behind the newest one, so that both leave as one message without
- * being packed. */
+/* first_incoming: composites first, then v right behind the newest one, so that both leave as one
+ * message without being packed.
+ *
+ * The message from k-d carries T_{k-d} only if that rank has one at this level (k >= 2d). Values
+ * are those from before the step: both are sent before they are updated (physics 3.1). */
 static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
 {
     struct comm *c = s->comm;
@@ -104,11 +113,14 @@ static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
     work_report(c, w);
     for (int d = 1, j = 0; d < P; d *= 2, j++) {
         real *T = s->level + j * size;
+        /* A composite reaches d ranks to the left; below rank d there is none to send. */
         if (k + d < P) {
             if (k >= d) comm_send(c, k + d, tag + j, T, pair);
             else comm_send(c, k + d, tag + j, now, SCREW_BYTES);
         }
         if (k < d) continue;
+        /* v moves up behind the new level first, because T^(j+1) is written where v was. physics
+         * (3.1), then (3.2). */
         if (k >= 2 * d) {
             comm_recv(c, k - d, tag + j, s->in, pair);
             real *next = now + size;
@@ -117,6 +129,7 @@ static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
             transform_compose(s->dense, T + size, s->in, T, w);
             now = next;
         } else {
+            /* Rank k - d starts the chain: v is final here, and no composite reaches further. */
             comm_recv(c, k - d, tag + j, s->in, SCREW_BYTES);
             add_motion(s, now, T, s->in, w);
         }
@@ -125,7 +138,8 @@ static void first_incoming(struct scan *s, int tag, real *v, struct work *w)
     screw_copy(v, now);
 }
 
-/* first_outgoing: physics (3.4). Transforms travel to the left with tags after those of the vectors. */
+/* first_outgoing: physics (3.4). Transforms travel to the left with tags after those of the
+ * vectors: a phase has TAG_STEP = 64 tags and at most 31 steps. */
 static void first_outgoing(struct scan *s, int tag, real *v, struct work *w)
 {
     struct comm *c = s->comm;
@@ -133,6 +147,7 @@ static void first_outgoing(struct scan *s, int tag, real *v, struct work *w)
     const int transform_tag = tag + 32;
     for (int d = 1, j = 0; d < P; d *= 2, j++) {
         real *T = s->level + j * size;
+        /* The sender projects: only it holds the transform from its frame to frame k+d. */
         if (k + d < P) {
             transform_motion(s->dense, s->in, T, v, w);
             work_report(c, w);
@@ -145,6 +160,8 @@ static void first_outgoing(struct scan *s, int tag, real *v, struct work *w)
             w->flop += SCREW_ADD_FLOP;
             work_report(c, w);
         }
+        /* The composite that ends at k + d continues this one; it is needed only if somebody lies
+         * behind. */
         if (k + 2 * d < P) {
             comm_recv(c, k + d, transform_tag + j, s->in, size * (int)sizeof(real));
             transform_compose(s->dense, T + size, T, s->in, w);
@@ -159,6 +176,7 @@ void scan_first(struct scan *s, int tag, real *v, struct work *w)
     else first_outgoing(s, tag, v, w);
 }
 
+/* Vectors only: the composites of scan_first are valid as long as the coordinates are. */
 void scan_motion(struct scan *s, int tag, real *v, struct work *w)
 {
     struct comm *c = s->comm;
@@ -167,6 +185,7 @@ void scan_motion(struct scan *s, int tag, real *v, struct work *w)
     for (int d = 1, j = 0; d < P; d *= 2, j++) {
         const real *T = s->level + j * s->size;
         if (k + d < P) {
+            /* Outgoing composites belong to the sender, incoming ones to the receiver. */
             if (!s->incoming) {
                 transform_motion(s->dense, s->in, T, v, w);
                 work_report(c, w);
@@ -185,6 +204,8 @@ void scan_motion(struct scan *s, int tag, real *v, struct work *w)
     }
 }
 
+/* Mirror image of scan_motion: the same composites, transposed, carry forces the other way. physics
+ * (3.3): no matrix is ever sent here. */
 void scan_force(struct scan *s, int tag, real *f, struct work *w)
 {
     struct comm *c = s->comm;
