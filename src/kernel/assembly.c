@@ -73,7 +73,7 @@ void assembly_operators(struct chain *ch, int i, real *D, real *E)
     for (int k = 0; k < SQUARE; k++) E[k] = -E[k];
 }
 
-/* expand: out (SPACE x SPACE) = [H W] as a matrix. */
+/* expand: out (SPACE x SPACE) = [H W] as a matrix, column by column. */
 static void expand(const struct subspace *s, real *out)
 {
     for (int k = 0; k < SPACE; k++) {
@@ -126,6 +126,7 @@ void assembly_turn(struct chain *ch, const struct subspace *a, const real *M,
         for (int j = 0; j < SPACE; j++) out[SPACE * i + j] = M[SPACE * a->pick[i] + b->pick[j]];
 }
 
+/* H^T x and W^T x side by side, in the order of Q = [H W]. */
 void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real *x, real *y)
 {
     subspace_h_transposed(s, x, y);

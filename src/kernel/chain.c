@@ -9,6 +9,7 @@
 #include "kernel/tags.h"
 #include "linalg/dense.h"
 
+/* Rates of joints lo .. hi-1 are contiguous, bodies being numbered along the chain. */
 int chain_nu(const struct chain_shared *shared, int lo, int hi)
 {
     const struct body *last = &shared->body[hi - 1];
@@ -118,6 +119,7 @@ void chain_load(struct chain *ch)
 void chain_place(struct chain *ch)
 {
     const bool moves = !ch->job->omit.velocity;
+    /* New coordinates: the composites of earlier scans are void. */
     ch->composed = false;
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = &ch->shared->body[i];
@@ -329,6 +331,7 @@ void chain_gyro(struct chain *ch, int i, real *f)
     ch->work.flop += (uint64_t)body_load_flops(b) + SCREW_ADD_FLOP;
 }
 
+/* Fext - P, the load of the direct form (physics 4.5). */
 void chain_gain(struct chain *ch, real *gain)
 {
     for (int i = ch->lo; i < ch->hi; i++) {
@@ -355,6 +358,7 @@ void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
 }
 
 /* load: f = I a + P - Fext of own body i. */
+/* physics (2.3), (2.4) without the children's part. */
 static void load(struct chain *ch, int i)
 {
     const struct body *b = &ch->shared->body[i];

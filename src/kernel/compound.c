@@ -8,10 +8,12 @@
 static void unpack(const real *S, real *full)
 {
     for (int i = 0; i < SPACE; i++)
-        for (int j = 0; j <= i; j++) full[SPACE * i + j] = full[SPACE * j + i] = S[packed_index(i, j)];
+        for (int j = 0; j <= i; j++)
+            full[SPACE * i + j] = full[SPACE * j + i] = S[packed_index(i, j)];
 }
 
-/* pack: the symmetric part of a full matrix that is symmetric but for rounding. */
+/* pack: the symmetric part of a full matrix that is symmetric but for rounding. Taking the mean
+ * keeps the system exactly symmetric, which the factorisation relies on. */
 static void pack(const real *full, real *S, struct work *w)
 {
     for (int i = 0; i < SPACE; i++)
@@ -35,7 +37,8 @@ void packed_multiply(const real *S, const real *x, real *y, struct work *w)
     w->call++;
 }
 
-/* soft_compliance: N = (Z + H s^-1 H^T)^-1. */
+/* soft_compliance: N = (Z + H s^-1 H^T)^-1 (physics 9.0). Every component of such a joint's force
+ * is unknown, so that nothing is projected. */
 static bool soft_compliance(const struct joint_view *v, const real *Z, real *N, struct work *w)
 {
     real G[PACKED], inverse[SQUARE] = {0}, h[SPACE];
@@ -56,6 +59,8 @@ static bool soft_compliance(const struct joint_view *v, const real *Z, real *N, 
 bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct work *w)
 {
     const struct subspace *s = v->s;
+    /* N = W (W^T Z W)^-1 W^T: the force response of the constraints. It is formed explicitly,
+     * because it is applied to many columns and also moved through the joint by itself. */
     const int c = s->c;
     real full[SQUARE], projected[SQUARE], G[PACKED], columns[SQUARE], spread[SQUARE];
     if (v->resistance > 0) return soft_compliance(v, Z, N, w);
@@ -68,11 +73,14 @@ bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct
     for (int i = 0; i < c; i++) projected[i * c + i] = 1;
     dense_solve(c, c, G, projected, w);
     memset(full, 0, sizeof full);
+    /* Axes that pick components: W spreads the inverse without a product. */
     if (s->pick) {
         for (int i = 0; i < c; i++)
-            for (int j = 0; j < c; j++) full[SPACE * s->pick[s->d + i] + s->pick[s->d + j]] = projected[i * c + j];
+            for (int j = 0; j < c; j++)
+                full[SPACE * s->pick[s->d + i] + s->pick[s->d + j]] = projected[i * c + j];
     } else {
-        for (int k = 0; k < c; k++) subspace_column(s, s->d + k, columns + SPACE * k); /* W^T, (c x SPACE) */
+        /* W^T, (c x SPACE) */
+        for (int k = 0; k < c; k++) subspace_column(s, s->d + k, columns + SPACE * k);
         dense_product(c, SPACE, c, projected, columns, spread, w);
         dense_product_tn(SPACE, SPACE, c, columns, spread, full, w);
         w->flop += (uint64_t)(SQUARE_VEC_FLOP * c + SCREW_DOT_FLOP * c * c);
@@ -81,8 +89,10 @@ bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct
     return true;
 }
 
-void joint_force(const struct joint_view *v, int m, const real *Z, const real *N, const real *beta, const real *entry,
-                 real *h, struct work *w)
+/* The joint force for each column: h_0 of (6.2), (6.4). Given forces and biases belong to column 0;
+ * the other columns are unit loads of loop constraints. */
+void joint_force(const struct joint_view *v, int m, const real *Z, const real *N, const real *beta,
+                 const real *entry, real *h, struct work *w)
 {
     for (int j = 0; j < m; j++) {
         real given[SPACE] = {0}, seen[SPACE], rest[SPACE];
@@ -93,6 +103,7 @@ void joint_force(const struct joint_view *v, int m, const real *Z, const real *N
             screw_add(rest, seen);
             w->flop += SCREW_ADD_FLOP;
         }
+        /* The acceleration of the parent's side counts against the own one. */
         if (entry) screw_sub(rest, entry + SPACE * j);
         if (j == 0 && v->bias) screw_sub(rest, v->bias);
         packed_multiply(N, rest, seen, w);
@@ -101,7 +112,8 @@ void joint_force(const struct joint_view *v, int m, const real *Z, const real *N
     }
 }
 
-/* move_rows: out row k = X f_k (force): (X M^T)^T for the rows of M. */
+/* move_forces: out row k = X f_k (force): (X M^T)^T for the rows of M. 42 flops a row instead of
+ * the 66 of a square matrix. */
 static void move_forces(const struct xform *x, const real *M, real *out, struct work *w)
 {
     for (int k = 0; k < SPACE; k++) xform_force(out + SPACE * k, x, M + SPACE * k);
@@ -117,8 +129,10 @@ static void move_motions(const struct xform *x, const real *M, real *out, struct
     w->call++;
 }
 
-bool compound_rake(const struct joint_view *v, int m, const struct compound *leaf, real *joint, real *dI, real *dp,
-                   struct work *w)
+/* physics (6.2): dI = X N X^T, dp = X h. Both are sums over leaves, and a leaf is only needed again
+ * to receive its force. */
+bool compound_rake(const struct joint_view *v, int m, const struct compound *leaf, real *joint,
+                   real *dI, real *dp, struct work *w)
 {
     real full[SQUARE], moved[SQUARE], packed[PACKED], carried[SPACE];
     real *N = joint, *h = joint + PACKED;
@@ -138,11 +152,15 @@ bool compound_rake(const struct joint_view *v, int m, const struct compound *lea
     return true;
 }
 
-bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, real *record, struct work *w)
+/* physics (6.3): K = (U + P22 dI)^-1 applied to everything that the parent's bottom body sees. P22
+ * dI is not symmetric, hence a general solution. */
+bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, real *record,
+                     struct work *w)
 {
     real load[SQUARE], P12[SQUARE], P22[SQUARE], K[SQUARE], column[SPACE], right[2 * SQUARE];
     real product[SQUARE], *n21 = record + PACKED;
-    real *after22 = n21 + SQUARE, *dp_kept = record + COMPOUND_MATRICES, *beta2 = dp_kept + SPACE * m;
+    real *after22 = n21 + SQUARE, *dp_kept = record + COMPOUND_MATRICES,
+         *beta2 = dp_kept + SPACE * m;
     memcpy(record, dI, PACKED * sizeof *record);
     memcpy(dp_kept, dp, (size_t)(SPACE * m) * sizeof *dp);
     unpack(dI, load);
@@ -150,17 +168,22 @@ bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, 
     memcpy(P12, u->p12, sizeof P12);
     dense_product(SPACE, SPACE, SPACE, P22, load, K, w);
     for (int i = 0; i < SPACE; i++) K[(SPACE + 1) * i] += 1;
+    /* Right-hand sides [P12^T, P22] in one solution: n21 and the new P22. */
     for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < SPACE; j++)
-            right[2 * SPACE * i + j] = P12[SPACE * j + i], right[2 * SPACE * i + SPACE + j] = P22[SPACE * i + j];
+            right[2 * SPACE * i + j] = P12[SPACE * j + i],
+            right[2 * SPACE * i + SPACE + j] = P22[SPACE * i + j];
+    /* The solver destroys its matrix; the columns below need it again. */
     real again[SQUARE];
     memcpy(again, K, sizeof K);
     if (!dense_solve_general(SPACE, 2 * SPACE, K, right, w)) return false;
     for (int i = 0; i < SPACE; i++)
         for (int j = 0; j < SPACE; j++)
-            n21[SPACE * i + j] = right[2 * SPACE * i + j], product[SPACE * i + j] = right[2 * SPACE * i + SPACE + j];
+            n21[SPACE * i + j] = right[2 * SPACE * i + j],
+            product[SPACE * i + j] = right[2 * SPACE * i + SPACE + j];
     pack(product, after22, w);
-    for (int j = 0; j < m; j++) { /* K (beta_2 - P22 dp), one column at a time; then beta_1 -= P12 (dp + dI beta_2) */
+    /* K (beta_2 - P22 dp), one column at a time; then beta_1 -= P12 (dp + dI beta_2) */
+    for (int j = 0; j < m; j++) {
         real K_copy[SQUARE];
         memcpy(K_copy, again, sizeof again);
         packed_multiply(u->p22, dp + SPACE * j, column, w);
@@ -169,9 +192,11 @@ bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, 
         if (!dense_solve_general(SPACE, 1, K_copy, beta2 + SPACE * j, &uncounted)) return false;
         packed_multiply(dI, beta2 + SPACE * j, column, w);
         screw_add(column, dp + SPACE * j);
-        for (int k = 0; k < SPACE; k++) u->beta1[SPACE * j + k] -= screw_dot(P12 + SPACE * k, column);
+        for (int k = 0; k < SPACE; k++)
+            u->beta1[SPACE * j + k] -= screw_dot(P12 + SPACE * k, column);
         w->flop += 2 * SQUARE + SQUARE_VEC_FLOP + 3 * SCREW_ADD_FLOP;
     }
+    /* P11 -= P12 dI n21, with the old P12. */
     dense_product(SPACE, SPACE, SPACE, load, n21, product, w);
     dense_product(SPACE, SPACE, SPACE, P12, product, K, w);
     pack(K, product, w);
@@ -183,8 +208,10 @@ bool compound_absorb(int m, struct compound *u, const real *dI, const real *dp, 
     return true;
 }
 
-/* pulled_back: Z (packed) = P11 + X^T P22 X. */
-static void pulled_back(const struct xform *x, const real *p11, const real *p22, real *Z, struct work *w)
+/* pulled_back: Z (packed) = P11 + X^T P22 X: what the joint between two compounds feels (physics
+ * 6.4). */
+static void pulled_back(const struct xform *x, const real *p11, const real *p22, real *Z,
+                        struct work *w)
 {
     real full[SQUARE], moved[SQUARE];
     unpack(p22, full);
@@ -196,7 +223,8 @@ static void pulled_back(const struct xform *x, const real *p11, const real *p22,
     w->flop += PACKED;
 }
 
-/* subtract_product: S (packed) -= A B for full A, B with symmetric product; half of it is computed. */
+/* subtract_product: S (packed) -= A B for full A, B with symmetric product; half of it is
+ * computed. */
 static void subtract_product(const real *A, const real *B, real *S, struct work *w)
 {
     for (int i = 0; i < SPACE; i++)
@@ -209,28 +237,32 @@ static void subtract_product(const real *A, const real *B, real *S, struct work 
     w->call++;
 }
 
-bool compound_merge(const struct joint_view *v, int m, struct compound *u, const struct compound *below, real *record,
-                    struct work *w)
+bool compound_merge(const struct joint_view *v, int m, struct compound *u,
+                    const struct compound *below, real *record, struct work *w)
 {
     real Z[PACKED], N[PACKED], full[SQUARE], P12X[SQUARE], turned[SQUARE];
     real *h = record, *M1 = record + SPACE * m, *M3 = M1 + SQUARE;
     real entry[SPACE], moved[SPACE];
+    /* Z, N and h_0: the joint in between, once u's bottom and v's top act on each other. */
     pulled_back(v->x, below->p11, u->p22, Z, w);
     if (!joint_compliance(v, Z, N, w)) return false;
     for (int j = 0; j < m; j++) xform_motion(h + SPACE * j, v->x, u->beta2 + SPACE * j);
     w->flop += (uint64_t)(m * XFORM_MOTION_FLOP);
-    for (int j = 0; j < m; j++) { /* one column at a time: h holds the entries until they are used */
+    /* one column at a time: h holds the entries until they are used */
+    for (int j = 0; j < m; j++) {
         struct joint_view column = *v;
         if (j > 0) column.active = column.bias = NULL;
         screw_copy(entry, h + SPACE * j);
         joint_force(&column, 1, Z, N, below->beta1 + SPACE * j, entry, h + SPACE * j, w);
     }
+    /* M_1 = N X^T P12_u^T and M_3 = N P12_v: f_v as a function of the forces at both ends. */
     move_motions(v->x, u->p12, P12X, w);
     unpack(N, full);
     transpose(P12X, turned);
     dense_product(SPACE, SPACE, SPACE, full, turned, M1, w);
     dense_product(SPACE, SPACE, SPACE, full, below->p12, M3, w);
     memcpy(M3 + SQUARE, v->x, XFORM_NUMBERS * sizeof(real));
+    /* The new matrices of (6.4). P22 is v's, since v's bottom is the bottom of both. */
     subtract_product(P12X, M1, u->p11, w);
     dense_product(SPACE, SPACE, SPACE, P12X, M3, u->p12, w);
     transpose(below->p12, turned);
@@ -241,7 +273,8 @@ bool compound_merge(const struct joint_view *v, int m, struct compound *u, const
             u->beta1[SPACE * j + k] -= screw_dot(P12X + SPACE * k, h + SPACE * j);
             moved[k] = screw_dot(turned + SPACE * k, h + SPACE * j);
         }
-        for (int k = 0; k < SPACE; k++) u->beta2[SPACE * j + k] = below->beta2[SPACE * j + k] + moved[k];
+        for (int k = 0; k < SPACE; k++)
+            u->beta2[SPACE * j + k] = below->beta2[SPACE * j + k] + moved[k];
         w->flop += 2 * (SQUARE_VEC_FLOP + SCREW_ADD_FLOP);
     }
     return true;

@@ -1,5 +1,5 @@
-/* contraction.c - forward dynamics of a tree around the contraction: loads, accelerations, loops, refinements
- * (contraction.h). */
+/* contraction.c - forward dynamics of a tree around the contraction: loads, accelerations, loops,
+ * refinements (contraction.h). */
 #include "kernel/contraction.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@
 
 enum { TAG_ANCHOR = TAG_TREE + 2 };
 
-/* most_record: numbers of the records of rank `rank`'s operations; their places into `at` unless NULL. */
+/* records: numbers of the records of rank `rank`'s operations; their places into `at` unless NULL.
+ * An operation's record lives where its `into` lives, since undoing it begins there. */
 static int records(const struct tree_plan *plan, int rank, int room, int *at)
 {
     int n = 0;
@@ -27,7 +28,10 @@ static int records(const struct tree_plan *plan, int rank, int room, int *at)
     return n;
 }
 
-void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job, int rank)
+/* Columns: one for the real loads, one for each loop constraint, all contracted together, because
+ * the matrices are the same for all (physics 7.2). `room` is their number. */
+void contraction_carve(struct contraction *k, struct carve *c, const struct kernel_job *job,
+                       int rank)
 {
     const struct tree_shared *s = job->shared;
     const struct tree_plan *plan = s->plan;
@@ -50,6 +54,9 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
     k->joint = CARVE(c, (PACKED + SPACE * room) * n, real);
     k->record_at = CARVE(c, plan->ops.at[rank + 1] - plan->ops.at[rank], int);
     k->record = CARVE(c, records(plan, rank, room, k->record_at), real);
+    /* The longest message is that of a merge: a compound, up to 7 coordinates (a floating joint: a
+     * quaternion and a position), up to six active forces, a bias; room for the columns of an
+     * undoing too. */
     k->message = CARVE(c, compound_size(room) + 7 + SPACE + SPACE + 2 * SPACE * room, real);
     k->anchor_acceleration = CARVE(c, SPACE * room, real);
     const int sides = s->closure ? 2 * s->closure->nloop : 0;
@@ -63,7 +70,8 @@ void contraction_set(struct contraction *k, struct comm *c) { k->tree.comm = k->
 static real *columns(real *array, int room, int l) { return array + SPACE * room * l; }
 static bool has_loops(const struct contraction *k) { return k->room > 1; }
 
-/* given_forces: tau of own joints, springs included. */
+/* given_forces: tau of own joints, springs included; implicit ones in the form tau_0 (physics
+ * 9.0). */
 static void given_forces(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -78,7 +86,9 @@ static void given_forces(struct contraction *k)
     }
 }
 
-/* make_loads: external loads of all columns: Fext - P in column 0 if it has the velocity terms, loop forces behind. */
+/* make_loads: external loads of all columns: Fext - P in column 0 if it has the velocity terms,
+ * loop forces behind. A loop's column is its unit force on both of its bodies, +T_b W and -T_a W
+ * (7.2). */
 static void make_loads(struct contraction *k, bool terms)
 {
     struct tree *t = &k->tree;
@@ -93,7 +103,8 @@ static void make_loads(struct contraction *k, bool terms)
     }
 }
 
-/* meet_loops: poses and velocities of the loops' own sides, then the exchange. */
+/* meet_loops: poses and velocities of the loops' own sides, then the exchange. A rank computes the
+ * place of a loop only for loops with a side of its own. */
 static void meet_loops(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -108,7 +119,8 @@ static void meet_loops(struct contraction *k)
     closure_meet(&k->closure, &t->work);
 }
 
-/* accelerate: accelerations of own bodies in all columns of the present solution; column 0 adds up if `add`. */
+/* accelerate: accelerations of own bodies in all columns of the present solution; column 0 adds up
+ * if `add`: V'_i = Phi_i (f_1 + f_2 - P_i + Fext_i), physics 6.2 at the end. */
 static void accelerate(struct contraction *k, bool add)
 {
     struct tree *t = &k->tree;
@@ -116,7 +128,8 @@ static void accelerate(struct contraction *k, bool add)
     for (int l = 0; l < t->n; l++)
         for (int j = 0; j < k->m; j++) {
             real net[SPACE], y[SPACE], *a = columns(k->acceleration, k->room, l) + SPACE * j;
-            const real *f1 = columns(k->f1, k->room, l) + SPACE * j, *f2 = columns(k->f2, k->room, l) + SPACE * j;
+            const real *f1 = columns(k->f1, k->room, l) + SPACE * j,
+                       *f2 = columns(k->f2, k->room, l) + SPACE * j;
             for (int i = 0; i < SPACE; i++)
                 net[i] = f1[i] + f2[i] + (loads ? columns(k->load, k->room, l)[SPACE * j + i] : 0);
             body_accelerate(tree_body(t, l), net, y);
@@ -127,7 +140,7 @@ static void accelerate(struct contraction *k, bool add)
     tree_report(t);
 }
 
-/* share_anchors: accelerations of anchor bodies to the pieces hanging there. */
+/* share_anchors: accelerations of anchor bodies to the pieces hanging there: 48 bytes a column. */
 static void share_anchors(struct contraction *k, int m)
 {
     struct tree *t = &k->tree;
@@ -136,14 +149,17 @@ static void share_anchors(struct contraction *k, int m)
     int nkid;
     const int *kid = tree_kids(t, &nkid);
     for (int i = 0; i < nkid; i++)
-        comm_send(t->comm, kid[i], TAG_ANCHOR, columns(k->acceleration, k->room, plan->local[plan->anchor[kid[i]]]),
-                  bytes);
+        comm_send(t->comm, kid[i], TAG_ANCHOR,
+                  columns(k->acceleration, k->room, plan->local[plan->anchor[kid[i]]]), bytes);
     if (t->piece >= 0 && plan->parent[t->piece] >= 0)
         comm_recv(t->comm, plan->parent[t->piece], TAG_ANCHOR, k->anchor_acceleration, bytes);
 }
 
-/* joint_accelerations: ud = H^T (a - X^T a_parent - bias - base) of columns 0 .. m-1; notes what the constraints of
- * column 0 leave over, as a bias for the next refinement. */
+/* joint_accelerations: ud = H^T (a - X^T a_parent - bias - base) of columns 0 .. m-1; notes what
+ * the constraints of column 0 leave over, as a bias for the next refinement.
+ *
+ * The residual is W^T Z in the operator form (physics 4.8). A residual by the assembled matrix
+ * would share its rounding errors and show nothing (physics 8.6). */
 static void joint_accelerations(struct contraction *k, int m, const real *bias, const real *base)
 {
     struct tree *t = &k->tree;
@@ -154,7 +170,10 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
         const bool on_base = tree_body(t, l)->parent < 0;
         const struct subspace *s = &t->pose[l].s;
         for (int j = 0; j < m; j++) {
-            real z[SPACE], moved[SPACE], rest[SPACE], *a = columns(k->acceleration, k->room, l) + SPACE * j;
+            real z[SPACE], moved[SPACE], rest[SPACE],
+                *a = columns(k->acceleration, k->room, l) + SPACE * j;
+            /* The base moves in the real column only; loop columns are pure responses to a
+             * force. */
             const real *below = on_base  ? (j == 0 ? base : NULL)
                                 : p >= 0 ? columns(k->acceleration, k->room, p) + SPACE * j
                                          : k->anchor_acceleration + SPACE * j;
@@ -170,6 +189,7 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
             }
             subspace_h_transposed(s, z, k->ud + j * t->nu + t->u_at[l]);
             t->work.flop += (uint64_t)body_cost(tree_body(t, l))->h_transposed;
+            /* What is left over is the constraints' own violation, as a vector: -W W^T z. */
             if (j > 0) continue;
             subspace_w_transposed(s, z, rest);
             residual = largest_size(residual, SPACE - d, rest);
@@ -185,7 +205,9 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
     tree_report(t);
 }
 
-/* refine_inside: contract again with the constraints' residual for a bias (physics 8.6, inner refinement). */
+/* refine_inside: contract again with the constraints' residual for a bias (physics 8.6, inner
+ * refinement). One column only: the matrices have not changed, and loop columns are accurate as
+ * they are. Corrections add to accelerations, not to joint forces. */
 static void refine_inside(struct contraction *k, const real *bias, const real *base)
 {
     const int m = k->m, inner = k->tree.job->spec->kernel.inner_refinements;
@@ -203,8 +225,8 @@ static void refine_inside(struct contraction *k, const real *bias, const real *b
     k->given = given;
 }
 
-/* close_loops: lambda from the accelerations of the loops' bodies; all columns put together in `active`, which has
- * been used. */
+/* close_loops: lambda from the accelerations of the loops' bodies (physics 7.5); all columns put
+ * together in `active`, which has been used. */
 static void close_loops(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -213,11 +235,15 @@ static void close_loops(struct contraction *k)
         if (s->owner[side] != comm_rank(t->comm)) continue;
         const int l = t->shared->plan->local[closure_body(s, side)];
         k->side[side] = k->side_room + SPACE * k->room * side;
-        memcpy(k->side[side], columns(k->acceleration, k->room, l), (size_t)(SPACE * k->room) * sizeof(real));
+        memcpy(k->side[side], columns(k->acceleration, k->room, l),
+               (size_t)(SPACE * k->room) * sizeof(real));
+        /* The paper's form and refinements solve for a difference; the constraint concerns the
+         * whole. */
         screw_add(k->side[side], k->offset + SPACE * l);
         t->work.flop += SCREW_ADD_FLOP;
     }
     if (s) closure_solve(&k->closure, k->side, &t->work);
+    /* u' = u'_0 + sum of lambda_j u'_j. */
     for (int i = 0; i < t->nu; i++) {
         real sum = k->ud[i];
         for (int j = 1; j < k->room; j++) sum += k->closure.lambda[j - 1] * k->ud[j * t->nu + i];
@@ -236,7 +262,8 @@ static void add_up(struct contraction *k)
     t->work.flop += (uint64_t)(t->nu + k->room - 1);
 }
 
-/* first_solution: u' for all columns. */
+/* first_solution: u' for all columns. The direct form (physics 4.3) gives velocity terms, base and
+ * tau at once; the paper's form (4.2) gives tau less the bias forces and nothing else. */
 static void first_solution(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -246,7 +273,9 @@ static void first_solution(struct contraction *k)
     const real *base = k->direct && !omit->base ? t->shared->base : NULL;
     k->m = k->room;
     make_loads(k, loads);
-    k->given = (struct contraction_given){k->active, bias, loads || has_loops(k) ? k->load : NULL, base};
+    /* A pointer that stays NULL saves the operations on zeros. */
+    k->given =
+        (struct contraction_given){k->active, bias, loads || has_loops(k) ? k->load : NULL, base};
     tree_report(t);
     comm_stage(t->comm, STAGE_SOLVE);
     contraction_solve(k);
@@ -258,7 +287,8 @@ static void first_solution(struct contraction *k)
     add_up(k);
 }
 
-/* loop_forces: f -= the loops' forces on own bodies, for inverse dynamics of the closed system. */
+/* loop_forces: f -= the loops' forces on own bodies, for inverse dynamics of the closed system. The
+ * load columns keep the unit forces of the first solution. */
 static void loop_forces(struct contraction *k, real *f)
 {
     struct tree *t = &k->tree;
@@ -267,23 +297,28 @@ static void loop_forces(struct contraction *k, real *f)
             screw_axpy(tree_at(f, l), -k->lambda[j - 1], columns(k->load, k->room, l) + SPACE * j);
 }
 
-/* refine: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6). False when that would not have made it better. */
+/* refine: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6, outer refinement). False when that
+ * would not have made it better. */
 static bool refine(struct contraction *k, struct refinement *course)
 {
     struct tree *t = &k->tree;
     comm_stage(t->comm, STAGE_ACCELERATION);
     tree_acceleration(t, k->answer);
+    /* Loops see the accelerations of the answer so far, plus those of the correction. */
     memcpy(k->offset, t->a, (size_t)(SPACE * t->n) * sizeof(real));
     comm_stage(t->comm, STAGE_FORCE);
     memset(k->residual_bias, 0, (size_t)(SPACE * t->n) * sizeof(real));
     loop_forces(k, k->residual_bias);
     tree_force(t, k->active, k->residual_bias);
     for (int i = 0; i < t->nu; i++) k->active[i] = k->tau[i] - k->active[i];
+    /* A linearly implicit spring also pulls back with s u' (physics 9.0). */
     for (int l = 0; l < t->n && steps_implicitly(t->job); l++)
         for (int i = t->u_at[l]; i < t->u_at[l] + tree_body(t, l)->d; i++)
-            k->active[i] -= spring_resistance(tree_body(t, l), implicit_step(t->job)) * k->answer[i];
+            k->active[i] -=
+                spring_resistance(tree_body(t, l), implicit_step(t->job)) * k->answer[i];
     t->work.flop += (uint64_t)(steps_implicitly(t->job) ? 3 * t->nu : t->nu);
     tree_report(t);
+    /* The correction needs no velocity terms: they cancel in the difference. */
     k->m = 1;
     k->given = (struct contraction_given){.active = k->active};
     comm_stage(t->comm, STAGE_SOLVE);
@@ -303,7 +338,7 @@ static void refine_outside(struct contraction *k)
 {
     struct comm *c = k->tree.comm;
     const int outer = k->tree.job->spec->kernel.outer_refinements;
-    /* of the answer itself; the corrections have their own */
+    /* of the answer itself; a correction has a residual of its own */
     const real residual = k->residual, scale = k->residual_scale;
     struct refinement course = {.before = 1};
     /* the paper's residual does not see the errors of its bias forces */
@@ -314,7 +349,8 @@ static void refine_outside(struct contraction *k)
         going = refine(k, &course);
         k->refined += going;
     }
-    k->residual = course.before < residual ? course.before : residual; /* the error that the last pass found */
+    /* the error that the last pass found */
+    k->residual = course.before < residual ? course.before : residual;
     k->residual_scale = scale;
 }
 
@@ -334,6 +370,7 @@ static void evaluate(struct contraction *k)
     memset(k->answer, 0, (size_t)t->nu * sizeof(real));
     memset(k->offset, 0, (size_t)(SPACE * t->n) * sizeof(real));
     memset(k->lambda, 0, (size_t)(k->room - 1) * sizeof(real));
+    /* The paper's form: FT = tau - xi, xi = inverse dynamics at u' = 0 (physics 4.2). */
     if (!k->direct && !t->job->omit.bias) {
         tree_report(t);
         comm_stage(t->comm, STAGE_ACCELERATION);
@@ -354,6 +391,8 @@ static void publish(const struct contraction *k)
 {
     const struct tree *t = &k->tree;
     for (int l = 0; l < t->n; l++) {
+        /* A broken solution is published as "not a number", never as a number that looks like
+         * one. */
         const struct body *b = tree_body(t, l);
         real answer[SPACE];
         for (int i = 0; i < b->d; i++)
@@ -367,7 +406,8 @@ static void publish(const struct contraction *k)
     if (has_loops(k)) publish_number(t->comm, OUTPUT_LOOP_RANK, 0, k->closure.rank);
 }
 
-/* evaluate_once: for the time steps; only the first answer is kept. */
+/* evaluate_once: for the time steps; only the first answer is kept, since it is what references
+ * check. */
 static void evaluate_once(void *program)
 {
     struct contraction *k = program;

@@ -1,4 +1,5 @@
-/* contraction_solve.c - one solution of the tree's constraint forces: contract, solve the roots, undo (contraction.h).
+/* contraction_solve.c - one solution of the tree's constraint forces: contract, solve the roots,
+ * undo (contraction.h).
  */
 #include <string.h>
 
@@ -14,12 +15,14 @@ static const struct tree_plan *plan_of(const struct contraction *k) { return k->
 static int local_of(const struct contraction *k, int body) { return plan_of(k)->local[body]; }
 static real *columns(real *array, int room, int l) { return array + SPACE * room * l; }
 
+/* The matrices of a compound do not depend on the number of columns; its betas lie behind them, one
+ * column after the other, so that a solution for one column uses the first part of the room. */
 static struct compound own_compound(const struct contraction *k, int body)
 {
     return compound_at(k->compound + compound_size(k->room) * local_of(k, body), k->m);
 }
 
-/* own_joint: the view of an own body's joint. */
+/* own_joint: the view of an own body's joint: what is given at it, zero where a pointer is NULL. */
 static struct joint_view own_joint(const struct contraction *k, int body)
 {
     const int l = local_of(k, body);
@@ -31,7 +34,8 @@ static struct joint_view own_joint(const struct contraction *k, int body)
     return v;
 }
 
-/* single_bodies: every own body as a compound. */
+/* single_bodies: every own body as a compound: P11 = P12 = P22 = Phi, beta = Phi (Fext - P)
+ * (physics 6.1). Top and bottom of a single body are the same body. */
 static void single_bodies(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -41,7 +45,8 @@ static void single_bodies(struct contraction *k)
         real full[SQUARE];
         body_phi(b, full);
         for (int i = 0; i < SPACE; i++)
-            for (int j = 0; j <= i; j++) c.p11[packed_index(i, j)] = c.p22[packed_index(i, j)] = full[SPACE * i + j];
+            for (int j = 0; j <= i; j++)
+                c.p11[packed_index(i, j)] = c.p22[packed_index(i, j)] = full[SPACE * i + j];
         memcpy(c.p12, full, sizeof full);
         for (int j = 0; j < k->m; j++) {
             real *beta = c.beta1 + SPACE * j;
@@ -55,9 +60,11 @@ static void single_bodies(struct contraction *k)
     }
 }
 
+/* A pivot that fails does not stop the contraction: its messages are awaited elsewhere. */
 static void check(struct contraction *k, bool sound) { k->broken = k->broken || !sound; }
 
-/* rake: own leaves summed, sent to their parent's rank or absorbed there. */
+/* rake: own leaves summed, sent to their parent's rank or absorbed there (physics 6.2, RAKE).
+ * However many leaves of one owner hang there, one message of 27 numbers for m = 1. */
 static void rake(struct contraction *k, const struct tree_op *op, real *record)
 {
     struct tree *t = &k->tree;
@@ -66,13 +73,16 @@ static void rake(struct contraction *k, const struct tree_op *op, real *record)
     const int64_t bytes = (PACKED + SPACE * m) * (int64_t)sizeof(real);
     if (op->from == me) {
         memset(dI, 0, (size_t)bytes);
+        /* What each leaf needs for its undoing, N and h, stays in k->joint at the leaf's owner. */
         for (int i = 0; i < op->count; i++) {
             const int v = plan_of(k)->absorbed[op->first + i];
             const struct joint_view joint = own_joint(k, v);
             const struct compound leaf = own_compound(k, v);
-            check(k, compound_rake(&joint, m, &leaf, k->joint + (PACKED + SPACE * k->room) * local_of(k, v), dI, dp,
+            check(k, compound_rake(&joint, m, &leaf,
+                                   k->joint + (PACKED + SPACE * k->room) * local_of(k, v), dI, dp,
                                    &t->work));
         }
+        /* From here on the leaf's owner has nothing to do until the way back. */
         if (op->to != me) {
             tree_report(t);
             comm_send(t->comm, op->to, TAG_UP, dI, bytes);
@@ -81,17 +91,22 @@ static void rake(struct contraction *k, const struct tree_op *op, real *record)
     } else {
         comm_recv(t->comm, op->from, TAG_UP, dI, bytes);
     }
+    /* A rake within a rank takes the same steps without the message. */
     struct compound u = own_compound(k, op->into);
     check(k, compound_absorb(m, &u, dI, dp, record, &t->work));
     tree_report(t);
 }
 
-/* merge: the compound below, here or by message with its joint's coordinates and what is given there. */
+/* merge: the compound below, here or by message with its joint's coordinates and what is given
+ * there (physics 6.2, MERGE): 90 numbers for m = 1, and the joint's. */
 static void merge(struct contraction *k, const struct tree_op *op, real *record)
 {
     struct tree *t = &k->tree;
-    const int me = comm_rank(t->comm), m = k->m, size = compound_size(m), v = plan_of(k)->absorbed[op->first];
+    const int me = comm_rank(t->comm), m = k->m, size = compound_size(m),
+              v = plan_of(k)->absorbed[op->first];
     const struct body *b = &t->shared->body[v];
+    /* What is not given is not sent: a correction has no bias, the first solution of a body at rest
+     * neither. */
     const int nactive = k->given.active ? b->d : 0, nbias = k->given.bias ? SPACE : 0;
     const int64_t bytes = (size + b->nq + nactive + nbias) * (int64_t)sizeof(real);
     real *q = k->message + size, *active = q + b->nq, *bias = active + nactive;
@@ -112,6 +127,8 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
         }
     } else {
         comm_recv(t->comm, op->from, TAG_UP, k->message, bytes);
+        /* The joint is placed again from its coordinates: at most 7 numbers instead of a transform
+         * with its subspaces. */
         body_place(b, q, &pose);
         t->work.flop += (uint64_t)body_cost(b)->place;
         t->work.trig += (uint64_t)body_cost(b)->place_trig;
@@ -124,7 +141,8 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
     tree_report(t);
 }
 
-/* solve_roots: joint forces of the compounds that are left, against the base. */
+/* solve_roots: joint forces of the compounds that are left, against the base. Nothing hangs at
+ * their bottom any more: f_2 = 0. */
 static void solve_roots(struct contraction *k)
 {
     struct tree *t = &k->tree;
@@ -134,6 +152,7 @@ static void solve_roots(struct contraction *k)
         const struct compound c = own_compound(k, v);
         const struct joint_view joint = own_joint(k, v);
         real N[PACKED], bias[SPACE] = {0}, moved[SPACE];
+        /* The view with one more bias; the joint itself stays as it is. */
         struct joint_view seen = joint;
         if (joint.bias) screw_copy(bias, joint.bias);
         if (k->given.base) { /* the base's acceleration acts like a bias */
@@ -143,12 +162,14 @@ static void solve_roots(struct contraction *k)
         }
         seen.bias = bias;
         check(k, joint_compliance(&joint, c.p11, N, &t->work));
-        joint_force(&seen, k->m, c.p11, N, c.beta1, NULL, columns(k->f1, k->room, local_of(k, v)), &t->work);
+        joint_force(&seen, k->m, c.p11, N, c.beta1, NULL, columns(k->f1, k->room, local_of(k, v)),
+                    &t->work);
         memset(columns(k->f2, k->room, local_of(k, v)), 0, (size_t)(SPACE * k->m) * sizeof(real));
     }
 }
 
-/* unrake: acceleration of the parent's bottom body back to the leaves: f_v = h + N X_v^T a_2. */
+/* unrake: acceleration of the parent's bottom body back to the leaves: f_v = h + N X_v^T a_2.
+ * (physics 6.2, Undo). */
 static void unrake(struct contraction *k, const struct tree_op *op, const real *record)
 {
     struct tree *t = &k->tree;
@@ -159,9 +180,13 @@ static void unrake(struct contraction *k, const struct tree_op *op, const real *
         const real *dp = record + COMPOUND_MATRICES, *beta2 = dp + SPACE * m;
         for (int j = 0; j < m; j++) {
             real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + SPACE * j;
-            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j, *a = a2 + SPACE * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j,
+                 *a = a2 + SPACE * j;
+            /* a_2 = n21 f_1 + P22 f_2 + beta_2, all as they were after the absorption. */
             packed_multiply(n22, f2, a, &t->work);
-            for (int i = 0; i < SPACE; i++) a[i] += screw_dot(n21 + SPACE * i, f1) + beta2[SPACE * j + i];
+            for (int i = 0; i < SPACE; i++)
+                a[i] += screw_dot(n21 + SPACE * i, f1) + beta2[SPACE * j + i];
+            /* Without the leaves' forces, f_2 is what it was before the rake. */
             packed_multiply(dI, a, part, &t->work);
             for (int i = 0; i < SPACE; i++) f2[i] -= part[i] + dp[SPACE * j + i];
             t->work.flop += SQUARE_VEC_FLOP + 4 * SCREW_ADD_FLOP;
@@ -189,7 +214,8 @@ static void unrake(struct contraction *k, const struct tree_op *op, const real *
     tree_report(t);
 }
 
-/* unmerge: f_v = h_0 + M_1 f_1 - M_3 f_2; v gets (f_v, f_2), u is left with -X f_v at its bottom. */
+/* unmerge: f_v = h_0 + M_1 f_1 - M_3 f_2; v gets (f_v, f_2), u is left with -X f_v at its bottom
+ * (physics 6.2, Undo). */
 static void unmerge(struct contraction *k, const struct tree_op *op, const real *record)
 {
     struct tree *t = &k->tree;
@@ -200,9 +226,11 @@ static void unmerge(struct contraction *k, const struct tree_op *op, const real 
         const struct xform *x = (const struct xform *)(M3 + SQUARE);
         for (int j = 0; j < m; j++) {
             real *f1 = columns(k->f1, k->room, local_of(k, op->into)) + SPACE * j;
-            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j, *fv = pair + 2 * SPACE * j;
+            real *f2 = columns(k->f2, k->room, local_of(k, op->into)) + SPACE * j,
+                 *fv = pair + 2 * SPACE * j;
             for (int i = 0; i < SPACE; i++)
-                fv[i] = h[SPACE * j + i] + screw_dot(M1 + SPACE * i, f1) - screw_dot(M3 + SPACE * i, f2);
+                fv[i] = h[SPACE * j + i] + screw_dot(M1 + SPACE * i, f1) -
+                        screw_dot(M3 + SPACE * i, f2);
             screw_copy(fv + SPACE, f2);
             xform_force(f2, x, fv);
             for (int i = 0; i < SPACE; i++) f2[i] = -f2[i];
@@ -218,15 +246,20 @@ static void unmerge(struct contraction *k, const struct tree_op *op, const real 
     }
     for (int j = 0; j < m; j++) {
         screw_copy(columns(k->f1, k->room, local_of(k, v)) + SPACE * j, pair + 2 * SPACE * j);
-        screw_copy(columns(k->f2, k->room, local_of(k, v)) + SPACE * j, pair + 2 * SPACE * j + SPACE);
+        screw_copy(columns(k->f2, k->room, local_of(k, v)) + SPACE * j,
+                   pair + 2 * SPACE * j + SPACE);
     }
     tree_report(t);
 }
 
+/* Three passes: contract in the plan's order, solve the roots, undo in the opposite order. Sends do
+ * not wait, and every rank keeps the global order of operations, so that no two wait for each other
+ * (physics 6.3). */
 void contraction_solve(struct contraction *k)
 {
     const struct tree_plan *plan = plan_of(k);
-    const int me = comm_rank(k->tree.comm), first = plan->ops.at[me], count = plan->ops.at[me + 1] - first;
+    const int me = comm_rank(k->tree.comm), first = plan->ops.at[me],
+              count = plan->ops.at[me + 1] - first;
     single_bodies(k);
     tree_report(&k->tree);
     for (int i = 0; i < count; i++) {

@@ -9,10 +9,13 @@
 #include "kernel/forward.h"
 #include "kernel/publish.h"
 
-static const char *const stage_name[] = {"Pre-processing", "NE[1]", "NE[2]", "NE[3]", "CFA[1]", "CFA[2]", "CFA[3]"};
+/* Names of the stages as in the paper: the three sweeps of Newton-Euler, then assembly, solution
+ * and accelerations of the constraint force algorithm. */
+static const char *const stage_name[] = {"Pre-processing", "NE[1]",  "NE[2]", "NE[3]",
+                                         "CFA[1]",         "CFA[2]", "CFA[3]"};
 enum { INVERSE_STAGES = 4, FORWARD_STAGES = 7 };
 
-/* inverse's workspaces. */
+/* inverse's workspaces: one rank's share of the model, accelerations given, joint forces made. */
 struct chain_inverse {
     struct chain chain;
     real *ud, *tau; /* own joints */
@@ -22,33 +25,45 @@ struct tree_inverse {
     real *ud, *tau;
 };
 
-/* One body a rank: a textbook row of three square blocks and a right-hand side is the largest message there is. */
+/* One body a rank: a textbook row of three square blocks and a right-hand side is the largest
+ * message there is. */
 static int64_t largest_message(const void *job_)
 {
     const struct kernel_job *job = job_;
     bool gathers = job->spec->kernel.solver == SOLVER_THOMAS;
-    if (kernel_branches(job->spec, job->model) || gathers || job->model->nbody != job->nrank) return -1;
+    /* Trees and Thomas gather compounds or rows of unknown number: no bound. */
+    if (kernel_branches(job->spec, job->model) || gathers || job->model->nbody != job->nrank)
+        return -1;
     return (3 * SQUARE + SPACE) * (int64_t)sizeof(real);
 }
 
+/* What a spec may ask for and the program does not have is refused here, before anything is
+ * built. */
 static bool accepts_inverse(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     if (spec->nrank > model->nbody)
-        return err_set(e, ERR_CONFIG, "%d ranks for %d bodies: each rank needs at least one body", spec->nrank,
-                       model->nbody);
+        return err_set(e, ERR_CONFIG, "%d ranks for %d bodies: each rank needs at least one body",
+                       spec->nrank, model->nbody);
     if (kernel_branches(spec, model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
     return true;
 }
 
+/* Linearly implicit springs change the rows of the system (physics 9.0); where a variant would need
+ * them and has not been written, the run is refused and not computed differently. */
 static bool accepts_implicit(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     const struct kernel_spec *k = &spec->kernel;
     if (k->formulation != FORMULATION_DIRECT)
-        return err_set(e, ERR_CONFIG, "linearly implicit steps exist in the direct formulation: kernel.formulation");
-    if (model->nloop > 0) return err_set(e, ERR_CONFIG, "linearly implicit steps exist for open systems only");
+        return err_set(
+            e, ERR_CONFIG,
+            "linearly implicit steps exist in the direct formulation: kernel.formulation");
+    if (model->nloop > 0)
+        return err_set(e, ERR_CONFIG, "linearly implicit steps exist for open systems only");
     if (kernel_branches(spec, model) && k->inner_refinements > 0)
-        return err_set(e, ERR_CONFIG, "linearly implicit steps of trees have no inner refinement: take an outer one");
+        return err_set(
+            e, ERR_CONFIG,
+            "linearly implicit steps of trees have no inner refinement: take an outer one");
     return true;
 }
 
@@ -56,42 +71,59 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
 {
     const struct kernel_spec *k = &spec->kernel;
     if (!accepts_inverse(spec, model, e)) return false;
+    /* Phi = I^-1 enters the constraint system: massless bodies and point masses have none (physics
+     * 1.4). */
     if (!model->has_phi)
-        return err_set(e, ERR_CONFIG, "a body has no invertible inertia: the constraint force algorithm needs one");
-    if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR && k->inner_refinements + k->outer_refinements > 0)
-        return err_set(e, ERR_CONFIG, "solver pcr keeps no factors to refine with: choose pcr-symmetric");
-    if (k->residual == RESIDUAL_TWICE && (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
-        return err_set(e, ERR_CONFIG, "residual: twice exists for open chains in the direct formulation");
+        return err_set(
+            e, ERR_CONFIG,
+            "a body has no invertible inertia: the constraint force algorithm needs one");
+    /* The textbook's reduction forms inverses and keeps no factors (physics 5.3 i). */
+    if (!kernel_branches(spec, model) && k->solver == SOLVER_PCR &&
+        k->inner_refinements + k->outer_refinements > 0)
+        return err_set(e, ERR_CONFIG,
+                       "solver pcr keeps no factors to refine with: choose pcr-symmetric");
+    if (k->residual == RESIDUAL_TWICE &&
+        (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
+        return err_set(e, ERR_CONFIG,
+                       "residual: twice exists for open chains in the direct formulation");
     return !kernel_spec_implicit(k) || accepts_implicit(spec, model, e);
 }
 
 static bool prepare(struct kernel_job *job, struct arena *a, struct err *e)
 {
+    /* Trees have pieces, chains have blocks; both are made once and read by all ranks. */
     (void)e;
     const bool tree = kernel_branches(job->spec, job->model);
     job->shared = tree ? (const void *)tree_shared_make(job, a) : chain_shared_make(job, a);
     return true;
 }
 
-static void chain_inverse_carve(struct chain_inverse *v, struct carve *c, const struct kernel_job *job, int rank)
+/* Inverse dynamics needs accelerations and forces, but not the right neighbour's first pose: its
+ * force arrives already moved to this rank's frame. */
+static void chain_inverse_carve(struct chain_inverse *v, struct carve *c,
+                                const struct kernel_job *job, int rank)
 {
     chain_carve(&v->chain, c, job, rank, false, true);
-    scan_carve(&v->chain.scan, c, v->chain.dense, job->spec->kernel.composites_incoming, rank, job->nrank);
+    scan_carve(&v->chain.scan, c, v->chain.dense, job->spec->kernel.composites_incoming, rank,
+               job->nrank);
     const int nu = chain_nu(v->chain.shared, v->chain.lo, v->chain.hi);
     v->ud = CARVE(c, nu, real);
     v->tau = CARVE(c, nu, real);
 }
 
-static void tree_inverse_carve(struct tree_inverse *v, struct carve *c, const struct kernel_job *job, int rank)
+static void tree_inverse_carve(struct tree_inverse *v, struct carve *c,
+                               const struct kernel_job *job, int rank)
 {
     tree_carve(&v->tree, c, job, rank);
     v->ud = CARVE(c, v->tree.nu, real);
     v->tau = CARVE(c, v->tree.nu, real);
 }
 
-/* head: room for a workspace's struct, before what is carved. */
+/* head: room for a workspace's struct, before what is carved; 16 bytes, the alignment of
+ * carve.h. */
 static size_t head(size_t size) { return (size + 15) & ~(size_t)15; }
 
+/* The size of a workspace is found by carving it without a base. */
 static size_t inverse_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
@@ -107,6 +139,7 @@ static size_t inverse_bytes(const void *job_, int rank)
     return c.used;
 }
 
+/* Chain or tree: the same question to another program. */
 static size_t forward_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
@@ -122,6 +155,7 @@ static size_t forward_bytes(const void *job_, int rank)
     return c.used;
 }
 
+/* Inverse and forward dynamics use the same memory, one after the other. */
 static size_t dynamics_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
@@ -129,6 +163,7 @@ static size_t dynamics_bytes(const void *job_, int rank)
     return inverse > forward ? inverse : forward;
 }
 
+/* The program of one rank: the three recurrences in order, then its own part of tau. */
 static void chain_inverse_run(struct comm *c, const struct kernel_job *job, struct chain_inverse *v)
 {
     struct chain *ch = &v->chain;
@@ -137,6 +172,7 @@ static void chain_inverse_run(struct comm *c, const struct kernel_job *job, stru
     ch->comm = ch->scan.comm = c;
     comm_stage(c, STAGE_PLACE);
     chain_load(ch);
+    /* Own joints are contiguous in the model's arrays. */
     const int first = ch->shared->body[ch->lo].u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
     for (int k = 0; k < nu; k++) v->ud[k] = (real)job->state->qdd[first + k];
     chain_place(ch);
@@ -150,6 +186,8 @@ static void chain_inverse_run(struct comm *c, const struct kernel_job *job, stru
     publish_reals(c, OUTPUT_TAU, first, nu, v->tau);
 }
 
+/* As chain_inverse_run; own joints of a piece are scattered over the model's arrays, so that they
+ * are copied and published body by body. */
 static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struct tree_inverse *v)
 {
     struct tree *t = &v->tree;
@@ -170,7 +208,8 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
     comm_stage(c, STAGE_FORCE);
     tree_force(t, v->tau, NULL);
     for (int l = 0; l < t->n; l++)
-        publish_reals(c, OUTPUT_TAU, tree_body(t, l)->u_at, tree_body(t, l)->d, v->tau + t->u_at[l]);
+        publish_reals(c, OUTPUT_TAU, tree_body(t, l)->u_at, tree_body(t, l)->d,
+                      v->tau + t->u_at[l]);
 }
 
 static void inverse_run(struct comm *c, const void *job_, void *workspace)
@@ -180,6 +219,7 @@ static void inverse_run(struct comm *c, const void *job_, void *workspace)
     else chain_inverse_run(c, job, workspace);
 }
 
+/* The workspace begins with the struct itself; what it points to follows it. */
 static void chain_forward_run(struct comm *c, const struct kernel_job *job, struct forward *f)
 {
     struct carve room = {.base = (char *)f, .used = head(sizeof *f)};
@@ -196,6 +236,7 @@ static void tree_forward_run(struct comm *c, const struct kernel_job *job, struc
     contraction_run(k);
 }
 
+/* One kernel for both: which algorithm runs depends on the model. */
 static void either_forward_run(struct comm *c, const void *job_, void *workspace)
 {
     const struct kernel_job *job = job_;
@@ -203,6 +244,8 @@ static void either_forward_run(struct comm *c, const void *job_, void *workspace
     else chain_forward_run(c, job, workspace);
 }
 
+/* The barrier separates the two measurements. Forward dynamics expects a workspace of zeros, as it
+ * would find it when run alone. */
 static void both_run(struct comm *c, const void *job, void *workspace)
 {
     inverse_run(c, job, workspace);
@@ -211,6 +254,7 @@ static void both_run(struct comm *c, const void *job, void *workspace)
     either_forward_run(c, job, workspace);
 }
 
+/* The three kernels of this precision and space: the same sources make six sets of them. */
 const struct kernel_type inverse_kernel = {
     .name = "inverse",
     .title = "inverse dynamics by recursive doubling (parallel Newton-Euler)",

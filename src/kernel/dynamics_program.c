@@ -8,15 +8,19 @@
 #include "kernel/references.h"
 #include "kernel/trust.h"
 
-/* --- open and prepare --------------------------------------------------------------------------------------------- */
+/* --- open and prepare ------------------------------------------------------------------------- */
 
-bool dynamics_open(struct program_run *r, const struct model *m, const struct state *s, struct err *e)
+/* Opening decides which kernel runs and what it leaves out; nothing is computed yet. `given` keeps
+ * the settings as they were, because attempts may add refinements. */
+bool dynamics_open(struct program_run *r, const struct model *m, const struct state *s,
+                   struct err *e)
 {
     struct dynamics_run *d = TAKE(r->arena, 1, struct dynamics_run);
     *d = (struct dynamics_run){.given = r->spec.kernel};
     d->kernel = omission_kernel(&r->spec, m, s, e);
     if (!d->kernel || !d->kernel->accepts(&r->spec, m, e)) return false;
-    d->job = (struct kernel_job){.spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = true};
+    d->job = (struct kernel_job){
+        .spec = &r->spec, .model = m, .state = s, .nrank = r->spec.nrank, .watch = true};
     d->job.omit = omission_job(&r->spec, m, s);
     r->own = d;
     r->rank = &d->kernel->rank;
@@ -29,6 +33,8 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
 
 static bool open(struct program_run *r, struct err *e)
 {
+    /* The scene belongs to the cache: runs of one campaign that differ in machine or network share
+     * it. */
     struct scene *scene = scene_take(r->cache, &r->spec, e);
     if (!scene || !dynamics_open(r, scene->model, scene->state, e)) return false;
     struct dynamics_run *d = dynamics_run_of(r);
@@ -42,6 +48,8 @@ static bool prepare(struct program_run *r, struct arena *a, struct err *e)
 {
     struct dynamics_run *d = dynamics_run_of(r);
     const struct model *m = d->job.model;
+    /* What this run will publish, with the room for it. An output that is not wanted costs
+     * nothing. */
     memset(r->output, 0, sizeof r->output);
     if (d->kernel->does_inverse) program_want(r, OUTPUT_TAU, m->nu, a);
     if (d->kernel->does_forward) program_want(r, OUTPUT_QDD, m->nu, a);
@@ -56,17 +64,19 @@ static bool prepare(struct program_run *r, struct arena *a, struct err *e)
         program_want(r, OUTPUT_CONDITION, r->spec.nrank, a);
     }
     program_want(r, OUTPUT_REFINED, 1, a);
+    /* Without loops there is no rank to report: -1 says so. */
     program_want(r, OUTPUT_LOOP_RANK, 1, a);
     *program_output(r, OUTPUT_LOOP_RANK) = -1;
     return d->kernel->prepare(&d->job, a, e);
 }
 
-/* --- attempts ----------------------------------------------------------------------------------------------------- */
+/* --- attempts --------------------------------------------------------------------------------- */
 
 static void judge(struct program_run *r, struct run_result *out) { trust_check(r, out); }
 
 /* The attempts are over: what was added to the given settings. */
-static void tell_added(const struct dynamics_run *d, const struct kernel_spec *now, struct run_result *out)
+static void tell_added(const struct dynamics_run *d, const struct kernel_spec *now,
+                       struct run_result *out)
 {
     out->inner_added = now->inner_refinements - d->given.inner_refinements;
     out->outer_added = now->outer_refinements - d->given.outer_refinements;
@@ -74,17 +84,20 @@ static void tell_added(const struct dynamics_run *d, const struct kernel_spec *n
     out->residual_before = d->residual_before;
 }
 
-/* More refinement until the residual is small enough. When the last attempt is no better than the first, the first is
- * what holds: it is made again. */
+/* More refinement until the residual is small enough. When the last attempt is no better than the
+ * first, the first is what holds: it is made again. */
 static bool again(struct program_run *r, struct run_result *out)
 {
     struct dynamics_run *d = dynamics_run_of(r);
     struct kernel_spec *now = &r->spec.kernel;
+    /* The first attempt's residual is what later ones must beat. */
     if (d->attempts++ == 0) d->residual_before = out->residual;
-    const bool solves = d->kernel->does_forward && (out->status == RUN_OK || out->status == RUN_INVALID);
+    const bool solves =
+        d->kernel->does_forward && (out->status == RUN_OK || out->status == RUN_INVALID);
     if (solves && !d->reverted && trust_refine(&r->spec, d->job.model, out)) return true;
     const bool added = now->inner_refinements > d->given.inner_refinements ||
                        now->outer_refinements > d->given.outer_refinements;
+    /* A residual that is no number is never better. */
     const bool worse = out->residual >= d->residual_before || isnan(out->residual);
     if (added && worse && !d->reverted) {
         *now = d->given;
@@ -95,7 +108,7 @@ static bool again(struct program_run *r, struct run_result *out)
     return false;
 }
 
-/* --- what the answer is worth ------------------------------------------------------------------------------------- */
+/* --- what the answer is worth ----------------------------------------------------------------- */
 
 static void check(struct program_run *r, struct arena *scratch, struct run_result *out)
 {
@@ -111,7 +124,7 @@ static void baselines(struct program_run *r, const struct work_price *price, str
     references_baselines(&d->job, d->kernel, d->scene, price, scratch, out);
 }
 
-/* --- before it runs ----------------------------------------------------------------------------------------------- */
+/* --- before it runs --------------------------------------------------------------------------- */
 
 static void estimate(const struct program_run *r, struct program_estimate *out)
 {
@@ -132,11 +145,12 @@ static int unused(const struct program_run *r, const char **out)
 }
 
 /* All three are the same but for their names and for the text that the ranks run (kernel.h). */
-#define DYNAMICS(word, text)                                                                                           \
-    {                                                                                                                  \
-        .name = word, .title = text, .has_scene = true, .cache_create = scene_cache_create,                            \
-        .cache_destroy = scene_cache_destroy, .open = open, .prepare = prepare, .judge = judge, .again = again,        \
-        .check = check, .baselines = baselines, .estimate = estimate, .leave_out = leave_out, .unused = unused,        \
+#define DYNAMICS(word, text)                                                                       \
+    {                                                                                              \
+        .name = word, .title = text, .has_scene = true, .cache_create = scene_cache_create,        \
+        .cache_destroy = scene_cache_destroy, .open = open, .prepare = prepare, .judge = judge,    \
+        .again = again, .check = check, .baselines = baselines, .estimate = estimate,              \
+        .leave_out = leave_out, .unused = unused,                                                  \
     }
 
 const struct program_type inverse_program =

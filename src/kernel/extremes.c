@@ -9,6 +9,7 @@
 
 enum { MOST = 4 };
 
+/* Not a number fails every comparison; it counts as infinite, so that no maximum loses it. */
 real largest_size(real so_far, int n, const real *x)
 {
     for (int i = 0; i < n; i++) {
@@ -20,7 +21,8 @@ real largest_size(real so_far, int n, const real *x)
 }
 
 /* Comparisons are not counted as work. */
-static void take_larger(void *into, const void *with, bool before, int64_t n, void *context, struct work *w)
+static void take_larger(void *into, const void *with, bool before, int64_t n, void *context,
+                        struct work *w)
 {
     real *x = into;
     const real *y = with;
@@ -31,7 +33,10 @@ static void take_larger(void *into, const void *with, bool before, int64_t n, vo
 
 void largest_everywhere(struct comm *c, int tag, int n, real *x)
 {
-    const struct collective_op larger = {.combine = take_larger, .commutative = true, .idempotent = true};
+    /* Dissemination: ceil(log2 P) rounds for any P, all ranks at once, and every rank gets the
+     * result. A value may arrive twice, which does not change a maximum. */
+    const struct collective_op larger = {
+        .combine = take_larger, .commutative = true, .idempotent = true};
     real in[MOST];
     CHECK(n <= MOST);
     struct collective_call k = {.kind = COLLECTIVE_ALLREDUCE, .comm = c, .tag = tag, .count = n};
@@ -47,14 +52,18 @@ bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residu
     real worst = largest_size(0, 1, &residual);
     r->before = 1;
     largest_everywhere(c, tag, 1, &worst);
+    /* 1e6 eps: six digits lost are normal for a long chain; less is not worth a refinement. */
     return worst > (real)1e6 * REAL_EPSILON;
 }
 
-bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction, const real *answer)
+bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction,
+                       const real *answer)
 {
     real size[2] = {largest_size(0, n, correction), largest_size(0, n, answer)};
     largest_everywhere(c, tag, 2, size);
+    /* Relative to the answer; an answer of zeros accepts no correction but a first one of zeros. */
     const real relative = size[1] > 0 ? size[0] / size[1] : size[0] > 0;
+    /* Not smaller than the one before, or not a number: refinement has stopped converging. */
     if (!(relative < r->before)) return false;
     r->before = relative;
     return true;

@@ -1,4 +1,5 @@
-/* forward_exact.c - the operator form of the constraints in twice the working precision (forward_exact.h). */
+/* forward_exact.c - the operator form of the constraints in twice the working precision
+ * (forward_exact.h). */
 #include "kernel/forward_exact.h"
 
 #include "kernel/extremes.h"
@@ -9,6 +10,7 @@ static void widen(const real *x, twice *y)
     for (int k = 0; k < SPACE; k++) y[k] = x[k];
 }
 
+/* Forces of the present solution become the leading digits; corrections are added to both forms. */
 void exact_begin(struct forward *f)
 {
     const struct chain *ch = &f->chain;
@@ -22,10 +24,14 @@ static void multiply(const real *M, bool transposed, const twice *x, twice *y)
 {
     twice sum[SPACE] = {0};
     for (int i = 0; i < SQUARE; i++) /* most of the factors are zeros */
-        if (M[i] != 0) sum[transposed ? i % SPACE : i / SPACE] += (twice)M[i] * x[transposed ? i / SPACE : i % SPACE];
+        if (M[i] != 0)
+            sum[transposed ? i % SPACE : i / SPACE] +=
+                (twice)M[i] * x[transposed ? i / SPACE : i % SPACE];
     for (int i = 0; i < SPACE; i++) y[i] = sum[i];
 }
 
+/* X is applied as the product of its shift and its rotation, whose entries are numbers of working
+ * precision: multiplied out, X itself would be rounded. */
 /* y = X f, or X^T v, by the factors of X, which are exact; y may be the argument. */
 static void transform(struct forward *f, int i, bool transposed, twice *y)
 {
@@ -36,7 +42,8 @@ static void transform(struct forward *f, int i, bool transposed, twice *y)
     f->chain.work.flop += TWICE_FLOP * (transposed ? XFORM_MOTION_FLOP : XFORM_FORCE_FLOP);
 }
 
-/* y = S^-1 x for the symmetric positive definite `about` of a body, by Cholesky's factors without roots. */
+/* y = S^-1 x for the symmetric positive definite `about` of a body, by Cholesky's factors without
+ * roots (L D L^T): roots in twice the digits would be expensive. */
 static void divide(const real *about, twice *y)
 {
     twice L[SQUARE], D[SPACE];
@@ -54,7 +61,8 @@ static void divide(const real *about, twice *y)
         for (int k = i + 1; k < SPACE; k++) y[i] -= L[SPACE * k + i] * y[k];
 }
 
-/* y = I^-1 y, I = shift about shift^T; shift is a unit matrix plus a block whose square is zero. */
+/* y = I^-1 y, I = shift about shift^T; shift is a unit matrix plus a block whose square is zero, so
+ * that its inverse is the same with the block's sign changed. */
 static void accelerate(struct forward *f, int i, twice *y)
 {
     real shift[SQUARE] = {0}, about[SQUARE] = {0};
@@ -67,7 +75,7 @@ static void accelerate(struct forward *f, int i, twice *y)
     f->chain.work.call++;
 }
 
-/* y: acceleration of body i by its forces. */
+/* y: acceleration of body i by its forces: Phi_i (F_i - X_{i+1} F_{i+1} + gain), physics 4.8. */
 static void body_acceleration(struct forward *f, int i, const real *gain, twice *y)
 {
     const struct chain *ch = &f->chain;
@@ -89,11 +97,14 @@ static void narrow(const twice *x, real *y)
     for (int k = 0; k < SPACE; k++) y[k] = (real)x[k];
 }
 
+/* physics (4.8) body by body: z = y_i - X_i^T y_{i-1} - b_i. Everything is held in twice the digits
+ * and rounded once at the end; the factored system then corrects what is left. */
 void exact_operator_form(struct forward *f, bool gain, bool bias, bool base)
 {
     struct chain *ch = &f->chain;
     twice before[SPACE], y[SPACE], moved[SPACE];
     real rounded[SPACE], residual = 0, scale = 0;
+    /* The body before the block is computed here again: its forces are known on both sides. */
     if (ch->lo > 0) body_acceleration(f, ch->lo - 1, gain ? f->gain_left : NULL, before);
     else widen(ch->shared->base, before);
     for (int i = ch->lo; i < ch->hi; i++) {
@@ -101,6 +112,7 @@ void exact_operator_form(struct forward *f, bool gain, bool bias, bool base)
         body_acceleration(f, i, gain ? chain_at(ch, f->gain, i) : NULL, y);
         narrow(y, rounded);
         scale = largest_size(scale, SPACE, rounded);
+        /* Without a base term nothing comes from below the first body. */
         for (int k = 0; k < SPACE; k++) moved[k] = i > 0 || base ? before[k] : 0;
         if (i > 0 || base) transform(f, i, true, moved);
         for (int k = 0; k < SPACE; k++) before[k] = y[k];

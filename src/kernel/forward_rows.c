@@ -6,6 +6,8 @@
 #include "kernel/assembly.h"
 #include "kernel/forward_exact.h"
 
+/* out = (rows of joint i)^T M (rows of joint j): W^T M W as in physics (4.2), or all six components
+ * where a spring is linearly implicit (physics 9.0). */
 void forward_project(struct forward *f, int i, const real *M, int j, real *out)
 {
     struct chain *ch = &f->chain;
@@ -15,12 +17,14 @@ void forward_project(struct forward *f, int i, const real *M, int j, real *out)
         assembly_project(ch, left, M, right, out);
         return;
     }
+    /* At least one side is full: take the whole matrix in joint axes and cut out the rows' part. */
     real turned[SQUARE];
     assembly_turn(ch, left, M, right, turned);
     for (int r = a; r < SPACE; r++)
         memcpy(out + (r - a) * n, turned + SPACE * r + SPACE - n, (size_t)n * sizeof(real));
 }
 
+/* F += W FS; a soft joint's unknowns hold the components along H as well. */
 void forward_add_reaction(struct forward *f, int i, const real *x, real *force)
 {
     const struct subspace *s = forward_subspace(f, i);
@@ -37,9 +41,11 @@ void forward_add_reaction(struct forward *f, int i, const real *x, real *force)
     subspace_w(s, x + (soft ? s->d : 0), more);
     screw_add(force, more);
     f->chain.work.flop += SCREW_ADD_FLOP;
+    /* Corrections go into the long form too, before they are rounded into the short one. */
     if (f->exact) exact_add(f, i, more);
 }
 
+/* What the joint's row is violated by: W^T z, and for a soft joint H^T z - s^-1 (tau_0 - H^T F). */
 void forward_violation(struct forward *f, int i, const real *z, real *out)
 {
     struct chain *ch = &f->chain;

@@ -12,6 +12,7 @@ struct micro_run {
     struct kernel_job job;
 };
 
+/* Micro-benchmarks have no model and no scene: opening them is a look at the settings. */
 bool micro_open(struct program_run *r, struct err *e)
 {
     struct micro_run *m = TAKE(r->arena, 1, struct micro_run);
@@ -36,6 +37,7 @@ void micro_check(struct program_run *r, struct arena *scratch, struct run_result
 {
     (void)scratch;
     const double *seconds = program_output(r, OUTPUT_SECONDS);
+    /* Ranks that take no part publish 0 and do not count. */
     out->measured_s = 0;
     for (int i = 0; i < r->spec.nrank; i++) out->measured_s = fmax(out->measured_s, seconds[i]);
 }

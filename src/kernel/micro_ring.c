@@ -14,10 +14,17 @@ struct ring {
     int nring;
 };
 
-static int64_t message_bytes(const void *job) { return ((const struct kernel_job *)job)->spec->kernel.message_bytes; }
+static int64_t message_bytes(const void *job)
+{
+    return ((const struct kernel_job *)job)->spec->kernel.message_bytes;
+}
 
-static int repetitions(const struct run_spec *spec) { return spec->kernel.repeat > 1 ? spec->kernel.repeat : 1; }
+static int repetitions(const struct run_spec *spec)
+{
+    return spec->kernel.repeat > 1 ? spec->kernel.repeat : 1;
+}
 
+/* Rings of `ring_ranks` or a little more: P / size of them, so that no rank is left over. */
 static int ring_count(const struct run_spec *spec)
 {
     const int size = spec->kernel.ring_ranks;
@@ -28,14 +35,19 @@ static bool accepts(const struct run_spec *spec, const struct model *model, stru
 {
     (void)model;
     if (spec->kernel.message_bytes < 0)
-        return err_set(e, ERR_CONFIG, "a message of %lld bytes", (long long)spec->kernel.message_bytes);
-    if (spec->nrank < 2) return err_set(e, ERR_CONFIG, "%d ranks: a ring needs at least two", spec->nrank);
-    return spec->kernel.ring_ranks != 1 || err_set(e, ERR_CONFIG, "kernel.ring_ranks is 1: a ring needs two ranks");
+        return err_set(e, ERR_CONFIG, "a message of %lld bytes",
+                       (long long)spec->kernel.message_bytes);
+    if (spec->nrank < 2)
+        return err_set(e, ERR_CONFIG, "%d ranks: a ring needs at least two", spec->nrank);
+    return spec->kernel.ring_ranks != 1 ||
+           err_set(e, ERR_CONFIG, "kernel.ring_ranks is 1: a ring needs two ranks");
 }
 
-/* Fisher and Yates, from the run's seed. */
+/* Fisher and Yates, from the run's seed: every order is equally likely, and the same seed gives the
+ * same order on every host. */
 static void shuffle(int *member, int n, uint64_t seed)
 {
+    /* 0x72696e67 ("ring") names the stream: another use of the same seed gets other numbers. */
     struct random r = random_make(seed, 0x72696e67, (uint64_t)n);
     for (int i = n - 1; i > 0; i--) {
         int k = (int)random_below(&r, (uint64_t)i + 1), kept = member[i];
@@ -51,6 +63,7 @@ static bool prepare_order(struct kernel_job *job, struct arena *a, bool random)
     g->member = TAKE(a, P, int);
     g->place = TAKE(a, P, int);
     g->nring = ring_count(job->spec);
+    /* A permutation and its inverse: who stands at a place, and where a rank stands. */
     for (int i = 0; i < P; i++) g->member[i] = i;
     if (random) shuffle(g->member, P, job->spec->seed);
     for (int i = 0; i < P; i++) g->place[g->member[i]] = i;
@@ -76,9 +89,12 @@ static size_t workspace_bytes(const void *job, int rank)
     return 3 * (size_t)message_bytes(job) + 16;
 }
 
-/* neighbour: `step` places further round the ring of rank `rank`; rings differ by one place at most. */
+/* neighbour: `step` places further round the ring of rank `rank`; rings differ by one place at
+ * most. */
 static int neighbour(const struct ring *g, int P, int rank, int step)
 {
+    /* Ring r covers the places floor(r P / R) .. floor((r+1) P / R) - 1 of R rings: sizes differ by
+     * at most one. 64 bits, since P times R may pass 2^31. */
     const int64_t place = g->place[rank], ring = ((place + 1) * g->nring - 1) / P;
     const int64_t first = ring * P / g->nring, n = (ring + 1) * P / g->nring - first;
     return g->member[first + (place - first + step + n) % n];
@@ -88,10 +104,12 @@ static void run(struct comm *c, const void *job_, void *workspace)
 {
     const struct kernel_job *job = job_;
     const int P = comm_size(c), rank = comm_rank(c), repeat = repetitions(job->spec);
-    const int left = neighbour(job->shared, P, rank, -1), right = neighbour(job->shared, P, rank, 1);
+    const int left = neighbour(job->shared, P, rank, -1),
+              right = neighbour(job->shared, P, rank, 1);
     const int64_t bytes = message_bytes(job), begin = comm_now_ps(c);
     char *out = workspace, *in = out + bytes;
     for (int k = 0; k < repeat; k++) {
+        /* Both receives before both sends: all four messages of a rank are under way at once. */
         struct comm_request r[4] = {{0}};
         comm_irecv(c, left, TAG_BENCH, in, bytes, &r[0]);
         comm_irecv(c, right, TAG_BENCH + 1, in + bytes, bytes, &r[1]);
@@ -103,8 +121,8 @@ static void run(struct comm *c, const void *job_, void *workspace)
     comm_publish(c, OUTPUT_SECONDS, rank, 1, &seconds);
 }
 
-static void estimate(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
-                     struct program_estimate *out)
+static void estimate(const struct run_spec *spec, const struct model *model,
+                     const struct job_omit *omit, struct program_estimate *out)
 {
     (void)model, (void)omit;
     *out = (struct program_estimate){.messages = 2.0 * spec->nrank * repetitions(spec)};
@@ -133,4 +151,5 @@ const struct kernel_type random_ring_kernel = {
 const struct program_type ring_program =
     MICRO_PROGRAM(ring, "ring", "every rank sends to both its neighbours in a ring");
 const struct program_type random_ring_program =
-    MICRO_PROGRAM(random_ring, "random-ring", "every rank sends to both its neighbours in a ring of random order");
+    MICRO_PROGRAM(random_ring, "random-ring",
+                  "every rank sends to both its neighbours in a ring of random order");

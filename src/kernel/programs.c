@@ -5,6 +5,7 @@
 
 #include "spec/program_list.h"
 
+/* The list is one for settings, documentation and this table (spec/program_list.h). */
 #define X(word, stem, traits) extern const struct program_type stem##_program;
 PROGRAM_LIST(X)
 #undef X

@@ -13,6 +13,8 @@
 
 enum { CRBA_MOST_DOFS = 512 };
 
+/* Largest difference over largest element (maximum norm), as in physics 8.2. Two vectors of zeros
+ * agree whatever they are divided by. */
 static double relative_error(const double *x, const double *reference, int n)
 {
     double largest = 0, difference = 0;
@@ -26,21 +28,27 @@ static double relative_error(const double *x, const double *reference, int n)
 
 static void check_inverse(const struct program_run *r, struct scene *scene, struct run_result *out)
 {
+    /* RNEA is the reference of inverse dynamics: shortest, and of the best accuracy (physics
+     * 2.1). */
     const struct kernel_job *job = &dynamics_run_of(r)->job;
-    const double error = relative_error(program_output(r, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu);
-    program_check_add(out, "tau", "rnea", error, references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
+    const double error =
+        relative_error(program_output(r, OUTPUT_TAU), scene_inverse(scene)->x, job->model->nu);
+    program_check_add(out, "tau", "rnea", error,
+                      references_tolerance_inverse(&job->spec->kernel, job->model->nbody));
 }
 
-/* A hundred times the error of the serial code of the same formulation: what rounding does to this very system. */
-static double rounding_of(const struct kernel_job *job, const double *reference, struct arena *scratch)
+/* A hundred times the error of the serial code of the same formulation: what rounding does to this
+ * very system. */
+static double rounding_of(const struct kernel_job *job, const double *reference,
+                          struct arena *scratch)
 {
     const bool paper = job->spec->kernel.formulation == FORMULATION_PAPER;
     double *qdd = TAKE(scratch, job->model->nu, double);
     struct work w = {0};
     const bool found =
         dynamics_type_of(job->spec->kernel.precision)
-            ->forward(job->model, job->state, paper ? FORWARD_CFA_PAPER : FORWARD_CFA_DIRECT, scratch, qdd, NULL, NULL,
-                      &w);
+            ->forward(job->model, job->state, paper ? FORWARD_CFA_PAPER : FORWARD_CFA_DIRECT,
+                      scratch, qdd, NULL, NULL, &w);
     const double error = found ? 100 * relative_error(qdd, reference, job->model->nu) : 0;
     return isfinite(error) ? fmin(error, 1e-2) : 0;
 }
@@ -49,21 +57,28 @@ static void check_forward(const struct program_run *r, struct scene *scene, stru
                           struct run_result *out)
 {
     const struct kernel_job *job = &dynamics_run_of(r)->job;
+    /* ABA is the reference of forward dynamics (physics 2.2): another formulation, so that a
+     * mistake in the constraint force algorithm cannot hide in both. */
     const struct serial_answer *aba = scene_forward(scene, FORWARD_ABA);
-    const double error = aba->found ? relative_error(program_output(r, OUTPUT_QDD), aba->x, job->model->nu) : NAN;
+    const double error =
+        aba->found ? relative_error(program_output(r, OUTPUT_QDD), aba->x, job->model->nu) : NAN;
     double tolerance = references_tolerance(&job->spec->kernel, job->model->nbody);
+    /* Only an error beyond the general tolerance makes it worth solving the system once more. */
     if (error > tolerance) tolerance = fmax(tolerance, rounding_of(job, aba->x, scratch));
     program_check_add(out, "qdd", "aba", error, tolerance);
 }
 
-/* The state at the end of the job's time steps by the serial integrator, begun at q + change. False: broke down. */
-static bool end_state(const struct kernel_job *job, double change, struct arena *scratch, struct state *end)
+/* The state at the end of the job's time steps by the serial integrator, begun at q + change.
+ * False: broke down. */
+static bool end_state(const struct kernel_job *job, double change, struct arena *scratch,
+                      struct state *end)
 {
     const struct kernel_spec *k = &job->spec->kernel;
     const struct model *m = job->model;
     *end = *job->state;
     end->q = TAKE(scratch, m->nq, double);
     end->qd = TAKE(scratch, m->nu, double);
+    /* All coordinates change by about the same relative and absolute amount. */
     for (int i = 0; i < m->nq; i++) end->q[i] = job->state->q[i] * (1 + change) + change;
     memcpy(end->qd, job->state->qd, (size_t)m->nu * sizeof(double));
     struct work w = {0};
@@ -78,10 +93,15 @@ static void check_steps(const struct program_run *r, struct arena *scratch, stru
     const int nq = job->model->nq, nu = job->model->nu;
     struct state end, other;
     const bool found = end_state(job, 0, scratch, &end) && end_state(job, change, scratch, &other);
+    /* Chaotic motion magnifies any difference. How much a change of 1e-8 grows on the way tells by
+     * how much two correct programs may differ at the end. */
     double growth = 1;
     if (found)
-        growth = fmax(growth, fmax(relative_error(other.q, end.q, nq), relative_error(other.qd, end.qd, nu)) / change);
-    const double tolerance = fmin(references_tolerance(&job->spec->kernel, job->model->nbody) * growth, 1e-2);
+        growth = fmax(
+            growth, fmax(relative_error(other.q, end.q, nq), relative_error(other.qd, end.qd, nu)) /
+                        change);
+    const double tolerance =
+        fmin(references_tolerance(&job->spec->kernel, job->model->nbody) * growth, 1e-2);
     const double *q = program_output(r, OUTPUT_Q_END), *qd = program_output(r, OUTPUT_QD_END);
     program_check_add(out, "q", "steps", found ? relative_error(q, end.q, nq) : NAN, tolerance);
     program_check_add(out, "qd", "steps", found ? relative_error(qd, end.qd, nu) : NAN, tolerance);
@@ -95,7 +115,9 @@ void references_loops(const struct program_run *r, struct arena *scratch, struct
     struct state end = *job->state;
     if (program_output(r, OUTPUT_Q_END)) end.q = program_output(r, OUTPUT_Q_END);
     if (program_output(r, OUTPUT_QD_END)) end.qd = program_output(r, OUTPUT_QD_END);
-    dynamics_type_of(PRECISION_DOUBLE)->drift(job->model, &end, scratch, &out->drift_position, &out->drift_velocity);
+    /* Violations are measured in double precision, whatever the run's. */
+    dynamics_type_of(PRECISION_DOUBLE)
+        ->drift(job->model, &end, scratch, &out->drift_position, &out->drift_velocity);
     out->loop_rows = job->model->nrow;
     out->loop_rank = (int)*program_output(r, OUTPUT_LOOP_RANK);
     arena_release(scratch, mark);
@@ -106,12 +128,15 @@ void references_check(const struct program_run *r, struct scene *scene, struct a
 {
     struct arena_mark mark = arena_mark(scratch);
     if (program_output(r, OUTPUT_TAU)) check_inverse(r, scene, out);
-    if (program_output(r, OUTPUT_QDD) && r->spec.kernel.steps == 0) check_forward(r, scene, scratch, out);
-    if (program_output(r, OUTPUT_QDD) && program_output(r, OUTPUT_Q_END)) check_steps(r, scratch, out);
+    if (program_output(r, OUTPUT_QDD) && r->spec.kernel.steps == 0)
+        check_forward(r, scene, scratch, out);
+    if (program_output(r, OUTPUT_QDD) && program_output(r, OUTPUT_Q_END))
+        check_steps(r, scratch, out);
     arena_release(scratch, mark);
 }
 
-/* How often a run computes the accelerations. */
+/* How often a run computes the accelerations (physics 9: four evaluations a step for Runge-Kutta,
+ * one for the others). */
 static uint64_t evaluations(const struct kernel_spec *k)
 {
     const uint64_t steps = (uint64_t)k->steps;
@@ -121,12 +146,14 @@ static uint64_t evaluations(const struct kernel_spec *k)
 
 static void repeat(struct work *w, uint64_t times)
 {
-    w->flop *= times, w->div *= times, w->sqrt *= times, w->trig *= times, w->bytes *= times, w->call *= times;
+    w->flop *= times, w->div *= times, w->sqrt *= times, w->trig *= times, w->bytes *= times,
+        w->call *= times;
 }
 
-/* What a method takes at least on a model, by formula: the factorisation of the mass matrix; of chains of constraint
- * forces with revolute joints, a row's elimination with one neighbour and what the accelerations take twice, in the
- * paper's form an inverse dynamics besides. Dense codes are tallied by formula alone. */
+/* What a method takes at least on a model, by formula: the factorisation of the mass matrix; of
+ * chains of constraint forces with revolute joints, a row's elimination with one neighbour and what
+ * the accelerations take twice, in the paper's form an inverse dynamics besides. Dense codes are
+ * tallied by formula alone. */
 static struct work least_work(const struct model *m, enum forward_method method, bool dense)
 {
     enum { ROW = 415, ACCELERATIONS = 240, BIAS = 330 };
@@ -135,30 +162,34 @@ static struct work least_work(const struct model *m, enum forward_method method,
     bool revolute = m->nloop == 0;
     for (int i = 0; i < m->nbody; i++) revolute = revolute && m->body[i].joint == JOINT_REVOLUTE;
     if (m->nloop == 0 && dense) dense_tally_forward(m, method, &w);
+    /* Cholesky of the mass matrix (physics 2.3) is the part that grows fastest. */
     else if (m->nloop == 0 && method == FORWARD_CRBA) w.flop = n * (n + 1) * (2 * n + 1) / 6;
     else if (revolute && method == FORWARD_CFA_PAPER) w.flop = (n - 1) * (ROW + BIAS);
     else if (revolute && method == FORWARD_CFA_DIRECT) w.flop = (n - 1) * (ROW + ACCELERATIONS);
     return w;
 }
 
-/* Whether `method` takes more than the articulated-body algorithm's work `aba`, known from that bound; false when it is
- * not known, or aba is NULL. */
-static bool never_fastest(const struct model *m, enum forward_method method, bool dense, const struct work_price *price,
-                          const struct work *aba)
+/* Whether `method` takes more than the articulated-body algorithm's work `aba`, known from that
+ * bound; false when it is not known, or aba is NULL. */
+static bool never_fastest(const struct model *m, enum forward_method method, bool dense,
+                          const struct work_price *price, const struct work *aba)
 {
     const struct work least = least_work(m, method, dense);
     return method != FORWARD_ABA && aba &&
            price->price_ps(price->context, &least) > price->price_ps(price->context, aba);
 }
 
-/* The serial codes of the same task in the same style: Newton-Euler, then each way to the accelerations. */
-static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel, const struct work_price *price,
-                       struct scene *scene, struct run_result *out)
+/* The serial codes of the same task in the same style: Newton-Euler, then each way to the
+ * accelerations. */
+static void add_serial(const struct kernel_job *job, const struct kernel_type *kernel,
+                       const struct work_price *price, struct scene *scene, struct run_result *out)
 {
-    static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER, FORWARD_CFA_DIRECT};
+    static const enum forward_method methods[] = {FORWARD_ABA, FORWARD_CRBA, FORWARD_CFA_PAPER,
+                                                  FORWARD_CFA_DIRECT};
     const bool dense = job->spec->kernel.operators == OPERATORS_DENSE;
     struct work inverse = {0};
     if (kernel->does_inverse) {
+        /* The serial inverse dynamics is part of the task, if the parallel run does it. */
         inverse = scene_inverse(scene)->work;
         if (dense) dense_tally_inverse(job->model, &inverse);
         program_baseline_add(out, price, "rnea", &inverse);
@@ -169,26 +200,29 @@ static void add_serial(const struct kernel_job *job, const struct kernel_type *k
     const struct work *aba = NULL;
     int first = kernel->does_forward ? out->nbaseline : 0;
     for (int i = 0; kernel->does_forward && i < 4; i++) {
+        /* Cubic work: never the fastest at this size, and very slow to find out. */
         if (methods[i] == FORWARD_CRBA && job->model->nu > CRBA_MOST_DOFS && !keep) continue;
         if (choose && never_fastest(job->model, methods[i], dense, price, aba)) continue;
         const struct serial_answer *serial = scene_forward(scene, methods[i]);
         struct work w = serial->work;
         if (!serial->found) continue;
         if (dense) dense_tally_forward(job->model, methods[i], &w);
+        /* ABA comes first: it is the bound for those that follow. */
         if (i == 0) aba_work = w, aba = &aba_work;
         repeat(&w, evaluations(&job->spec->kernel));
         work_add(&w, &inverse);
         char name[40];
-        snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "", forward_method_name(methods[i]));
+        snprintf(name, sizeof name, "%s%s", kernel->does_inverse ? "rnea+" : "",
+                 forward_method_name(methods[i]));
         program_baseline_add(out, price, name, &w);
     }
     program_fastest_add(out, first);
 }
 
-/* The same in three components, for programs that compute in these: nothing else would be a fair match. Dense operators
- * have no serial code of that kind. */
-static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel, const struct work_price *price,
-                       struct scene *scene, struct run_result *out)
+/* The same in three components, for programs that compute in these: nothing else would be a fair
+ * match. Dense operators have no serial code of that kind. */
+static void add_planar(const struct kernel_job *job, const struct kernel_type *kernel,
+                       const struct work_price *price, struct scene *scene, struct run_result *out)
 {
     struct work inverse = {0};
     if (job->spec->kernel.operators == OPERATORS_DENSE) return;
@@ -209,12 +243,15 @@ static void add_planar(const struct kernel_job *job, const struct kernel_type *k
 static void add_parallel_work(const struct work_price *price, struct run_result *out)
 {
     struct work all = {0};
-    for (int64_t k = 0; k < (int64_t)out->nrank * out->nstage; k++) work_add(&all, &out->stage[k].work);
+    /* The parallel program's own work on one processor: the denominator of relative speedup. */
+    for (int64_t k = 0; k < (int64_t)out->nrank * out->nstage; k++)
+        work_add(&all, &out->stage[k].work);
     program_baseline_add(out, price, "parallel code on one processor", &all);
 }
 
-void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel, struct scene *scene,
-                          const struct work_price *price, struct arena *scratch, struct run_result *out)
+void references_baselines(const struct kernel_job *job, const struct kernel_type *kernel,
+                          struct scene *scene, const struct work_price *price,
+                          struct arena *scratch, struct run_result *out)
 {
     struct arena_mark mark = arena_mark(scratch);
     add_parallel_work(price, out);

@@ -35,6 +35,7 @@ void transform_motion(bool dense, real *y, const real *T, const real *v, struct 
     w->call++;
 }
 
+/* A base that does not turn has only [0; a]: the rotation of one 3-vector. */
 void transform_base(bool dense, bool slides, real *y, const real *T, const real *v, struct work *w)
 {
     if (dense || !slides) {
@@ -78,6 +79,8 @@ static int levels(int before)
     return n;
 }
 
+/* Rank k of the incoming form holds levels with 2^j <= k, of the outgoing one levels with 2^j <= P
+ * - 1 - k: at most ceil(log2 P) transforms of 96 bytes (288 as matrices). */
 void scan_carve(struct scan *s, struct carve *c, bool dense, bool incoming, int rank, int nrank)
 {
     s->dense = dense;

@@ -9,7 +9,7 @@
 #include "dynamics/system.h"
 #include "kernel/omission.h"
 
-/* Bodies: what may stay in memory beside the scene in use. */
+/* What may stay in memory beside the scene in use: scenes, and bodies of all of them together. */
 enum { MOST_SCENES = 32, MOST_BODIES = 1 << 17 };
 
 struct program_cache {
@@ -33,6 +33,8 @@ void scene_cache_destroy(struct program_cache *cache)
     free(cache);
 }
 
+/* One arena per scene, so that giving it away is one call. What can be left out is decided here,
+ * once for all runs that share the scene. */
 static struct scene *scene_make(const struct run_spec *spec, struct err *e)
 {
     struct arena *a = arena_create();
@@ -51,11 +53,13 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
         s->state->at_rest = omission_job(spec, s->model, s->state).velocity;
         return s;
     }
+    /* The model was read when the scenario was planned; the file has gone since. */
     if (s->model) err_set(e, ERR_NO_INPUT, "%s can no longer be read", spec->model.path);
     arena_destroy(a);
     return NULL;
 }
 
+/* Least recently used, by the cache's own clock: no host time. */
 /* Give the least recently used scene away, until there is room for one of `nbody` bodies. */
 static void make_room(struct program_cache *cache, int nbody)
 {
@@ -67,11 +71,14 @@ static void make_room(struct program_cache *cache, int nbody)
             if (cache->scene[i]->used < cache->scene[oldest]->used) oldest = i;
         }
         if (cache->nscene == 0 || (cache->nscene < MOST_SCENES && bodies <= MOST_BODIES)) return;
+        /* The last one takes its place: order is kept by `used`, not by position. */
         scene_destroy(cache->scene[oldest]);
         cache->scene[oldest] = cache->scene[--cache->nscene];
     }
 }
 
+/* A scene depends on the model's description, on what is kept, on whether anything moves, and on
+ * how many fixed bodies were merged, which depends on P. Everything else of a spec may differ. */
 struct scene *scene_take(struct program_cache *cache, const struct run_spec *spec, struct err *e)
 {
     cache->clock++;
@@ -90,7 +97,8 @@ struct scene *scene_take(struct program_cache *cache, const struct run_spec *spe
     return cache->scene[cache->nscene++] = s;
 }
 
-/* Room for an answer, and an arena to compute it with; NULL when it has been asked for before. */
+/* Room for an answer, and an arena to compute it with; NULL when it has been asked for before: the
+ * answer, or the failure to get one, is then there already. */
 static struct arena *ask(struct scene *s, struct serial_answer *x)
 {
     if (x->asked) return NULL;
@@ -99,6 +107,8 @@ static struct arena *ask(struct scene *s, struct serial_answer *x)
     return arena_create();
 }
 
+/* Serial answers are computed when the first run asks for them, in an arena of their own that is
+ * freed at once; only the answer stays with the scene. */
 const struct serial_answer *scene_inverse(struct scene *s)
 {
     struct serial_answer *x = &s->inverse;
@@ -121,6 +131,7 @@ const struct serial_answer *scene_forward(struct scene *s, enum forward_method m
     return x;
 }
 
+/* The same for planar scenes; a run asks for one kind or the other. */
 const struct serial_answer *scene_planar_inverse(struct scene *s)
 {
     struct serial_answer *x = &s->planar_inverse;

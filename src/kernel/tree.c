@@ -5,9 +5,13 @@
 
 #include "kernel/tags.h"
 
-enum { VECTOR_BYTES = SPACE * (int)sizeof(real), PAIR_BYTES = (XFORM_NUMBERS + SPACE) * (int)sizeof(real) };
+/* A pair is a transform and a vector: 144 bytes in double precision, a vector 48. */
+enum {
+    VECTOR_BYTES = SPACE * (int)sizeof(real),
+    PAIR_BYTES = (XFORM_NUMBERS + SPACE) * (int)sizeof(real)
+};
 
-/* side_owners: of the 2 nloop loop sides. */
+/* side_owners: of the 2 nloop loop sides; -1: the base, which no rank owns. */
 static const int *side_owners(const struct model *m, const struct tree_plan *plan, struct arena *a)
 {
     int *owner = TAKE(a, size_sum(size_product(2, m->nloop), 1), int);
@@ -25,10 +29,12 @@ struct tree_shared *tree_shared_make(const struct kernel_job *job, struct arena 
     s->plan = tree_plan_make(m, job->nrank, a);
     s->body = bodies_make(m, a);
     base_motion(m, job->state, s->base);
-    s->closure = closure_shared_make(m, s->body, job->omit.base ? NULL : s->base, side_owners(m, s->plan, a), a);
+    s->closure = closure_shared_make(m, s->body, job->omit.base ? NULL : s->base,
+                                     side_owners(m, s->plan, a), a);
     return s;
 }
 
+/* One function carves and measures: while measuring, pointers are NULL and only sizes count. */
 void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, int rank)
 {
     const struct tree_shared *s = job->shared;
@@ -62,6 +68,7 @@ void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, i
     t->in = CARVE(c, XFORM_NUMBERS + SPACE, real);
 }
 
+/* Arrays over own joints are dense, whatever the bodies' numbers in the model. */
 void tree_load(struct tree *t)
 {
     const struct state *s = t->job->state;
@@ -72,9 +79,11 @@ void tree_load(struct tree *t)
     }
 }
 
-/* scans_velocity: whether the velocities are wanted, or what their scan builds on the way. */
+/* scans_velocity: whether the velocities are wanted, or what their scan builds on the way: loops
+ * need the poses of their bodies, which are the composites of this scan. */
 static bool scans_velocity(const struct tree *t) { return !t->job->omit.velocity || t->poses; }
 
+/* As chain_place: operations are counted per body and reported once. */
 void tree_place(struct tree *t)
 {
     const bool moves = scans_velocity(t);
@@ -102,7 +111,8 @@ static void add_motion(struct tree *t, real *v, const struct xform *x, const rea
     t->work.call++;
 }
 
-/* sweep_up: x_i = source_i + X_i^T x_parent over the piece; `entry` is the anchor's x, NULL: zero. x may be source. */
+/* sweep_up: x_i = source_i + X_i^T x_parent over the piece; `entry` is the anchor's x, NULL: zero.
+ * x may be source. Parents come before children. */
 static void sweep_up(struct tree *t, const real *source, const real *entry, real *x)
 {
     for (int l = 0; l < t->n; l++) {
@@ -113,7 +123,8 @@ static void sweep_up(struct tree *t, const real *source, const real *entry, real
     }
 }
 
-/* make_paths: transforms from own bodies to the piece's anchor. */
+/* make_paths: transforms from own bodies to the piece's anchor, by composition from parent to
+ * child: 63 flops a body (physics 6.4, step 1). */
 static void make_paths(struct tree *t)
 {
     for (int l = 0; l < t->n; l++) {
@@ -122,8 +133,8 @@ static void make_paths(struct tree *t)
             memcpy(t->path + XFORM_NUMBERS * l, &t->pose[l].x, XFORM_NUMBERS * sizeof(real));
             continue;
         }
-        xform_compose((struct xform *)(t->path + XFORM_NUMBERS * l), (struct xform *)(t->path + XFORM_NUMBERS * p),
-                      &t->pose[l].x);
+        xform_compose((struct xform *)(t->path + XFORM_NUMBERS * l),
+                      (struct xform *)(t->path + XFORM_NUMBERS * p), &t->pose[l].x);
         t->work.flop += XFORM_COMPOSE_FLOP;
         t->work.call++;
     }
@@ -132,7 +143,8 @@ static void make_paths(struct tree *t)
 /* grounded: the piece hangs at the base, so that nothing enters it. */
 static bool grounded(const struct tree *t, int piece) { return t->shared->plan->parent[piece] < 0; }
 
-/* hand_down: x (and, first, the path) of the anchor bodies to the pieces hanging there. */
+/* hand_down: x (and, first, the path) of the anchor bodies to the pieces hanging there (physics
+ * 6.4, step 2). 144 bytes at first, 48 later. */
 static void hand_down(struct tree *t, const real *x, bool first, int tag)
 {
     int nkid;
@@ -141,12 +153,14 @@ static void hand_down(struct tree *t, const real *x, bool first, int tag)
     for (int k = 0; k < nkid; k++) {
         const int l = t->shared->plan->local[t->shared->plan->anchor[kid[k]]];
         screw_copy(message, x + SPACE * l);
-        if (first) memcpy(message + SPACE, t->path + XFORM_NUMBERS * l, XFORM_NUMBERS * sizeof(real));
+        if (first)
+            memcpy(message + SPACE, t->path + XFORM_NUMBERS * l, XFORM_NUMBERS * sizeof(real));
         comm_send(t->comm, kid[k], tag, message, first ? PAIR_BYTES : VECTOR_BYTES);
     }
 }
 
-/* jump: one step of pointer jumping: E += T_j^T E of the 2^j-th ancestor; first: its composite joins ours. */
+/* jump: one step of pointer jumping (physics 6.4, step 3): E += T_j^T E of the 2^j-th ancestor;
+ * first: its composite joins ours. E is the motion of the own anchor body. */
 static void jump(struct tree *t, int j, real *E, bool first, int tag)
 {
     const struct tree_plan *plan = t->shared->plan;
@@ -156,14 +170,19 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
     /* what leaves: E, and while composing the transform that goes on from the anchor's ancestor */
     const bool onward = first && (a >= 0 || t->poses);
     screw_copy(message, E);
-    if (onward) memcpy(message + SPACE, a >= 0 ? T : (const real *)t->base_pose, XFORM_NUMBERS * sizeof(real));
+    if (onward)
+        memcpy(message + SPACE, a >= 0 ? T : (const real *)t->base_pose,
+               XFORM_NUMBERS * sizeof(real));
     for (int i = to->at[k]; i < to->at[k + 1]; i++)
         comm_send(t->comm, to->item[i], tag + j, message, onward ? PAIR_BYTES : VECTOR_BYTES);
+    /* An ancestor at the base has no anchor: nothing comes from it, and T_j already reaches the
+     * base. */
     if (a < 0 || grounded(t, a)) {
         if (first && a >= 0) memcpy(t->base_pose, T, XFORM_NUMBERS * sizeof(real));
         return;
     }
-    const bool further = tree_plan_ancestor(plan, j, a) >= 0, composes = first && (further || t->poses);
+    const bool further = tree_plan_ancestor(plan, j, a) >= 0,
+               composes = first && (further || t->poses);
     comm_recv(t->comm, a, tag + j, t->in, composes ? PAIR_BYTES : VECTOR_BYTES);
     add_motion(t, E, (struct xform *)T, t->in);
     if (composes) {
@@ -175,7 +194,8 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
     tree_report(t);
 }
 
-/* scan_up: x_i += X_i^T x_parent along the whole tree, in place. */
+/* scan_up: x_i += X_i^T x_parent along the whole tree, in place (physics 6.4): sweep from zero,
+ * hand the anchors' values down, jump ceil(log2 depth) times, sweep again with what enters. */
 static void scan_up(struct tree *t, real *x, int tag)
 {
     const bool first = !t->composed;
@@ -185,22 +205,27 @@ static void scan_up(struct tree *t, real *x, int tag)
     if (t->piece < 0) return;
     int nkid;
     tree_kids(t, &nkid);
+    /* The first sweep only serves the pieces that hang here. */
     if (nkid > 0) sweep_up(t, x, NULL, inside);
     if (first && (nkid > 0 || t->poses)) make_paths(t);
     tree_report(t);
     hand_down(t, inside, first, tag);
+    /* Only the first scan at these coordinates carries transforms. */
     if (!grounded(t, t->piece)) {
         comm_recv(t->comm, plan->parent[t->piece], tag, t->in, first ? PAIR_BYTES : VECTOR_BYTES);
         screw_copy(E, t->in);
         if (first) memcpy(t->level, t->in + SPACE, XFORM_NUMBERS * sizeof(real));
     } else if (first) {
+        /* A piece at the base is its own beginning: its composites end here. */
         xform_identity(t->base_pose);
     }
+    /* Now the piece's own motions, from the true motion of its anchor. */
     for (int j = 0; j < plan->nlevel; j++) jump(t, j, E, first, tag + 1);
     sweep_up(t, x, grounded(t, t->piece) ? NULL : E, x);
     tree_report(t);
 }
 
+/* As in chain_velocity: a scene at rest needs no scan, unless loops want its composites. */
 void tree_velocity(struct tree *t)
 {
     if (!scans_velocity(t)) return;
@@ -212,7 +237,8 @@ void tree_bias(struct tree *t)
 {
     for (int l = 0; l < t->n && !t->job->omit.velocity; l++) {
         const struct body *b = tree_body(t, l);
-        body_bias(b, &t->pose[l], tree_at(t->v, l), tree_at(t->h, l), t->u + t->u_at[l], tree_at(t->b, l));
+        body_bias(b, &t->pose[l], tree_at(t->v, l), tree_at(t->h, l), t->u + t->u_at[l],
+                  tree_at(t->b, l));
         t->work.flop += (uint64_t)body_cost(b)->bias;
         t->work.call++;
     }
@@ -226,18 +252,21 @@ void tree_acceleration(struct tree *t, const real *ud)
     for (int l = 0; l < t->n; l++) {
         const struct body *b = tree_body(t, l);
         if (ud) {
+            /* V'_base = [0; -g] enters at every body on the base (physics 1.6, 2.2). */
             subspace_h(&t->pose[l].s, ud + t->u_at[l], tree_at(t->a, l));
             t->work.flop += (uint64_t)body_cost(b)->h;
         }
         if (b->parent >= 0 || t->job->omit.base) continue;
         real moved[SPACE];
-        transform_base(false, t->job->omit.turn, moved, (const real *)&t->pose[l].x, t->shared->base, &t->work);
+        transform_base(false, t->job->omit.turn, moved, (const real *)&t->pose[l].x,
+                       t->shared->base, &t->work);
         screw_add(tree_at(t->a, l), moved);
         t->work.flop += SCREW_ADD_FLOP;
     }
     scan_up(t, t->a, TAG_ACCELERATION);
 }
 
+/* As chain_gyro: P - Fext (physics 1.10, 1.6). */
 void tree_gyro(struct tree *t, int l, real *f)
 {
     const struct body *b = tree_body(t, l);
@@ -256,10 +285,12 @@ void tree_gyro(struct tree *t, int l, real *f)
     t->work.flop += (uint64_t)body_load_flops(b) + SCREW_ADD_FLOP;
 }
 
-/* sweep_down: f_parent += X f inside the piece, in place; `out` (SPACE) gets what leaves at the anchor. */
+/* sweep_down: f_parent += X f inside the piece, in place; `out` (SPACE) gets what leaves at the
+ * anchor. Children come after their parents, hence the descending order. */
 static void sweep_down(struct tree *t, real *f, real *out)
 {
     screw_zero(out);
+    /* What passes through a joint on the base loads nobody: skipped. */
     for (int l = t->n - 1; l >= 0; l--) {
         const int p = tree_parent(t, l);
         real moved[SPACE];
@@ -271,15 +302,20 @@ static void sweep_down(struct tree *t, real *f, real *out)
     }
 }
 
-/* scan_down: what reaches each piece's anchor from the whole subtree above, then into the bodies. */
+/* scan_down: what reaches each piece's anchor from the whole subtree above, then into the bodies
+ * (physics 6.4, F phase). The same jumps, mirrored: what was sent to all descendants is received
+ * from them. Their number is large in bushy trees, and each one is charged. */
 static void scan_down(struct tree *t)
 {
     const struct tree_plan *plan = t->shared->plan;
     real *inside = t->a; /* the accelerations have been used */
     real g[SPACE], moved[SPACE];
     if (t->piece < 0) return;
+    /* On a copy: the sweep is made again once the forces of the pieces above are known. */
     memcpy(inside, t->f, (size_t)(SPACE * t->n) * sizeof(real));
     if (!grounded(t, t->piece)) sweep_down(t, inside, g);
+    /* Each piece sends its sum so far before it adds what arrives: after step j it stands for
+     * 2^(j+1) levels of pieces, each counted once. */
     for (int j = 0; j < plan->nlevel; j++) {
         const int a = tree_plan_ancestor(plan, j, t->piece);
         const struct tree_lists *from = &plan->descendants[j];
@@ -297,7 +333,9 @@ static void scan_down(struct tree *t)
         }
         tree_report(t);
     }
-    if (!grounded(t, t->piece)) comm_send(t->comm, plan->parent[t->piece], TAG_FORCE, g, VECTOR_BYTES);
+    if (!grounded(t, t->piece))
+        comm_send(t->comm, plan->parent[t->piece], TAG_FORCE, g, VECTOR_BYTES);
+    /* The complete sums, at the bodies where they act. */
     int nkid;
     const int *kid = tree_kids(t, &nkid);
     for (int k = 0; k < nkid; k++) {
@@ -308,6 +346,7 @@ static void scan_down(struct tree *t)
     sweep_down(t, t->f, g);
 }
 
+/* F_i = I_i V'_i + P_i - Fext_i + sum over children (physics 2.3, 2.4); tau = H^T F (2.5). */
 void tree_force(struct tree *t, real *tau, const real *more)
 {
     const bool terms = !t->job->omit.velocity || t->job->state->fext;
@@ -329,6 +368,7 @@ void tree_force(struct tree *t, real *tau, const real *more)
     tree_report(t);
 }
 
+/* Pose of a body in the base's frame: anchor to base, then body to anchor. */
 void tree_base_pose(struct tree *t, int l, struct xform *x)
 {
     xform_compose(x, t->base_pose, (struct xform *)(t->path + XFORM_NUMBERS * l));

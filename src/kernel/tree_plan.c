@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* The remaining children of each compound (named by its top body), as linked lists in ascending order. */
+/* The remaining children of each compound (named by its top body), as linked lists in ascending
+ * order. */
 struct forest {
     int n;
     int *first, *last, *next, *before, *count; /* children lists; -1: none */
@@ -11,11 +12,13 @@ struct forest {
     bool *alive;
 };
 
+/* Children in ascending order, as in the model: the plan must not depend on how lists are built. */
 static struct forest forest_make(const struct model *m, struct arena *a)
 {
     const int n = m->nbody;
     struct forest f = {.n = n};
-    f.first = TAKE(a, n, int), f.last = TAKE(a, n, int), f.next = TAKE(a, n, int), f.before = TAKE(a, n, int);
+    f.first = TAKE(a, n, int), f.last = TAKE(a, n, int), f.next = TAKE(a, n, int),
+    f.before = TAKE(a, n, int);
     f.count = TAKE(a, n, int), f.up = TAKE(a, n, int), f.alive = TAKE(a, n, bool);
     for (int i = 0; i < n; i++) f.first[i] = f.last[i] = f.next[i] = f.before[i] = -1;
     for (int i = 0; i < n; i++) {
@@ -31,7 +34,7 @@ static struct forest forest_make(const struct model *m, struct arena *a)
     return f;
 }
 
-/* detach: v, a leaf compound, leaves its parent. */
+/* detach: v, a leaf compound, leaves its parent. Lists are doubly linked for this: O(1). */
 static void detach(struct forest *f, int v)
 {
     const int u = f->up[v];
@@ -43,7 +46,8 @@ static void detach(struct forest *f, int v)
     f->alive[v] = false;
 }
 
-/* join: u takes over the children of its only child v. */
+/* join: u takes over the children of its only child v. O(children); all joins together O(n), since
+ * v has then vanished. */
 static void join(struct forest *f, int u, int v)
 {
     f->first[u] = f->first[v], f->last[u] = f->last[v], f->count[u] = f->count[v];
@@ -51,13 +55,18 @@ static void join(struct forest *f, int u, int v)
     f->alive[v] = false;
 }
 
-/* While pieces are cut: the group of each body that heads one (-1: none yet), weights not yet cut off. */
+/* While pieces are cut: the group of each body that heads one (-1: none yet), weights not yet cut
+ * off. */
 struct cutting {
     int limit, ngroup;
     int *group, *weight, *anchor;
 };
 
-/* cut_children: groups of siblings hanging at `anchor` whose weights reach the limit. Returns the weight left over. */
+/* cut_children: groups of siblings hanging at `anchor` whose weights reach the limit. Returns the
+ * weight left over, which joins the anchor's own piece.
+ *
+ * Siblings are cut in groups and not one by one, so that a star, too, falls into pieces of about
+ * the same size (physics 6.3). */
 static int cut_children(struct cutting *c, int anchor, const int *child, int n)
 {
     int sum = 0, begin = 0;
@@ -74,7 +83,10 @@ static int cut_children(struct cutting *c, int anchor, const int *child, int n)
     return sum;
 }
 
-/* cut_pieces: owner of each body and anchor of each piece; pieces are numbered from the base on. */
+/* cut_pieces: owner of each body and anchor of each piece; pieces are numbered from the base on.
+ *
+ * From the leaves inwards; as soon as a group weighs ceil(n / P) it is cut off. A member weighs at
+ * most that much, hence fewer than 2 ceil(n / P) bodies in a piece, and at most P pieces. */
 static void cut_pieces(struct tree_plan *p, const struct model *m, struct arena *a)
 {
     const int n = m->nbody;
@@ -85,8 +97,11 @@ static void cut_pieces(struct tree_plan *p, const struct model *m, struct arena 
         c.group[i] = -1;
         if (m->body[i].parent < 0) root[nroot++] = i;
     }
+    /* Children have larger indices than their parents: descending order meets them first. */
     for (int i = n - 1; i >= 0; i--)
-        c.weight[i] = 1 + cut_children(&c, i, m->child + m->child_at[i], m->child_at[i + 1] - m->child_at[i]);
+        c.weight[i] =
+            1 + cut_children(&c, i, m->child + m->child_at[i], m->child_at[i + 1] - m->child_at[i]);
+    /* What is left over at the base, lighter than the limit, becomes the last piece. */
     if (cut_children(&c, -1, root, nroot) > 0) {
         for (int k = 0; k < nroot; k++)
             if (c.group[root[k]] < 0) c.group[root[k]] = c.ngroup;
@@ -94,12 +109,14 @@ static void cut_pieces(struct tree_plan *p, const struct model *m, struct arena 
     }
     p->npiece = c.ngroup;
     p->anchor = TAKE(a, p->npiece, int);
+    /* Cut last, numbered first: a piece comes after the piece that it hangs at. */
     for (int k = 0; k < p->npiece; k++) p->anchor[p->npiece - 1 - k] = c.anchor[k];
     for (int i = 0; i < n; i++)
         p->owner[i] = c.group[i] >= 0 ? p->npiece - 1 - c.group[i] : p->owner[m->body[i].parent];
 }
 
-/* lists_make: k -> all i with key[i] = k, ascending; keys outside 0 .. nkey-1 are left out. */
+/* lists_make: k -> all i with key[i] = k, ascending; keys outside 0 .. nkey-1 are left out.
+ * Counting sort: sizes, running sums, fill. */
 static struct tree_lists lists_make(int nkey, int n, const int *key, struct arena *a)
 {
     struct tree_lists l = {.at = TAKE(a, nkey + 1, int)};
@@ -113,7 +130,8 @@ static struct tree_lists lists_make(int nkey, int n, const int *key, struct aren
     return l;
 }
 
-/* jump: tables of the 2^j-th ancestor pieces. */
+/* jump: tables of the 2^j-th ancestor pieces: anc_{j+1} = anc_j o anc_j (physics 6.4). At most 31
+ * levels, since pieces are counted in an int. */
 static void jump(struct tree_plan *p, struct arena *a)
 {
     const int n = p->npiece;
@@ -127,24 +145,34 @@ static void jump(struct tree_plan *p, struct arena *a)
         for (int k = 0; k < n; k++) any = any || now[k] >= 0;
         if (!any) return;
         memcpy(level, now, (size_t)n * sizeof *now);
+        /* A piece at the base has nothing to hand on: the motion of the base is known to all. */
         for (int k = 0; k < n; k++) key[k] = now[k] >= 0 && p->parent[now[k]] >= 0 ? now[k] : -1;
         p->descendants[p->nlevel] = lists_make(n, n, key, a);
         for (int k = 0; k < n; k++) now[k] = level[k] >= 0 ? level[level[k]] : -1;
     }
 }
 
-static struct tree_op *append(struct tree_plan *p, enum tree_kind kind, int round, int into, int from)
+static struct tree_op *append(struct tree_plan *p, enum tree_kind kind, int round, int into,
+                              int from)
 {
     struct tree_op *op = &p->op[p->nop++];
     const int first = p->nop > 1 ? op[-1].first + op[-1].count : 0;
-    *op = (struct tree_op){
-        .kind = kind, .round = round, .into = into, .first = first, .from = from, .to = p->owner[into]};
+    *op = (struct tree_op){.kind = kind,
+                           .round = round,
+                           .into = into,
+                           .first = first,
+                           .from = from,
+                           .to = p->owner[into]};
     return op;
 }
 
-static void absorb(struct tree_plan *p, struct tree_op *op, int v) { p->absorbed[op->first + op->count++] = v; }
+static void absorb(struct tree_plan *p, struct tree_op *op, int v)
+{
+    p->absorbed[op->first + op->count++] = v;
+}
 
-/* exhaust_pieces: round 0: everything that needs no message. */
+/* exhaust_pieces: round 0: everything that needs no message. Leaves from the tips inwards, then
+ * pairs from the base outwards; both orders are part of the result, down to its bits. */
 static void exhaust_pieces(struct tree_plan *p, const struct model *m, struct forest *f)
 {
     for (int v = p->nbody - 1; v >= 0; v--) {
@@ -161,8 +189,11 @@ static void exhaust_pieces(struct tree_plan *p, const struct model *m, struct fo
         }
 }
 
-/* rake_round: all leaves at the beginning of the round; those of one owner with the same parent together. */
-static void rake_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive, bool *leaf)
+/* rake_round: all leaves at the beginning of the round; those of one owner with the same parent
+ * together, in one message. Leaves that arise on the way wait: their parents may lie on other
+ * ranks. */
+static void rake_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive,
+                       bool *leaf)
 {
     for (int k = 0; k < nalive; k++)
         leaf[alive[k]] = f->alive[alive[k]] && f->count[alive[k]] == 0 && f->up[alive[k]] >= 0;
@@ -179,8 +210,11 @@ static void rake_round(struct tree_plan *p, struct forest *f, const int *alive, 
     }
 }
 
-/* merge_round: compounds with their only child, from the base on, each in one pair at most. */
-static void merge_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive, int *used)
+/* merge_round: compounds with their only child, from the base on, each in one pair at most: pairs
+ * of a round are independent and run at the same time. Greedy from the top, every chain of k
+ * compounds gives floor(k / 2) pairs. */
+static void merge_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive,
+                        int *used)
 {
     for (int k = 0; k < nalive; k++) {
         const int u = alive[k];
@@ -193,7 +227,8 @@ static void merge_round(struct tree_plan *p, struct forest *f, const int *alive,
     }
 }
 
-/* contract: rounds until only the compounds on the base are left. */
+/* contract: rounds until only the compounds on the base are left. Every round shrinks leaves and
+ * chains by a fixed share, hence O(log n) rounds (Miller and Reif 1985). */
 static void contract(struct tree_plan *p, const struct model *m, struct arena *a)
 {
     struct forest f = forest_make(m, a);
@@ -203,6 +238,7 @@ static void contract(struct tree_plan *p, const struct model *m, struct arena *a
     p->absorbed = TAKE(a, p->nbody, int);
     exhaust_pieces(p, m, &f);
     for (int i = 0; i < p->nbody; i++) alive[nalive++] = i;
+    /* The list of living compounds is compacted, so that all rounds together cost O(n). */
     for (;;) {
         int n = 0;
         bool inner = false;
@@ -219,7 +255,8 @@ static void contract(struct tree_plan *p, const struct model *m, struct arena *a
     p->root = alive;
 }
 
-/* assign: the operations of each rank. */
+/* assign: the operations of each rank, in the order of all: an operation between two ranks stands
+ * in both lists. Counting sort in two passes, as in lists_make. */
 static void assign(struct tree_plan *p, struct arena *a)
 {
     struct tree_lists *l = &p->ops;
@@ -249,9 +286,11 @@ struct tree_plan *tree_plan_make(const struct model *m, int nrank, struct arena 
     cut_pieces(p, m, a);
     p->bodies = lists_make(nrank, m->nbody, p->owner, a);
     for (int k = 0; k < nrank; k++)
-        for (int l = p->bodies.at[k]; l < p->bodies.at[k + 1]; l++) p->local[p->bodies.item[l]] = l - p->bodies.at[k];
+        for (int l = p->bodies.at[k]; l < p->bodies.at[k + 1]; l++)
+            p->local[p->bodies.item[l]] = l - p->bodies.at[k];
     p->parent = TAKE(a, p->npiece, int);
-    for (int k = 0; k < p->npiece; k++) p->parent[k] = p->anchor[k] >= 0 ? p->owner[p->anchor[k]] : -1;
+    for (int k = 0; k < p->npiece; k++)
+        p->parent[k] = p->anchor[k] >= 0 ? p->owner[p->anchor[k]] : -1;
     p->kids = lists_make(p->npiece, p->npiece, p->parent, a);
     jump(p, a);
     contract(p, m, a);

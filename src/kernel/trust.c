@@ -21,11 +21,14 @@ static double worst(const double *x, int n)
 
 double trust_residual(const struct program_run *r)
 {
-    const double *x = program_output(r, OUTPUT_RESIDUAL), *of = program_output(r, OUTPUT_RESIDUAL_SCALE);
+    const double *x = program_output(r, OUTPUT_RESIDUAL),
+                 *of = program_output(r, OUTPUT_RESIDUAL_SCALE);
     double residual = 0, scale = 0;
     if (!of) return worst(x, r->spec.nrank);
     for (int i = 0; i < r->spec.nrank; i++) {
         if (isnan(x[i])) return x[i];
+        /* A rank's residual is relative to its own scale; times that scale it is absolute and can
+         * be compared. */
         residual = fmax(residual, x[i] * of[i]);
         scale = fmax(scale, of[i]);
     }
@@ -37,36 +40,42 @@ double trust_condition(const struct program_run *r)
     return worst(program_output(r, OUTPUT_CONDITION), r->spec.nrank);
 }
 
-/* What to do about it: the direct form refines its solution, the paper's form can be replaced by it. What the run has
- * tried by itself is not named again. */
+/* What to do about it: the direct form refines its solution, the paper's form can be replaced by
+ * it. What the run has tried by itself is not named again. */
 static const char *remedy(const struct kernel_job *job)
 {
     const struct kernel_spec *k = &job->spec->kernel;
     const bool tree = kernel_branches(job->spec, job->model);
     const bool refines = k->refinement == REFINEMENT_AS_GIVEN && (tree || k->solver != SOLVER_PCR);
-    const bool unstable = k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
+    const bool unstable =
+        k->solver == SOLVER_PCR || k->solver == SOLVER_PCR_SYMMETRIC || k->solver == SOLVER_CR_PCR;
     if (k->formulation == FORMULATION_PAPER) return "kernel.formulation: direct";
     if (refines && k->inner_refinements == 0 && !(tree && kernel_spec_implicit(k)))
         return "kernel.inner_refinements: 1";
     if (refines && k->outer_refinements == 0) return "kernel.outer_refinements: 1";
     if (unstable && !tree) return "kernel.solver: cr";
-    if (k->residual == RESIDUAL_TWICE) return "more kernel.inner_refinements, or a higher kernel.precision";
-    return refines && !tree ? "kernel.residual: twice, or a higher kernel.precision" : "a higher kernel.precision";
+    if (k->residual == RESIDUAL_TWICE)
+        return "more kernel.inner_refinements, or a higher kernel.precision";
+    return refines && !tree ? "kernel.residual: twice, or a higher kernel.precision"
+                            : "a higher kernel.precision";
 }
 
-/* How much the residual of a formulation overstates its error: the paper's is that of accelerations which the joints
- * take up again. */
-static double overstated(const struct kernel_spec *k) { return k->formulation == FORMULATION_PAPER ? 30 : 1; }
+/* How much the residual of a formulation overstates its error: the paper's is that of accelerations
+ * which the joints take up again. */
+static double overstated(const struct kernel_spec *k)
+{
+    return k->formulation == FORMULATION_PAPER ? 30 : 1;
+}
 
-/* The largest residual that an answer of `n` bodies may have without refinement: what a correct program may be wrong
- * by. */
+/* The largest residual that an answer of `n` bodies may have without refinement: what a correct
+ * program may be wrong by. */
 static double may_be(const struct kernel_spec *k, int n)
 {
     return fmin(overstated(k) * references_tolerance(k, n), 1e-3);
 }
 
-/* The next thing to try, where the program has inner refinements and residuals in twice the digits; false: nothing is
- * left. */
+/* The next thing to try, where the program has inner refinements and residuals in twice the digits;
+ * false: nothing is left. */
 static bool refine_more(struct kernel_spec *k, bool inner, bool twice)
 {
     enum { MOST_OUTER = 4, FEW_INNER = 4, MOST_INNER = 20 };
@@ -94,7 +103,8 @@ bool trust_refine(struct run_spec *spec, const struct model *m, const struct run
     const bool keeps_factors = k->solver != SOLVER_PCR || kernel_branches(spec, m);
     if (k->refinement != REFINEMENT_AS_NEEDED || enough || !keeps_factors) return false;
     const bool chain = !kernel_branches(spec, m);
-    return refine_more(k, chain || !kernel_spec_implicit(k), chain && k->formulation == FORMULATION_DIRECT);
+    return refine_more(k, chain || !kernel_spec_implicit(k),
+                       chain && k->formulation == FORMULATION_DIRECT);
 }
 
 void trust_check(const struct program_run *r, struct run_result *out)
@@ -103,16 +113,22 @@ void trust_check(const struct program_run *r, struct run_result *out)
     if (!program_output(r, OUTPUT_QDD) || !program_output(r, OUTPUT_RESIDUAL)) return;
     const struct kernel_spec *k = &r->spec.kernel;
     bool single = k->precision == PRECISION_FLOAT;
-    double poor = overstated(k) * (single ? 0.1 : 1e-4), epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
+    /* poor: about four digits left, one in single precision. resolved: from 0.1/eps on, the last
+     * pivots have hardly a correct digit. */
+    double poor = overstated(k) * (single ? 0.1 : 1e-4),
+           epsilon = k->precision == PRECISION_QUAD ? 0x1p-112 : 0x1p-52;
     double resolved = 0.1 / (single ? 0x1p-23 : epsilon);
-    if (k->residual == RESIDUAL_TWICE) resolved = INFINITY; /* what the factors lack, the residual would show */
+    /* what the factors lack, the residual would show */
+    if (k->residual == RESIDUAL_TWICE) resolved = INFINITY;
     out->residual = trust_residual(r);
     out->condition = trust_condition(r);
-    if (out->residual <= poor && out->condition <= resolved) return; /* a NaN is not to be trusted */
+    /* a NaN is not to be trusted */
+    if (out->residual <= poor && out->condition <= resolved) return;
     out->status = RUN_INVALID;
     char residual[32] = "no number"; /* whose sign would differ from host to host */
     if (!isnan(out->residual)) snprintf(residual, sizeof residual, "%.2g", out->residual);
     snprintf(out->text, sizeof out->text,
-             "the answer is not to be trusted: the constraints' residual is %s, the condition at least %.2g; try %s",
+             "the answer is not to be trusted: the constraints' residual is %s, the condition at "
+             "least %.2g; try %s",
              residual, out->condition, remedy(&dynamics_run_of(r)->job));
 }
