@@ -101,6 +101,7 @@ static void turn_part(struct chain *ch, const struct subspace *a, int a0, const 
 }
 
 /* Axes that pick components cost nothing; a general Q costs its products (physics 4.2). */
+/* W_a^T M W_b, the blocks of A (physics 4.2). */
 void assembly_project(struct chain *ch, const struct subspace *a, const real *M,
                       const struct subspace *b, real *out)
 {
@@ -134,6 +135,7 @@ void assembly_turn_vector(struct chain *ch, const struct subspace *s, const real
     if (!s->pick) ch->work.flop += SQUARE_VEC_FLOP;
 }
 
+/* Rows of the lower triangle one behind the other (linalg/dense.h). */
 void assembly_pack(int c, const real *M, int stride, real *packed)
 {
     for (int i = 0; i < c; i++)

@@ -173,6 +173,7 @@ void blocks_solve(struct blocks *b, struct work *w)
         blocks_rows_solve(b, false, w);
         return;
     }
+    /* Down to one row per rank, the rank's last. */
     if (rows > 1) {
         eliminate_inside(b, b->message + c * cs, w);
         /* The last row, changed by the elimination, is the rank's row of the interface system. */
@@ -181,6 +182,7 @@ void blocks_solve(struct blocks *b, struct work *w)
         memcpy(reduction_left(&b->reduction), blocks_row_L(b, last),
                (size_t)(c * cs) * sizeof(real));
     }
+    /* What has been computed is charged before the rank waits for others. */
     work_report(b->comm, w);
     couple(b, w);
     reduction_run(&b->reduction, TAG_REDUCE, w);
@@ -205,6 +207,7 @@ void blocks_resolve(struct blocks *b, struct work *w)
         blocks_rows_solve(b, true, w);
         return;
     }
+    /* The sum for the previous interface row, vectors only. */
     for (int i = 0; i < cs * m; i++) b->message[i] = 0;
     for (int i = b->lo; i < last; i++) {
         const int cn = b->size[i + 1];
@@ -214,6 +217,7 @@ void blocks_resolve(struct blocks *b, struct work *w)
         dense_subtract(cn * m, blocks_row_r(b, i + 1), red->out_b, w);
         add(cs * m, b->message, red->out_a, w);
     }
+    /* Inside eliminated: the last row's right-hand side is that of the interface row. */
     if (rows > 1) memcpy(red->r, blocks_row_r(b, last), (size_t)(c * m) * sizeof(real));
     work_report(comm, w);
     if (k > 0 && rows > 1)

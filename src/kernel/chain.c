@@ -205,6 +205,7 @@ static void scan_up(struct chain *ch, real *x, int tag)
     const bool first = !ch->composed;
     struct comm *c = ch->comm;
     const int k = comm_rank(c), P = comm_size(c), m = ch->hi - ch->lo;
+    /* Bodies of the right neighbour: with one it takes its value from the scan itself. */
     const int next = k + 1 < P ? ch->shared->layout.first[k + 2] - ch->hi : 0;
     const int shift = TAG_SHIFT + tag / TAG_STEP;
     real end[SPACE], before[SPACE];
@@ -382,6 +383,7 @@ static void load(struct chain *ch, int i)
 
 void chain_force(struct chain *ch, real *tau)
 {
+    /* Loads first, then one recurrence downwards (physics 2.3, 2.4). */
     for (int i = ch->lo; i < ch->hi; i++) load(ch, i);
     /* One body per rank: the scan is the whole sweep and needs no shift (physics 3.1). */
     if (ch->n == comm_size(ch->comm)) {

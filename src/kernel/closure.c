@@ -79,6 +79,7 @@ void closure_meet(struct closure *cl, struct work *w)
             memcpy(cl->side_velocity + SPACE * side, message + XFORM_NUMBERS, SPACE * sizeof(real));
         }
     }
+    /* Both sides are known: the loop's frames, W, gamma and stabilisation (physics 7.2, 7.3). */
     for (int l = 0; l < s->nloop; l++) {
         if (s->owner[2 * l] != k && s->owner[2 * l + 1] != k) continue;
         loop_place(&s->loop[l], &cl->side_pose[2 * l], &cl->side_pose[2 * l + 1],

@@ -5,6 +5,7 @@
 
 #include "linalg/dense.h"
 
+/* Packed to full: products read rows and columns. */
 static void unpack(const real *S, real *full)
 {
     for (int i = 0; i < SPACE; i++)
@@ -68,6 +69,8 @@ bool joint_compliance(const struct joint_view *v, const real *Z, real *N, struct
     subspace_project(s, true, full, s, true, projected);
     for (int i = 0; i < c; i++)
         for (int j = 0; j <= i; j++) G[packed_index(i, j)] = projected[i * c + j];
+    /* Not positive definite: the joint's bodies have no inertia along W, or rounding has used it up
+     * (physics 8.5). */
     if (!dense_factor(c, G, G, w)) return false;
     memset(projected, 0, sizeof projected); /* the inverse */
     for (int i = 0; i < c; i++) projected[i * c + i] = 1;

@@ -46,6 +46,7 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
     k->ud = CARVE(c, room * nu, real);
     k->load = CARVE(c, SPACE * room * n, real);
     k->compound = CARVE(c, compound_size(room) * n, real);
+    /* Forces at the top and at the bottom of each compound, in every column. */
     k->f1 = CARVE(c, SPACE * room * n, real);
     k->f2 = CARVE(c, SPACE * room * n, real);
     k->acceleration = CARVE(c, SPACE * room * n, real);
@@ -59,6 +60,7 @@ void contraction_carve(struct contraction *k, struct carve *c, const struct kern
      * undoing too. */
     k->message = CARVE(c, compound_size(room) + 7 + SPACE + SPACE + 2 * SPACE * room, real);
     k->anchor_acceleration = CARVE(c, SPACE * room, real);
+    /* Loop sides that this rank owns have columns of their own for the exchange. */
     const int sides = s->closure ? 2 * s->closure->nloop : 0;
     k->side = CARVE(c, sides, real *);
     k->side_room = CARVE(c, k->closure.takes_part ? SPACE * room * sides : 0, real);
@@ -164,6 +166,7 @@ static void joint_accelerations(struct contraction *k, int m, const real *bias, 
 {
     struct tree *t = &k->tree;
     real residual = 0, scale = 0;
+    /* The parent of a piece's top body lives on another rank. */
     share_anchors(k, m);
     for (int l = 0; l < t->n; l++) {
         const int p = tree_parent(t, l), d = tree_body(t, l)->d;
@@ -366,6 +369,7 @@ static void evaluate(struct contraction *k)
     comm_stage(t->comm, STAGE_ASSEMBLY);
     meet_loops(k);
     tree_bias(t);
+    /* Nothing solved yet: the answer and what it does not contain are zero. */
     memcpy(k->active, k->tau, (size_t)t->nu * sizeof(real));
     memset(k->answer, 0, (size_t)t->nu * sizeof(real));
     memset(k->offset, 0, (size_t)(SPACE * t->n) * sizeof(real));
@@ -417,6 +421,7 @@ static void evaluate_once(void *program)
     k->published = true;
 }
 
+/* Coordinates and rates belong to the tree, answers to the contraction; motion.h moves them. */
 void contraction_run(struct contraction *k)
 {
     struct tree *t = &k->tree;

@@ -154,6 +154,7 @@ static void solve_roots(struct contraction *k)
         real N[PACKED], bias[SPACE] = {0}, moved[SPACE];
         /* The view with one more bias; the joint itself stays as it is. */
         struct joint_view seen = joint;
+        /* f = H tau - N (P11 H tau + beta_1 - X^T V'_base - b), physics 6.2: root compounds. */
         if (joint.bias) screw_copy(bias, joint.bias);
         if (k->given.base) { /* the base's acceleration acts like a bias */
             xform_motion(moved, joint.x, k->given.base);
@@ -204,6 +205,7 @@ static void unrake(struct contraction *k, const struct tree_op *op, const real *
         const real *N = k->joint + (PACKED + SPACE * k->room) * l, *h = N + PACKED;
         for (int j = 0; j < m; j++) {
             real *f1 = columns(k->f1, k->room, l) + SPACE * j;
+            /* The parent's acceleration in the leaf's frame; N turns it into a force. */
             xform_motion(part, &t->pose[l].x, a2 + SPACE * j);
             packed_multiply(N, part, f1, &t->work);
             screw_add(f1, h + SPACE * j);
@@ -222,6 +224,7 @@ static void unmerge(struct contraction *k, const struct tree_op *op, const real 
     const int me = comm_rank(t->comm), m = k->m, v = plan_of(k)->absorbed[op->first];
     real *pair = k->message;
     if (op->to == me) {
+        /* In the order in which compound_merge left them. */
         const real *h = record, *M1 = record + SPACE * m, *M3 = M1 + SQUARE;
         const struct xform *x = (const struct xform *)(M3 + SQUARE);
         for (int j = 0; j < m; j++) {
@@ -231,6 +234,7 @@ static void unmerge(struct contraction *k, const struct tree_op *op, const real 
             for (int i = 0; i < SPACE; i++)
                 fv[i] = h[SPACE * j + i] + screw_dot(M1 + SPACE * i, f1) -
                         screw_dot(M3 + SPACE * i, f2);
+            /* v's bottom is the common bottom: f_2 goes there unchanged. */
             screw_copy(fv + SPACE, f2);
             xform_force(f2, x, fv);
             for (int i = 0; i < SPACE; i++) f2[i] = -f2[i];

@@ -44,6 +44,7 @@ static bool accepts_inverse(const struct run_spec *spec, const struct model *mod
     if (spec->nrank > model->nbody)
         return err_set(e, ERR_CONFIG, "%d ranks for %d bodies: each rank needs at least one body",
                        spec->nrank, model->nbody);
+    /* Compounds have structured operators only. */
     if (kernel_branches(spec, model) && spec->kernel.operators == OPERATORS_DENSE)
         return err_set(e, ERR_CONFIG, "dense operators exist for open chains only");
     return true;
@@ -82,6 +83,8 @@ static bool accepts_forward(const struct run_spec *spec, const struct model *mod
         k->inner_refinements + k->outer_refinements > 0)
         return err_set(e, ERR_CONFIG,
                        "solver pcr keeps no factors to refine with: choose pcr-symmetric");
+    /* forward_exact.c is the operator form of chains (physics 4.8); the paper's form takes its
+     * answer from products with B and C instead. */
     if (k->residual == RESIDUAL_TWICE &&
         (kernel_branches(spec, model) || k->formulation != FORMULATION_DIRECT))
         return err_set(e, ERR_CONFIG,
@@ -111,6 +114,7 @@ static void chain_inverse_carve(struct chain_inverse *v, struct carve *c,
     v->tau = CARVE(c, nu, real);
 }
 
+/* Pieces scan by pointer jumping, whose room is part of the tree's own. */
 static void tree_inverse_carve(struct tree_inverse *v, struct carve *c,
                                const struct kernel_job *job, int rank)
 {
@@ -212,6 +216,7 @@ static void tree_inverse_run(struct comm *c, const struct kernel_job *job, struc
                       v->tau + t->u_at[l]);
 }
 
+/* Branches decide between two programs with the same stages and outputs. */
 static void inverse_run(struct comm *c, const void *job_, void *workspace)
 {
     const struct kernel_job *job = job_;
@@ -228,6 +233,7 @@ static void chain_forward_run(struct comm *c, const struct kernel_job *job, stru
     forward_run(f);
 }
 
+/* The same for trees (contraction.h). */
 static void tree_forward_run(struct comm *c, const struct kernel_job *job, struct contraction *k)
 {
     struct carve room = {.base = (char *)k, .used = head(sizeof *k)};

@@ -31,6 +31,7 @@ bool dynamics_open(struct program_run *r, const struct model *m, const struct st
     return true;
 }
 
+/* Bodies that were merged away still count in the run's row: the user described them. */
 static bool open(struct program_run *r, struct err *e)
 {
     /* The scene belongs to the cache: runs of one campaign that differ in machine or network share
@@ -78,6 +79,7 @@ static void judge(struct program_run *r, struct run_result *out) { trust_check(r
 static void tell_added(const struct dynamics_run *d, const struct kernel_spec *now,
                        struct run_result *out)
 {
+    /* Differences to the settings as given: what the program did on its own account. */
     out->inner_added = now->inner_refinements - d->given.inner_refinements;
     out->outer_added = now->outer_refinements - d->given.outer_refinements;
     out->twice_added = now->residual != d->given.residual;
@@ -110,6 +112,7 @@ static bool again(struct program_run *r, struct run_result *out)
 
 /* --- what the answer is worth ----------------------------------------------------------------- */
 
+/* Loops are judged by their drift, answers by the serial codes. */
 static void check(struct program_run *r, struct arena *scratch, struct run_result *out)
 {
     const struct dynamics_run *d = dynamics_run_of(r);

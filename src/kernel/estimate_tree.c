@@ -86,12 +86,14 @@ static void contraction(const struct tree_plan *p, const struct model *model, do
         const double d = model->u_at[v + 1] - model->u_at[v],
                      nq = model->q_at[v + 1] - model->q_at[v];
         const bool away = op->from != op->to;
+        /* Up the loads of the leaves, down the acceleration of their parent's bottom. */
         if (op->kind == TREE_RAKE) {
             if (away) add(e, 1, PACKED + SPACE * m);
             if (away) add(e, 1, SPACE * m);
             e->flops +=
                 op->count * (rake(SPACE - d, m) + m * LEAF_FLOP) + absorb(m) + m * UNRAKE_FLOP;
         } else {
+            /* Up a compound and its joint, down the pair (f_v, f_2). */
             if (away) add(e, 1, compound_size((int)m) + nq + d + (terms ? SPACE : 0));
             if (away) add(e, 1, 2 * SPACE * m);
             e->flops += merge(SPACE - d, m) + m * UNMERGE_FLOP;

@@ -47,6 +47,7 @@ void largest_everywhere(struct comm *c, int tag, int n, real *x)
     collective_run(collective_algorithm_find(COLLECTIVE_ALLREDUCE, "dissemination"), &k);
 }
 
+/* The ranks' worst residual decides for all of them: a collective, every rank calls it. */
 bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residual)
 {
     real worst = largest_size(0, 1, &residual);
@@ -56,6 +57,7 @@ bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residu
     return worst > (real)1e6 * REAL_EPSILON;
 }
 
+/* Two maxima in one message: sizes of the correction and of the answer. */
 bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction,
                        const real *answer)
 {

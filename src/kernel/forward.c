@@ -1,4 +1,5 @@
-/* forward.c - the constraint force algorithm on a block of a chain (forward.h). Symbols as in physics 4. */
+/* forward.c - the constraint force algorithm on a block of a chain (forward.h). Symbols as in
+ * physics 4. */
 #include "kernel/forward.h"
 
 #include <math.h>
@@ -8,10 +9,13 @@
 #include "kernel/dynamics_program.h"
 #include "kernel/extremes.h"
 #include "kernel/forward_exact.h"
+#include "kernel/forward_form.h"
 #include "kernel/forward_rows.h"
 #include "kernel/publish.h"
 #include "kernel/tags.h"
 
+/* What is carved depends on the formulation: the paper's needs D and E, accelerations and forces;
+ * the direct one does with poses, velocities and z. */
 void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *job, int rank)
 {
     const struct kernel_spec *spec = &job->spec->kernel;
@@ -26,6 +30,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->tau = CARVE(c, nu, real);
     f->ud = CARVE(c, nu, real);
     motion_carve(&f->motion, c, job, chain_nq(s, ch->lo, ch->hi), nu);
+    /* Joint forces of own joints and of the two beside the block. */
     f->force = CARVE(c, SPACE * m, real);
     f->exact = spec->residual == RESIDUAL_TWICE ? CARVE(c, SPACE * (m + 2), twice) : NULL;
     f->force_left = CARVE(c, SPACE, real);
@@ -37,7 +42,8 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->E = CARVE(c, f->direct ? 0 : SQUARE * (m + 1), real);
     f->message = CARVE(c, 14, real);
     f->left = carve_bytes(c, s->subspace_bytes);
-    /* The composites are not needed any more when the system is assembled, unless for outer refinement. */
+    /* The composites are not needed any more when the system is assembled, unless for outer
+     * refinement: then scan and solver share their room. */
     const size_t before = c->used;
     scan_carve(&ch->scan, c, ch->dense, spec->composites_incoming, rank, job->nrank);
     const size_t after = c->used;
@@ -51,19 +57,22 @@ void forward_set(struct forward *f, struct comm *c)
     f->chain.comm = f->chain.scan.comm = f->blocks.comm = f->blocks.reduction.comm = c;
 }
 
-static bool has_left(const struct forward *f) { return f->chain.lo > 0; }
-static bool has_right(const struct forward *f) { return f->chain.hi < f->chain.n; }
-
-/* exchange_joints: coordinates of the edge joints both ways; the neighbours' subspaces and transform from them. */
+/* exchange_joints: coordinates of the edge joints both ways; the neighbours' subspaces and
+ * transform from them (physics 4.5, step 0). At most 7 numbers travel in place of matrices, and the
+ * receiver pays for computing them again. */
 static void exchange_joints(struct forward *f)
 {
     struct chain *ch = &f->chain;
     struct comm *c = ch->comm;
     const int k = comm_rank(c), last = ch->hi - 1;
     const int64_t size = sizeof(real);
-    if (has_left(f)) comm_send(c, k - 1, TAG_JOINT, ch->q, forward_body(f, ch->lo)->nq * size);
-    if (has_right(f)) comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last), forward_body(f, last)->nq * size);
-    if (has_right(f)) {
+    if (forward_has_left(f))
+        comm_send(c, k - 1, TAG_JOINT, ch->q, forward_body(f, ch->lo)->nq * size);
+    if (forward_has_right(f))
+        comm_send(c, k + 1, TAG_JOINT, ch->q + chain_q_at(ch, last),
+                  forward_body(f, last)->nq * size);
+    /* From the right the whole pose: X_hi couples body hi-1 to what lies above. */
+    if (forward_has_right(f)) {
         const struct body *b = forward_body(f, ch->hi);
         const struct joint_cost *cost = body_cost(b);
         comm_recv(c, k + 1, TAG_JOINT, f->message, b->nq * size);
@@ -72,9 +81,11 @@ static void exchange_joints(struct forward *f)
         ch->work.trig += (uint64_t)cost->place_trig;
         ch->work.div += (uint64_t)cost->place_div;
         if (ch->dense)
-            transform_expand(true, ch->matrix + SQUARE * (ch->hi - ch->lo), &chain_pose(ch, ch->hi)->x, &ch->work);
+            transform_expand(true, ch->matrix + SQUARE * (ch->hi - ch->lo),
+                             &chain_pose(ch, ch->hi)->x, &ch->work);
     }
-    if (has_left(f)) {
+    /* From the left only W_{lo-1}: it stands in L_lo (physics 4.2). */
+    if (forward_has_left(f)) {
         const struct body *b = forward_body(f, ch->lo - 1);
         comm_recv(c, k - 1, TAG_JOINT, f->message, b->nq * size);
         body_subspace(b, f->message, f->left);
@@ -83,7 +94,8 @@ static void exchange_joints(struct forward *f)
     chain_report(ch);
 }
 
-/* given_forces: tau of own joints, springs included. */
+/* given_forces: tau of own joints, springs included; implicit ones in the form tau_0 (physics
+ * 9.0). */
 static void given_forces(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -92,13 +104,14 @@ static void given_forces(struct forward *f)
     for (int i = ch->lo; i < ch->hi; i++) {
         const struct body *b = forward_body(f, i);
         if (!b->has_spring) continue;
-        body_spring(b, ch->q + chain_q_at(ch, i), ch->u + chain_u_at(ch, i), f->tau + chain_u_at(ch, i));
+        body_spring(b, ch->q + chain_q_at(ch, i), ch->u + chain_u_at(ch, i),
+                    f->tau + chain_u_at(ch, i));
         spring_force(b, f->step, ch->u + chain_u_at(ch, i), f->tau + chain_u_at(ch, i));
         ch->work.flop += BODY_SPRING_FLOP + (f->step > 0 ? 3 : 0);
     }
 }
 
-/* assemble_direct: A_ii and L_i only. */
+/* assemble_direct: A_ii and L_i only (physics 4.2). B and C are never needed in the direct form. */
 static void assemble_direct(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -107,182 +120,69 @@ static void assemble_direct(struct forward *f)
         assembly_operators(ch, i, D, E);
         forward_project(f, i, D, i, A);
         const real resistance = forward_resistance(f, i);
-        for (int k = 0; k < forward_body(f, i)->d && resistance > 0; k++) A[(SPACE + 1) * k] += 1 / resistance;
-        assembly_pack(forward_row_size(f, i), A, forward_row_size(f, i), blocks_row_D(&f->blocks, i));
+        /* D + H s^-1 H^T, whose H components come first in joint axes (physics 9.0). */
+        for (int k = 0; k < forward_body(f, i)->d && resistance > 0; k++)
+            A[(SPACE + 1) * k] += 1 / resistance;
+        assembly_pack(forward_row_size(f, i), A, forward_row_size(f, i),
+                      blocks_row_D(&f->blocks, i));
         if (i > 0) forward_project(f, i, E, i - 1, blocks_row_L(&f->blocks, i));
     }
 }
 
-/* assemble_paper: D and E in joint axes, which hold A, B and C. */
+/* assemble_paper: D and E in joint axes, which hold A, B and C side by side (physics 4.2): A in the
+ * last c rows and columns, C in the first d, B in between. */
 static void assemble_paper(struct forward *f)
 {
     struct chain *ch = &f->chain;
-    for (int i = ch->lo; i < ch->hi + has_right(f); i++) {
+    for (int i = ch->lo; i < ch->hi + forward_has_right(f); i++) {
         real D[SQUARE], E[SQUARE], *turned = f->E + SQUARE * (i - ch->lo);
         const bool own = i < ch->hi;
         const struct subspace *s = forward_subspace(f, i);
+        /* E of joint hi couples the last own row to the next rank's first. */
         assembly_operators(ch, i, own ? D : NULL, E);
         if (i > 0) assembly_turn(ch, s, E, forward_subspace(f, i - 1), turned);
         if (!own) continue;
         real *diagonal = f->D + SQUARE * (i - ch->lo), *L = blocks_row_L(&f->blocks, i);
         assembly_turn(ch, s, D, s, diagonal);
+        /* The solver gets copies of its parts; D and E stay for the products with B and C. */
         assembly_pack(s->c, diagonal + (SPACE + 1) * s->d, SPACE, blocks_row_D(&f->blocks, i));
         if (i == 0) continue;
         const int before = forward_subspace(f, i - 1)->d, nbefore = SPACE - before;
         for (int r = 0; r < s->c; r++)
-            memcpy(L + r * nbefore, turned + SPACE * (s->d + r) + before, (size_t)nbefore * sizeof(real));
+            memcpy(L + r * nbefore, turned + SPACE * (s->d + r) + before,
+                   (size_t)nbefore * sizeof(real));
     }
 }
 
-/* active_force: F = H x for joint i, x (d). */
-static void active_force(struct forward *f, int i, const real *x, real *force)
-{
-    screw_zero(force);
-    subspace_h(forward_subspace(f, i), x, force);
-    f->chain.work.flop += (uint64_t)body_cost(forward_body(f, i))->h;
-}
-
-/* begin_forces: F = H x of own joints and, by messages, of those beside the block; direct: the gain of body lo-1 comes
- * along when `gain` is set. */
-static void begin_forces(struct forward *f, const real *x, bool gain)
-{
-    struct chain *ch = &f->chain;
-    struct comm *c = ch->comm;
-    const int k = comm_rank(c), last = ch->hi - 1, d = forward_body(f, last)->d;
-    const int64_t size = sizeof(real);
-    f->active = x;
-    for (int i = ch->lo; i < ch->hi; i++) active_force(f, i, x + chain_u_at(ch, i), chain_at(ch, f->force, i));
-    chain_report(ch);
-    if (has_left(f)) comm_send(c, k - 1, TAG_ACTIVE, x, forward_body(f, ch->lo)->d * size);
-    if (has_right(f)) {
-        memcpy(f->message, x + chain_u_at(ch, last), (size_t)d * sizeof(real));
-        if (gain) screw_copy(f->message + d, chain_at(ch, f->gain, last));
-        comm_send(c, k + 1, TAG_ACTIVE, f->message, (d + (gain ? SPACE : 0)) * size);
-        comm_recv(c, k + 1, TAG_ACTIVE, f->message, forward_body(f, ch->hi)->d * size);
-        active_force(f, ch->hi, f->message, f->force_right);
-    }
-    if (!has_left(f)) return;
-    const int before = forward_body(f, ch->lo - 1)->d;
-    comm_recv(c, k - 1, TAG_ACTIVE, f->message, (before + (gain ? SPACE : 0)) * size);
-    active_force(f, ch->lo - 1, f->message, f->force_left);
-    if (gain) screw_copy(f->gain_left, f->message + before);
-}
-
-/* add_reactions: F += W FS of own joints and of both neighbours, after a solution. */
-static void add_reactions(struct forward *f)
-{
-    struct chain *ch = &f->chain;
-    struct comm *c = ch->comm;
-    const int k = comm_rank(c);
-    const int64_t size = sizeof(real);
-    if (has_left(f))
-        comm_send(c, k - 1, TAG_REACTION, blocks_row_r(&f->blocks, ch->lo), forward_row_size(f, ch->lo) * size);
-    for (int i = ch->lo; i < ch->hi; i++)
-        forward_add_reaction(f, i, blocks_row_r(&f->blocks, i), chain_at(ch, f->force, i));
-    if (has_left(f)) forward_add_reaction(f, ch->lo - 1, f->blocks.left, f->force_left);
-    if (!has_right(f)) return;
-    comm_recv(c, k + 1, TAG_REACTION, f->message, forward_row_size(f, ch->hi) * size);
-    forward_add_reaction(f, ch->hi, f->message, f->force_right);
-}
-
-/* body_acceleration: y = Phi_i (F_i - X_{i+1} F_{i+1} + gain). */
-static void body_acceleration(struct forward *f, int i, const real *force, const real *next, const real *gain, real *y)
-{
-    struct chain *ch = &f->chain;
-    real net[SPACE];
-    screw_copy(net, force);
-    if (next) {
-        real moved[SPACE];
-        transform_force(ch->dense, moved, chain_transform(ch, i + 1), next, &ch->work);
-        screw_sub(net, moved);
-        ch->work.flop += SCREW_ADD_FLOP;
-    }
-    if (gain) screw_add(net, gain);
-    body_accelerate(forward_body(f, i), net, y);
-    ch->work.flop += (uint64_t)(BODY_ACCELERATE_FLOP + (gain ? SCREW_ADD_FLOP : 0));
-    ch->work.call++;
-}
-
-/* force_above: F of joint i + 1; NULL: there is none. */
-static const real *force_above(struct forward *f, int i)
-{
-    if (i + 1 < f->chain.hi) return chain_at(&f->chain, f->force, i + 1);
-    return has_right(f) ? f->force_right : NULL;
-}
-
-/* operator_form: z_i = y_i - X_i^T y_{i-1} - b_i of own bodies (physics 4.8); without `terms` the velocity terms, the
- * external forces and the base are left out. Notes the residual. */
-static void operator_form(struct forward *f, bool terms)
-{
-    struct chain *ch = &f->chain;
-    const int lo = ch->lo, hi = ch->hi;
-    real before[SPACE], y[SPACE], moved[SPACE], residual = 0, scale = 0;
-    const struct job_omit *omit = &ch->job->omit;
-    const bool watch = f->watch;
-    const bool gain = terms && !omit->load, bias = terms && !omit->velocity, base = terms && !omit->base;
-    if (f->exact) {
-        exact_operator_form(f, gain, bias, base);
-        return;
-    }
-    if (has_left(f)) body_acceleration(f, lo - 1, f->force_left, f->force, gain ? f->gain_left : NULL, before);
-    else screw_copy(before, ch->shared->base);
-    for (int i = lo; i < hi; i++) {
-        real *z = chain_at(ch, f->z, i), reaction[SPACE];
-        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), gain ? chain_at(ch, f->gain, i) : NULL,
-                          y);
-        screw_copy(z, y);
-        if (watch) scale = largest_size(scale, SPACE, y);
-        if (i > 0 || base) {
-            transform_base(ch->dense, i == 0 && omit->turn, moved, chain_transform(ch, i), before, &ch->work);
-            screw_sub(z, moved);
-            ch->work.flop += SCREW_ADD_FLOP;
-            if (watch) scale = largest_size(scale, SPACE, moved);
-        }
-        if (bias) {
-            screw_sub(z, chain_at(ch, ch->b, i));
-            ch->work.flop += SCREW_ADD_FLOP;
-            if (watch) scale = largest_size(scale, SPACE, chain_at(ch, ch->b, i));
-        }
-        screw_copy(before, y);
-        if (!watch) continue;
-        forward_violation(f, i, z, reaction);
-        residual = largest_size(residual, forward_row_size(f, i), reaction);
-    }
-    f->residual = scale > 0 ? residual / scale : residual;
-    f->residual_scale = scale;
-}
-
-/* right_hand_side: r = - what the joints' rows are violated by. */
-static void right_hand_side(struct forward *f)
-{
-    struct chain *ch = &f->chain;
-    for (int i = ch->lo; i < ch->hi; i++) {
-        real *r = blocks_row_r(&f->blocks, i);
-        forward_violation(f, i, chain_at(ch, f->z, i), r);
-        for (int k = 0; k < forward_row_size(f, i); k++) r[k] = -r[k];
-        ch->work.flop += (uint64_t)forward_violation_flops(f, i);
-        ch->work.div += forward_resistance(f, i) > 0;
-    }
-}
-
-/* multiply_rows: y (rows from .. to-1) of D F_i + E_i F_{i-1} + E_{i+1}^T F_{i+1} in joint axes; `active` says that
- * only H's components of the forces differ from zero. */
+/* multiply_rows: y (rows from .. to-1) of D F_i + E_i F_{i-1} + E_{i+1}^T F_{i+1} in joint axes;
+ * `active` says that only H's components of the forces differ from zero.
+ *
+ * Rows below d of H FT give C FT, rows from d on B FT; with W FS added they give u' and A FS + B
+ * FT. */
 static void multiply_rows(struct forward *f, int i, int from, int to, bool active, real *y)
 {
     struct chain *ch = &f->chain;
-    const real *D = f->D + SQUARE * (i - ch->lo), *E = f->E + SQUARE * (i - ch->lo), *next = E + SQUARE;
+    const real *D = f->D + SQUARE * (i - ch->lo), *E = f->E + SQUARE * (i - ch->lo),
+               *next = E + SQUARE;
     bool begun = false;
     for (int r = from; r < to; r++) y[r] = 0;
     for (int j = i - 1; j <= i + 1; j++) {
+        /* The chain's ends have one neighbour. */
         if (j < 0 || j >= ch->n) continue;
         real x[SPACE];
         const struct subspace *s = forward_subspace(f, j);
-        const real *force = j < ch->lo ? f->force_left : j == ch->hi ? f->force_right : chain_at(ch, f->force, j);
+        const real *force = j < ch->lo    ? f->force_left
+                            : j == ch->hi ? f->force_right
+                                          : chain_at(ch, f->force, j);
         assembly_turn_vector(ch, s, force, x);
         const int n = active ? s->d : SPACE;
         for (int r = from; r < to; r++)
             for (int k = 0; k < n; k++) {
-                const real element = j < i ? E[SPACE * r + k] : j == i ? D[SPACE * r + k] : next[SPACE * k + r];
+                const real element = j < i    ? E[SPACE * r + k]
+                                     : j == i ? D[SPACE * r + k]
+                                              : next[SPACE * k + r];
+                /* The first product is stored, not added to zero: no operation that the formula
+                 * does not have. */
                 y[r] = begun || k > 0 ? y[r] + element * x[k] : element * x[k];
             }
         ch->work.flop += (uint64_t)(2 * n * (to - from) - (!begun && n > 0 ? to - from : 0));
@@ -290,8 +190,9 @@ static void multiply_rows(struct forward *f, int i, int from, int to, bool activ
     }
 }
 
-/* paper_residual: largest |W^T D F|, an acceleration that a joint forbids, over the largest acceleration of a body; it
- * is a monitor, so it costs the machine nothing. */
+/* paper_residual: largest |W^T D F|, an acceleration that a joint forbids, over the largest
+ * acceleration of a body; it is a monitor, so it costs the machine nothing: the work is
+ * restored. */
 static void paper_residual(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -301,7 +202,8 @@ static void paper_residual(struct forward *f)
         const int d = forward_subspace(f, i)->d;
         multiply_rows(f, i, d, SPACE, false, y);
         residual = largest_size(residual, SPACE - d, y + d);
-        body_acceleration(f, i, chain_at(ch, f->force, i), force_above(f, i), NULL, y);
+        forward_body_acceleration(f, i, chain_at(ch, f->force, i), forward_force_above(f, i), NULL,
+                                  y);
         scale = largest_size(scale, SPACE, y);
     }
     f->residual = scale > 0 ? residual / scale : residual;
@@ -309,38 +211,43 @@ static void paper_residual(struct forward *f)
     ch->work = before;
 }
 
-/* solve_operator_form: FS with inner refinements; z holds the answer. `again`: the system is factored already. */
+/* solve_operator_form: FS with inner refinements; z holds the answer. `again`: the system is
+ * factored already.
+ *
+ * Every pass solves for what the present forces violate. The first one is the solution itself
+ * (physics 4.6, 4.7), the others are inner refinement (8.6) with the factors at hand. */
 static void solve_operator_form(struct forward *f, bool terms, bool again)
 {
     struct chain *ch = &f->chain;
     const int inner = ch->job->spec->kernel.inner_refinements;
     if (f->exact) exact_begin(f);
-    operator_form(f, terms);
+    forward_operator_form(f, terms);
     for (int pass = 0; pass <= inner; pass++) {
-        right_hand_side(f);
+        forward_right_hand_side(f);
         chain_report(ch);
         comm_stage(ch->comm, STAGE_SOLVE);
         if (pass == 0 && !again) blocks_solve(&f->blocks, &ch->work);
         else blocks_resolve(&f->blocks, &ch->work);
         comm_stage(ch->comm, STAGE_FINISH);
-        add_reactions(f);
-        operator_form(f, terms);
+        forward_add_reactions(f);
+        forward_operator_form(f, terms);
         chain_report(ch);
     }
 }
 
-/* joint_accelerations: ud = H^T z. */
+/* joint_accelerations: ud = H^T z (physics 4.7). */
 static void joint_accelerations(struct forward *f, real *ud)
 {
     struct chain *ch = &f->chain;
     for (int i = ch->lo; i < ch->hi; i++) {
-        subspace_h_transposed(forward_subspace(f, i), chain_at(ch, f->z, i), ud + chain_u_at(ch, i));
+        subspace_h_transposed(forward_subspace(f, i), chain_at(ch, f->z, i),
+                              ud + chain_u_at(ch, i));
         ch->work.flop += (uint64_t)body_cost(forward_body(f, i))->h_transposed;
     }
     chain_report(ch);
 }
 
-/* evaluate_direct: physics 4.3. */
+/* evaluate_direct: physics 4.3: one scan, then the system with all velocity terms in it. */
 static void evaluate_direct(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -350,7 +257,7 @@ static void evaluate_direct(struct forward *f)
     chain_bias(ch);
     if (!ch->job->omit.load) chain_gain(ch, f->gain);
     assemble_direct(f);
-    begin_forces(f, f->tau, !ch->job->omit.load);
+    forward_begin_forces(f, f->tau, !ch->job->omit.load);
     solve_operator_form(f, true, false);
     joint_accelerations(f, f->ud);
 }
@@ -361,7 +268,7 @@ static void paper_solution(struct forward *f, const real *active)
     struct chain *ch = &f->chain;
     const int inner = ch->job->spec->kernel.inner_refinements;
     real y[SPACE];
-    begin_forces(f, active, false);
+    forward_begin_forces(f, active, false);
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = forward_subspace(f, i)->d;
         real *r = blocks_row_r(&f->blocks, i);
@@ -372,17 +279,20 @@ static void paper_solution(struct forward *f, const real *active)
     comm_stage(ch->comm, STAGE_SOLVE);
     blocks_solve(&f->blocks, &ch->work);
     comm_stage(ch->comm, STAGE_FINISH);
-    add_reactions(f);
+    forward_add_reactions(f);
+    /* Inner refinement by the operator form: products with A would repeat its rounding errors
+     * (physics 8.6). */
     for (int pass = 0; pass < inner; pass++) {
-        operator_form(f, false);
-        right_hand_side(f);
+        forward_operator_form(f, false);
+        forward_right_hand_side(f);
         chain_report(ch);
         comm_stage(ch->comm, STAGE_SOLVE);
         blocks_resolve(&f->blocks, &ch->work);
         comm_stage(ch->comm, STAGE_FINISH);
-        add_reactions(f);
+        forward_add_reactions(f);
     }
     for (int i = ch->lo; i < ch->hi; i++) {
+        /* u' = H^T D (H FT + W FS), both parts in one product. */
         multiply_rows(f, i, 0, forward_subspace(f, i)->d, false, y);
         memcpy(f->ud + chain_u_at(ch, i), y, (size_t)forward_subspace(f, i)->d * sizeof(real));
     }
@@ -390,7 +300,8 @@ static void paper_solution(struct forward *f, const real *active)
     if (f->watch) paper_residual(f);
 }
 
-/* evaluate_paper: bias forces by inverse dynamics with u' = 0, then (4.3), (4.4). */
+/* evaluate_paper: bias forces xi by inverse dynamics with u' = 0, FT = tau - xi, then (4.3), (4.4).
+ * Three scans; without velocities, gravity and loads xi is zero and none is needed. */
 static void evaluate_paper(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -404,8 +315,8 @@ static void evaluate_paper(struct forward *f)
     paper_solution(f, f->ud);
 }
 
-/* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer refinement). False when
- * that would not have made it better. */
+/* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer
+ * refinement). False when that would not have made it better. */
 static bool refine(struct forward *f, struct refinement *course)
 {
     struct chain *ch = &f->chain;
@@ -421,9 +332,11 @@ static bool refine(struct forward *f, struct refinement *course)
             rest[chain_u_at(ch, i) + k] -= forward_resistance(f, i) * f->ud[chain_u_at(ch, i) + k];
     ch->work.flop += (uint64_t)(f->step > 0 ? 3 * nu : nu);
     comm_stage(ch->comm, STAGE_ASSEMBLY);
-    begin_forces(f, rest, false);
+    /* The correction is a response to forces alone: no velocity terms. */
+    forward_begin_forces(f, rest, false);
     solve_operator_form(f, false, true);
     joint_accelerations(f, rest);
+    /* All ranks decide by the same numbers, so that none refines alone. */
     if (!refinement_accept(course, ch->comm, TAG_EXTREME, nu, rest, f->ud)) return false;
     for (int k = 0; k < nu; k++) f->ud[k] += rest[k];
     ch->work.flop += (uint64_t)nu;
@@ -435,7 +348,7 @@ static void refine_outside(struct forward *f)
 {
     struct chain *ch = &f->chain;
     const int outer = ch->job->spec->kernel.outer_refinements;
-    /* of the answer itself; the corrections have their own */
+    /* of the answer itself; a correction has a residual of its own */
     const real residual = f->residual, scale = f->residual_scale;
     struct refinement course = {.before = 1};
     /* the paper's residual does not see the errors of its bias forces */
@@ -446,11 +359,12 @@ static void refine_outside(struct forward *f)
         going = refine(f, &course);
         f->refined += going;
     }
-    f->residual = course.before < residual ? course.before : residual; /* the error that the last pass found */
+    /* the error that the last pass found */
+    f->residual = course.before < residual ? course.before : residual;
     f->residual_scale = scale;
 }
 
-/* evaluate: ud from the coordinates and rates in the chain. */
+/* evaluate: ud from the coordinates and rates in the chain. The stages of the paper's figures. */
 static void evaluate(struct forward *f)
 {
     struct chain *ch = &f->chain;
@@ -467,7 +381,8 @@ static void evaluate(struct forward *f)
 static void publish(const struct forward *f)
 {
     const struct chain *ch = &f->chain;
-    const int k = comm_rank(ch->comm), first = forward_body(f, ch->lo)->u_at, nu = chain_nu(ch->shared, ch->lo, ch->hi);
+    const int k = comm_rank(ch->comm), first = forward_body(f, ch->lo)->u_at,
+              nu = chain_nu(ch->shared, ch->lo, ch->hi);
     publish_reals(ch->comm, OUTPUT_QDD, first, nu, f->ud);
     if (k == 0) publish_number(ch->comm, OUTPUT_REFINED, 0, f->refined);
 }
@@ -482,6 +397,7 @@ static void evaluate_once(void *program)
     f->published = true;
 }
 
+/* Time steps and single evaluations take the same way (motion.h). */
 void forward_run(struct forward *f)
 {
     struct chain *ch = &f->chain;

@@ -5,6 +5,7 @@
 #include "kernel/extremes.h"
 #include "kernel/forward_rows.h"
 
+/* Working precision to the longer type: exact. */
 static void widen(const real *x, twice *y)
 {
     for (int k = 0; k < SPACE; k++) y[k] = x[k];

@@ -57,6 +57,7 @@ const struct kernel_type *kernel_find_planar(const char *name, enum precision pr
                 NPLANAR, name);
 }
 
+/* By name alone: what does not depend on precision (titles, needs) is the same in all tables. */
 const struct kernel_type *kernel_find(const char *name)
 {
     return kernel_find_precision(name, PRECISION_DOUBLE);

@@ -168,6 +168,7 @@ static void barrier_run(struct comm *c, const void *job, void *workspace)
 static void estimate_messages(const struct run_spec *spec, double messages,
                               struct program_estimate *out)
 {
+    /* At least once, as the programs do. */
     const double repeat = spec->kernel.repeat > 1 ? spec->kernel.repeat : 1;
     *out = (struct program_estimate){.messages = messages * repeat};
     out->bytes = out->messages * (double)spec->kernel.message_bytes;

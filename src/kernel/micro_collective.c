@@ -55,6 +55,7 @@ struct collective_shape micro_collective_shape(const struct run_spec *spec)
 
 /* An algorithm by name: an unknown one is refused with the list of names, one that does not fit
  * this number of ranks with what it needs. */
+/* The error names what exists, because users type these names. */
 static const struct collective_algorithm *named(const struct collective_shape *s, const char *name,
                                                 struct err *e)
 {
@@ -82,6 +83,8 @@ const struct collective_algorithm *micro_collective_algorithm(const struct run_s
     char why[320];
     int n;
     if (*name && strcmp(name, "auto") != 0) return named(&s, name, e);
+    /* The machine's rules are text in its file: parsed here, once a run, and the choice is shared
+     * by all ranks. */
     if (!collective_rules_parse(spec->machine.software.collectives, rule, &n, why,
                                 (int)sizeof why)) {
         err_set(e, ERR_CONFIG, "machine.software.collectives: %s", why);
@@ -90,6 +93,7 @@ const struct collective_algorithm *micro_collective_algorithm(const struct run_s
     return collective_choose(&s, rule, n);
 }
 
+/* Refused before the run: a bad size, a root outside, an algorithm that does not fit. */
 static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     (void)model;
@@ -144,6 +148,7 @@ static void carve_buffers(struct buffers *b, struct carve *c, const struct run_s
                           const struct collective_shape *s, int rank)
 {
     const int64_t block = s->count * s->element, all = s->total * s->element;
+    /* Blocks of alltoallv are at most twice the mean. */
     const int64_t largest = s->irregular ? 2 * block : block;
     b->send = CARVE(c, s->kind == COLLECTIVE_REDUCE_SCATTER ? all : largest, char);
     b->recv = CARVE(c, s->kind == COLLECTIVE_ALLGATHER ? all : largest, char);
@@ -152,6 +157,7 @@ static void carve_buffers(struct buffers *b, struct carve *c, const struct run_s
     b->send_counts = CARVE(c, is_varied(spec) ? s->size : 0, int64_t);
 }
 
+/* Carving without a base measures (carve.h). */
 static size_t workspace_bytes(const void *job_, int rank)
 {
     const struct kernel_job *job = job_;
@@ -203,6 +209,7 @@ static void run(struct comm *c, const void *job_, void *workspace)
     int64_t spent = 0;
     struct carve carve = {.base = workspace};
     struct buffers b;
+    /* The same carving as workspace_bytes, now with a base. */
     carve_buffers(&b, &carve, job->spec, s->algorithm, &s->shape, comm_rank(c));
     struct collective_call k = make_call(c, s, &b);
     for (int i = 0; i < repeat; i++) {

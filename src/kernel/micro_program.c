@@ -24,6 +24,7 @@ bool micro_open(struct program_run *r, struct err *e)
     return m->kernel->accepts(&r->spec, NULL, e);
 }
 
+/* One output: the time that each rank measured. */
 bool micro_prepare(struct program_run *r, struct arena *a, struct err *e)
 {
     struct micro_run *m = r->own;
@@ -42,6 +43,7 @@ void micro_check(struct program_run *r, struct arena *scratch, struct run_result
     for (int i = 0; i < r->spec.nrank; i++) out->measured_s = fmax(out->measured_s, seconds[i]);
 }
 
+/* No model and no omissions: the settings say it all. */
 void micro_estimate(const struct program_run *r, struct program_estimate *out)
 {
     const struct micro_run *m = r->own;

@@ -31,6 +31,7 @@ static int ring_count(const struct run_spec *spec)
     return size > 0 && size < spec->nrank ? spec->nrank / size : 1;
 }
 
+/* A ring of two has one neighbour on both sides; a ring of one has none. */
 static bool accepts(const struct run_spec *spec, const struct model *model, struct err *e)
 {
     (void)model;
@@ -56,6 +57,7 @@ static void shuffle(int *member, int n, uint64_t seed)
     }
 }
 
+/* The order is drawn once for all ranks, so that neighbours agree about it. */
 static bool prepare_order(struct kernel_job *job, struct arena *a, bool random)
 {
     const int P = job->spec->nrank;
@@ -83,6 +85,7 @@ static bool prepare_random(struct kernel_job *job, struct arena *a, struct err *
     return prepare_order(job, a, true);
 }
 
+/* One message that leaves, two that arrive. */
 static size_t workspace_bytes(const void *job, int rank)
 {
     (void)rank;
@@ -117,10 +120,12 @@ static void run(struct comm *c, const void *job_, void *workspace)
         comm_isend(c, left, TAG_BENCH + 1, out, bytes, &r[3]);
         comm_waitall(c, 4, r);
     }
+    /* Simulated picoseconds to seconds; one exchange is four messages of this rank. */
     const double seconds = (double)(comm_now_ps(c) - begin) * 1e-12 / repeat;
     comm_publish(c, OUTPUT_SECONDS, rank, 1, &seconds);
 }
 
+/* Two messages leave every rank in every repetition; nothing is computed. */
 static void estimate(const struct run_spec *spec, const struct model *model,
                      const struct job_omit *omit, struct program_estimate *out)
 {

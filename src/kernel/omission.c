@@ -65,6 +65,7 @@ const struct kernel_type *omission_kernel(const struct run_spec *spec, const str
     return planar_scene(m, s, k->precision, e) ? kernel_find_planar(k->name, k->precision) : NULL;
 }
 
+/* A fixed joint has no coordinate: its body can be part of the one that carries it. */
 int omission_movable(const struct model *m)
 {
     int n = 0;

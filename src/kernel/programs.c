@@ -22,6 +22,7 @@ const struct program_type *const *program_list(int *n)
     return programs;
 }
 
+/* A table without an index: it is searched once a run. */
 const struct program_type *program_find(const char *name)
 {
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)

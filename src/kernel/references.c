@@ -86,6 +86,8 @@ static bool end_state(const struct kernel_job *job, double change, struct arena 
         ->advance(m, end, k->step, k->step_size / m->second, k->steps, scratch, &w);
 }
 
+/* The serial integrator takes the same steps by the same rule, so that both have the same
+ * integration error and only rounding is compared. */
 static void check_steps(const struct program_run *r, struct arena *scratch, struct run_result *out)
 {
     const struct kernel_job *job = &dynamics_run_of(r)->job;

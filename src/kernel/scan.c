@@ -223,6 +223,7 @@ void scan_force(struct scan *s, int tag, real *f, struct work *w)
             }
             comm_send(c, k - d, tag + j, s->incoming ? s->in : f, SCREW_BYTES);
         }
+        /* Nobody to the right: this rank's force is final, but it still sends in later steps. */
         if (k + d >= P) continue;
         comm_recv(c, k + d, tag + j, s->in, SCREW_BYTES);
         if (!s->incoming) transform_force(s->dense, s->in, T, s->in, w);

@@ -12,6 +12,7 @@
 /* What may stay in memory beside the scene in use: scenes, and bodies of all of them together. */
 enum { MOST_SCENES = 32, MOST_BODIES = 1 << 17 };
 
+/* One cache for each worker, which has one run at a time: no lock is needed. */
 struct program_cache {
     long clock;
     int nscene;
@@ -84,14 +85,18 @@ struct scene *scene_take(struct program_cache *cache, const struct run_spec *spe
     cache->clock++;
     for (int i = 0; i < cache->nscene && !(spec->keep & KEEP_SCENES); i++) {
         struct scene *s = cache->scene[i];
+        /* P may leave fewer bodies to merge than the cached scene has merged. */
         if (s->fixed != omission_mergeable(spec, s->nbody, s->movable)) continue;
+        /* What is at rest now may move after the first time step. */
         if (s->still != (spec->kernel.steps == 0)) continue;
+        /* The whole description counts, field by field, so its bytes are compared. */
         if (s->keep != spec->keep || memcmp(&s->spec, &spec->model, sizeof s->spec) != 0) continue;
         s->used = cache->clock;
         return s;
     }
     struct scene *s = scene_make(spec, e);
     if (!s) return NULL;
+    /* Only when the new scene exists is an old one given away. */
     make_room(cache, s->model->nbody);
     s->used = cache->clock;
     return cache->scene[cache->nscene++] = s;

@@ -45,6 +45,7 @@ void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, i
     t->bodies = plan->bodies.item + plan->bodies.at[rank];
     t->n = plan->bodies.at[rank + 1] - plan->bodies.at[rank];
     t->poses = s->closure != NULL;
+    /* Places of own joints in q and u; needed while running only, hence the tests for NULL. */
     int *q_at = CARVE(c, t->n + 1, int), *u_at = CARVE(c, t->n + 1, int);
     t->nq = t->nu = 0;
     for (int l = 0; l < t->n; l++) {
@@ -56,12 +57,14 @@ void tree_carve(struct tree *t, struct carve *c, const struct kernel_job *job, i
     t->q_at = q_at, t->u_at = u_at;
     t->q = CARVE(c, t->nq, real);
     t->u = CARVE(c, t->nu, real);
+    /* Poses, then one 6-vector a body for each quantity of the sweeps. */
     t->pose = CARVE(c, t->n, struct body_pose);
     t->h = CARVE(c, SPACE * t->n, real);
     t->v = CARVE(c, SPACE * t->n, real);
     t->a = CARVE(c, SPACE * t->n, real);
     t->f = CARVE(c, SPACE * t->n, real);
     t->b = CARVE(c, SPACE * t->n, real);
+    /* Composites: of the anchor, one a level of jumping, and of own bodies. */
     t->level = CARVE(c, XFORM_NUMBERS * (plan->nlevel + 1), real);
     t->base_pose = CARVE(c, 1, struct xform);
     t->path = CARVE(c, XFORM_NUMBERS * t->n, real);

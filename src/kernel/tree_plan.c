@@ -245,6 +245,7 @@ static void contract(struct tree_plan *p, const struct model *m, struct arena *a
         for (int k = 0; k < nalive; k++)
             if (f.alive[alive[k]]) alive[n++] = alive[k];
         nalive = n;
+        /* Done when every living compound hangs on the base. */
         for (int k = 0; k < nalive; k++) inner = inner || f.up[alive[k]] >= 0;
         if (!inner) break;
         p->nround++;

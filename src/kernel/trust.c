@@ -110,6 +110,7 @@ bool trust_refine(struct run_spec *spec, const struct model *m, const struct run
 void trust_check(const struct program_run *r, struct run_result *out)
 {
     out->residual = NAN;
+    /* Only forward dynamics solves a system and has a residual. */
     if (!program_output(r, OUTPUT_QDD) || !program_output(r, OUTPUT_RESIDUAL)) return;
     const struct kernel_spec *k = &r->spec.kernel;
     bool single = k->precision == PRECISION_FLOAT;
