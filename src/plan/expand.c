@@ -13,6 +13,7 @@
 #include "plan/file_kind.h"
 #include "plan/machine_changes.h"
 #include "plan/machine_file.h"
+#include "plan/program_file.h"
 #include "spec/identity.h"
 
 enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
@@ -62,7 +63,10 @@ static const struct setting *last_of(const struct expansion *x,
 static bool is_machine(const struct setting *s) { return s->kind == SETTING_MACHINE; }
 static bool is_ranks(const struct setting *s) { return strcmp(s->key, "ranks") == 0; }
 static bool is_ratio(const struct setting *s) { return s->kind == SETTING_N_OVER_P; }
-static bool is_bodies(const struct setting *s) { return strcmp(s->key, "model.n") == 0; }
+static bool is_bodies(const struct setting *s)
+{
+    return strcmp(s->key, "model.n") == 0 || strcmp(s->key, "program.n") == 0;
+}
 
 static struct start *start_make(struct expansion *x, const struct setting *machine)
 {
@@ -217,6 +221,15 @@ static void note_refusal(struct expansion *x, struct run_spec *run)
     text_free(&t);
 }
 
+/* A program's n stands for n, so its parameters follow when n is known. */
+static bool resolve_program(struct expansion *x, struct run_spec *run)
+{
+    const struct setting_list *list[SCENARIO_MAX_AXES + 2];
+    const int n = lists_of(x, list);
+    return program_file_choose(x->scenario, run, list, n, x->err) && resolve_sizes(x, run) &&
+           program_file_parameters(x->scenario, run, list, n, x->plan->arena, x->err);
+}
+
 /* One point: 1 run made, 0 left out, -1 failed. */
 static int make_point(struct expansion *x, struct run_spec *run)
 {
@@ -229,7 +242,7 @@ static int make_point(struct expansion *x, struct run_spec *run)
         for (int j = 0; j < list->n; j++) setting_apply(&list->at[j], run, x->plan->arena);
     }
     for (int i = 0; i < s->set.n; i++) setting_apply(&s->set.at[i], run, x->plan->arena);
-    if (!resolve_sizes(x, run)) return -1;
+    if (!resolve_program(x, run)) return -1;
     if (!wanted(s, run)) return 0;
     machine_changes_note(&x->changes, run);
     if (!resolve_path(x, run)) return -1;

@@ -8,6 +8,7 @@
 #include "plan/expand.h"
 #include "plan/file_kind.h"
 #include "plan/machine_file.h"
+#include "plan/program_file.h"
 #include "plan/scenario_file.h"
 #include "spec/spec_fields.h"
 
@@ -41,7 +42,7 @@ static bool all_kernels_exist(const struct scenario *s, const struct plan_option
 
 static bool is_number(const struct setting *s)
 {
-    if (s->kind != SETTING_FIELD) return s->kind == SETTING_N_OVER_P;
+    if (s->field == NULL) return s->kind == SETTING_N_OVER_P;
     enum field_kind kind = s->field->kind;
     bool plain =
         kind == FIELD_REAL || kind == FIELD_INT || kind == FIELD_INT64 || kind == FIELD_SEED;
@@ -68,10 +69,10 @@ static void list_swept(struct plan *p, const struct scenario *s)
         for (int j = 0; j < s->axis[i].npoint; j++) add_swept(p, &s->axis[i].point[j]);
 }
 
-static bool fill(struct plan *p, const struct scenario *s, const struct plan_options *o,
+static bool fill(struct plan *p, struct scenario *s, const struct plan_options *o,
                  struct err *e)
 {
-    if (!all_kernels_exist(s, o, e)) return false;
+    if (!all_kernels_exist(s, o, e) || !program_file_check(s, p->arena, e)) return false;
     text_copy(p->name, sizeof p->name, s->stem);
     p->question = s->question;
     p->figure = s->figure;
@@ -103,6 +104,13 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
     struct plan p = {.arena = arena_create()};
     struct scenario s;
     struct machine_file m;
+    struct plan_options programs = {0};
+    if (o != NULL) programs.program = o->program, programs.program_context = o->program_context;
+    if (program_file_is(path)) {
+        const bool made = scenario_file_read(&s, path, &programs, p.arena, e);
+        plan_free(&p);
+        return made;
+    }
     struct yaml_node *root = yaml_tree_read(path, p.arena, e);
     bool fine = root != NULL;
     if (fine && file_kind_of_tree(root) == FILE_MACHINE) {
@@ -111,7 +119,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
         fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
         text_free(&as_path);
     } else if (fine) {
-        fine = scenario_file_tree(&s, root, path, NULL, p.arena, e) && fill(&p, &s, o, e);
+        fine = scenario_file_tree(&s, root, path, &programs, p.arena, e) && fill(&p, &s, o, e);
         if (fine && p.nrefused > 0) *e = p.refusal, fine = false;
     }
     plan_free(&p);

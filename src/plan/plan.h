@@ -15,6 +15,12 @@ struct plan_options {
     const char *const *set; /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
     int nkernel;
     const char *const *kernel; /* (nkernel) the kernels there are; none: any name will do */
+    /* program: what a person's own program at `path` declares, in `a`, compiled first where it is
+     * source; NULL with the error. A NULL function: programs are refused. */
+    const struct program_sheet *(*program)(void *context, const char *path, struct arena *a,
+                                           struct err *e);
+    void *program_context;
+    bool allow_programs; /* scenarios may name programs outside their own folder */
 };
 
 struct plan {
@@ -36,7 +42,8 @@ struct plan {
     const char **unused; /* (nunused) "key: reason" of settings that act in no run of this plan */
 };
 
-/* plan_read: read scenario `name` (a path, or the stem of a file in scenarios/). Returns false with ERR_NO_INPUT,
+/* plan_read: read scenario `name` (a path, or the stem of a file in scenarios/; a program makes a
+ * scenario by itself). Returns false with ERR_NO_INPUT,
  * ERR_DATA (file and line), ERR_CONFIG or ERR_USAGE (`name` is a machine, a database: see file_kind.h); *p is then
  * empty. */
 bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e);
@@ -44,7 +51,8 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
 /* plan_free: give everything back; accepts an empty plan. */
 void plan_free(struct plan *p);
 
-/* plan_check_file: validate a scenario or machine file (by its content) without running; `o` may be NULL. */
+/* plan_check_file: validate a scenario, a machine file (by its content) or a program without
+ * running; `o` may be NULL. */
 bool plan_check_file(const char *path, const struct plan_options *o, struct err *e);
 
 /* Where one value of a resolved machine comes from. */

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "plan/data_dir.h"
+#include "plan/program_file.h"
 
 static bool is_list_field(const char *key)
 {
@@ -84,7 +85,8 @@ static const char *axis_group(const char *name)
 {
     if (strcmp(name, "variant") == 0) return "";
     bool group =
-        strcmp(name, "kernel") == 0 || strcmp(name, "model") == 0 || strcmp(name, "machine") == 0;
+        strcmp(name, "kernel") == 0 || strcmp(name, "model") == 0 || strcmp(name, "machine") == 0 ||
+        strcmp(name, "program") == 0;
     return group ? name : NULL;
 }
 
@@ -93,7 +95,7 @@ static bool add_axis(struct scenario *s, const char *name, const struct yaml_nod
 {
     const char *group = axis_group(name), *full = setting_key(name),
                *key = setting_is_key(full) ? full : NULL;
-    if (key == NULL && group == NULL) return setting_unknown("", name, s->path, list->line, e);
+    if (key == NULL && group == NULL) return program_file_unknown(s, name, s->path, list->line, e);
     if (list->kind != YAML_SEQUENCE || list->nchild == 0)
         return err_set_at(e, ERR_DATA, s->path, list->line,
                           "sweep: '%s' needs a list such as [2, 4, 8]", name);
@@ -202,11 +204,12 @@ enum { NTOP = sizeof top_keys / sizeof *top_keys };
 /* A key that is no setting: the nearest of this file's own keys before any other. */
 static bool unknown_top(struct top *t, const struct yaml_node *n)
 {
-    const char *names[NTOP + 8] = {"machine", "model",  "kernel", "ranks",
-                                   "seed",    "record", "n",      "n_over_p"};
-    for (int i = 0; i < NTOP; i++) names[8 + i] = top_keys[i].name;
-    const char *near = text_nearest(n->key, names, NTOP + 8);
-    if (near == NULL) return setting_unknown("", n->key, t->scenario->path, n->line, t->err);
+    const char *names[NTOP + 9] = {"machine", "model",  "kernel", "ranks",   "seed",
+                                   "record",  "n",      "n_over_p", "program"};
+    for (int i = 0; i < NTOP; i++) names[9 + i] = top_keys[i].name;
+    const char *near = text_nearest(n->key, names, NTOP + 9);
+    if (near == NULL)
+        return program_file_unknown(t->scenario, n->key, t->scenario->path, n->line, t->err);
     return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line,
                       "unknown key '%.120s'; did you mean '%s'?", n->key, near);
 }
@@ -249,7 +252,8 @@ static bool check_axes(const struct scenario *s, struct err *e)
 static bool is_sweep(const char *full, const char *text)
 {
     if (is_list_field(full)) return text[0] == '[' && text[1] == '[' && !is_pair_list(full);
-    return text[0] == '[' || (strchr(text, ',') != NULL && strcmp(full, "model.path") != 0);
+    return text[0] == '[' || (strchr(text, ',') != NULL && strcmp(full, "model.path") != 0 &&
+                              strcmp(full, "program.arguments") != 0);
 }
 
 /* The last axis goes to place `at`. */
@@ -313,6 +317,7 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
             set);
     char *name = arena_text(a, set);
     name[equals - set] = '\0';
+    name = (char *)program_file_key(s, name, a);
     const char *full = setting_key(name);
     if (strcmp(name, "repetitions") == 0) {
         struct scenario named = {.path = "--set", .repetitions = s->repetitions};
@@ -322,7 +327,7 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
         s->repetitions = named.repetitions;
         return fine;
     }
-    if (!setting_is_key(full)) return setting_unknown("", name, "--set", 0, e);
+    if (!setting_is_key(full)) return program_file_unknown(s, name, "--set", 0, e);
     int at = remove_axis(s, full);
     remove_setting(&s->set, full);
     remove_setting(&s->base, full);
@@ -330,7 +335,7 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     return add_setting(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
 }
 
-/* n and n_over_p exclude each other, and so do ranks given twice: what comes from the command line
+/* n and n_over_p exclude each other, and so do kernel and program: what comes from the command line
  * wins. */
 static void drop_overruled(struct scenario *s, const char *set, const char *file)
 {
@@ -349,6 +354,10 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
         if (!read_set(s, o->set[i], a, e)) return false;
     drop_overruled(s, "model.n", "n_over_p");
     drop_overruled(s, "n_over_p", "model.n");
+    drop_overruled(s, "program.n", "n_over_p");
+    drop_overruled(s, "n_over_p", "program.n");
+    drop_overruled(s, "kernel.name", "program.file");
+    drop_overruled(s, "program.file", "kernel.name");
     if (o->machine == NULL) return true;
     remove_axis(s, "machine.name");
     remove_setting(&s->base, "machine.name");
@@ -356,16 +365,21 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     return add_setting(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
 }
 
-bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const char *path,
+bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *path,
                         const struct plan_options *o, struct arena *a, struct err *e)
 {
     struct top t = {.scenario = s, .arena = a, .err = e};
     *s = (struct scenario){.path = path, .question = "", .repetitions = 1};
+    s->typed = program_file_is(path);
     s->stem = data_dir_stem(path, a);
     s->dir = data_dir_of(path, a);
     if (yaml_node_child(root, "schema_version") == NULL)
         return err_set_at(e, ERR_DATA, path, 1, "schema_version is missing; expected "
                                                 "'schema_version: 1'");
+    /* What programs declare are keys, too. */
+    if (!program_file_collect(s, root, o, a, e)) return false;
+    program_file_rename(s, root, a);
+    if (s->typed) program_file_entitle(s, a);
     for (const struct yaml_node *n = root->child; n != NULL; n = n->next)
         if (!read_top(&t, n)) return false;
     return check_axes(s, e) && read_options(s, o, a, e);
@@ -374,7 +388,9 @@ bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const 
 bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o,
                         struct arena *a, struct err *e)
 {
-    const char *path = data_dir_find("scenarios", name, NULL, a, e);
-    struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, e) : NULL;
+    const bool program = program_file_is(name);
+    const char *path = program ? name : data_dir_find("scenarios", name, NULL, a, e);
+    struct yaml_node *root = NULL;
+    if (path != NULL) root = program ? program_file_scenario(name, a, e) : yaml_tree_read(path, a, e);
     return root != NULL && scenario_file_tree(s, root, path, o, a, e);
 }

@@ -6,7 +6,7 @@
 #include "plan/plan.h"
 #include "plan/setting.h"
 
-enum { SCENARIO_MAX_SETTINGS = 512, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS = 100000 };
+enum { SCENARIO_MAX_SETTINGS = 512, SCENARIO_MAX_PROGRAMS = 32, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS = 100000 };
 
 struct setting_list {
     int n;
@@ -21,8 +21,13 @@ struct axis {
     struct setting_list *point; /* (npoint) */
 };
 
+struct scenario_program;
+
 struct scenario {
     const char *path, *stem, *dir;
+    bool typed;                       /* its programs were named on the command line */
+    int nprogram;
+    struct scenario_program *program; /* (nprogram) people's own programs (program_file.h) */
     const char *question;
     struct setting_list base; /* of all runs */
     struct setting_list set;  /* --set, after everything else */
@@ -40,8 +45,8 @@ struct scenario {
 bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o, struct arena *a,
                         struct err *e);
 
-/* scenario_file_tree: the same from a tree already read. */
-bool scenario_file_tree(struct scenario *s, const struct yaml_node *root, const char *path,
+/* scenario_file_tree: the same from a tree already read, whose keys may be renamed. */
+bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *path,
                         const struct plan_options *o, struct arena *a, struct err *e);
 
 #endif

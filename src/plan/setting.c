@@ -15,7 +15,8 @@ const char *setting_key(const char *key)
     static const char *const shorts[][2] = {{"n", "model.n"},
                                             {"level", "machine.network.level"},
                                             {"kernel", "kernel.name"},
-                                            {"machine", "machine.name"}};
+                                            {"machine", "machine.name"},
+                                            {"program", "program.file"}};
     for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
         if (strcmp(key, shorts[i][0]) == 0) return shorts[i][1];
     return key;
@@ -29,9 +30,18 @@ static const struct field *settable(const char *key, const struct field_table **
     return f == NULL || f->label || strcmp(key, "scenario") == 0 ? NULL : f;
 }
 
+/* "program.NAME", which is no setting of all programs: one that a program may declare. */
+static bool is_parameter(const char *key)
+{
+    const size_t n = strlen(program_table.prefix);
+    if (strncmp(key, program_table.prefix, n) != 0 || key[n] != '.') return false;
+    return key[n + 1] != '\0' && strchr(key + n + 1, '.') == NULL;
+}
+
 bool setting_is_key(const char *key)
 {
     const struct field_table *t;
+    if (is_parameter(key)) return true;
     return strcmp(key, "n_over_p") == 0 || settable(key, &t) != NULL;
 }
 
@@ -104,6 +114,7 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
         s->text = text = tolerance_word;
     }
     s->field = settable(s->key, &s->table);
+    if (s->field == NULL && is_parameter(s->key)) return s->kind = SETTING_PARAMETER, true;
     if (s->field == NULL) return setting_unknown("", key, file, line, e);
     struct arena_mark mark = arena_mark(a);
     bool fine =
@@ -124,7 +135,7 @@ void setting_apply(const struct setting *s, struct run_spec *run, struct arena *
 /* The distinct names that may follow group `group` ("" or "machine.network"). */
 static int candidates(const char *group, char name[][KEY_LENGTH], const char **list)
 {
-    static const char *const top[] = {"machine", "model", "kernel", "n", "level", "n_over_p"};
+    static const char *const top[] = {"machine", "model", "kernel", "program", "n", "level", "n_over_p"};
     int n = 0, ntable;
     size_t length = strlen(group);
     const struct field_table *const *tables = field_tables(&ntable);
@@ -163,8 +174,8 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     for (int i = 0; i < n && group[0] != '\0'; i++)
         text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
     err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s%s", key, in,
-               all.s != NULL ? all.s : "; expected ranks, seed, record.*, machine.*, model.* or "
-                                       "kernel.*");
+               all.s != NULL ? all.s : "; expected ranks, seed, record.*, machine.*, model.*, "
+                                       "kernel.* or program.*");
     text_free(&all);
     return false;
 }

@@ -13,13 +13,14 @@ enum setting_kind {
     SETTING_FIELD,       /* a row of a field table */
     SETTING_MACHINE,     /* which machine file */
     SETTING_RANKS_ARE_N, /* ranks: n */
-    SETTING_N_OVER_P     /* bodies per rank */
+    SETTING_N_OVER_P,    /* bodies per rank */
+    SETTING_PARAMETER    /* what a person's own program declares: checked by program_file_check */
 };
 
 struct setting {
     enum setting_kind kind;
     const char *key;           /* in full, short names resolved */
-    const struct field *field; /* SETTING_FIELD */
+    const struct field *field; /* SETTING_FIELD, SETTING_PARAMETER once checked */
     const struct field_table *table;
     const char *text;
     int number;       /* SETTING_N_OVER_P */
@@ -28,7 +29,7 @@ struct setting {
     int line;         /* 0: none */
 };
 
-/* setting_key: the full key of a short one: n, level, kernel; others as they are. */
+/* setting_key: the full key of a short one: n, level, kernel, program; others as they are. */
 const char *setting_key(const char *key);
 
 /* setting_is_key: whether `key` (full) can be set. setting_is_group: whether keys below it can be ("machine.network").

@@ -30,24 +30,47 @@ static const char *idle_unless_computing(const struct run_spec *r)
 }
 
 static const struct field fields[] = {
-    {.key = "file", .kind = FIELD_TEXT, AT(file), .capacity = 256, .fallback = "",
+    {.key = "file",
+     .kind = FIELD_TEXT,
+     AT(file),
+     .capacity = 256,
+     .fallback = "",
      .doc = "a program of your own instead of a built-in one: source (.c, .cc, .f90), or what "
             "`mimdsim cc` made of it"},
-    {.key = "arguments", .kind = FIELD_TEXT, AT(arguments), .capacity = 256, .fallback = "",
-     .idle = idle_unless_arguments, .doc = "arguments of a program with main, as in a shell"},
-    {.key = "cost", .kind = FIELD_CHOICE, AT(cost), .choice = costs, .fallback = "declared",
+    {.key = "arguments",
+     .kind = FIELD_TEXT,
+     AT(arguments),
+     .capacity = 256,
+     .fallback = "",
+     .idle = idle_unless_arguments,
+     .doc = "arguments of a program with main, as in a shell"},
+    {.key = "cost",
+     .kind = FIELD_CHOICE,
+     AT(cost),
+     .choice = costs,
+     .fallback = "declared",
      .idle = idle_unless_computing,
      .doc = "what computing costs: as the program declares, executed blocks of machine code, what "
             "the program states, or the time on this computer (then no two runs are alike)"},
-    {.key = "factor", .kind = FIELD_REAL, .unit = UNIT_NONE, AT(factor), .min = 1e-6, .max = 1e6,
-     .fallback = "1", .idle = idle_unless_computing,
-     .doc = "computing time is multiplied by it: measured time over predicted time of the same code"},
+    {.key = "factor",
+     .kind = FIELD_REAL,
+     .unit = UNIT_NONE,
+     AT(factor),
+     .min = 1e-6,
+     .max = 1e6,
+     .fallback = "1",
+     .idle = idle_unless_computing,
+     .doc =
+         "computing time is multiplied by it: measured time over predicted time of the same code"},
 };
 
 const struct field_table program_table = {
-    .prefix = "program", .doc = "a program of your own; its own parameters are keys here, too",
-    .offset = offsetof(struct run_spec, program), .size = sizeof(struct program_spec),
-    .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+    .prefix = "program",
+    .doc = "a program of your own; its own parameters are keys here, too",
+    .offset = offsetof(struct run_spec, program),
+    .size = sizeof(struct program_spec),
+    .nfield = (int)(sizeof fields / sizeof *fields),
+    .field = fields,
 };
 
 const struct field *program_sheet_find(const struct program_sheet *p, const char *name)

@@ -1,9 +1,9 @@
-/* program_spec.h - a person's own program: which file, with which arguments and parameters, and what
- * its computing costs.
+/* program_spec.h - a person's own program: which file, with which arguments and parameters, and
+ * what its computing costs.
  *
  * The settings of table `program` are the same for all programs. What one program declares besides
- * comes from its image (struct program_sheet), and its values travel as lines of text: they are part
- * of a run's configuration and identity as "program.NAME = VALUE", as settings are. */
+ * comes from its image (struct program_sheet), and its values travel as lines of text: they are
+ * part of a run's configuration and identity as "program.NAME = VALUE", as settings are. */
 #ifndef SPEC_PROGRAM_SPEC_H
 #define SPEC_PROGRAM_SPEC_H
 
@@ -30,10 +30,10 @@ enum program_cost {
 };
 
 struct program_spec {
-    char file[256];         /* as it was asked for; "": a built-in program */
-    char arguments[256];    /* of an MPI program, divided as a shell divides words */
+    char file[256];      /* as it was asked for; "": a built-in program */
+    char arguments[256]; /* of an MPI program, divided as a shell divides words */
     enum program_cost cost;
-    double factor;          /* computing time is multiplied by it */
+    double factor; /* computing time is multiplied by it */
     /* What the plan found; no settings. */
     enum program_kind kind;
     char hash[65];          /* SHA-256 of the image, or of source, compiler and flags; "": none */
@@ -44,10 +44,10 @@ struct program_spec {
 /* What a program declares, read from its image before any of its code runs. */
 struct program_sheet {
     enum program_kind kind;
-    char name[32];        /* for tables and figures */
-    const char *title;    /* one line for people, "" */
-    const char *image;    /* the file to be loaded */
-    char hash[65];        /* as in program_spec */
+    char name[32];     /* for tables and figures */
+    const char *title; /* one line for people, "" */
+    const char *image; /* the file to be loaded */
+    char hash[65];     /* as in program_spec */
     int nparameter;
     const struct field *parameter; /* (nparameter) of kinds INT64, REAL, BOOL, CHOICE; offset 0 */
 };
@@ -63,18 +63,20 @@ union program_value {
 /* program_sheet_find: the parameter `name`, NULL: it declares none. */
 const struct field *program_sheet_find(const struct program_sheet *p, const char *name);
 
-/* program_parameter_text: `text` as a value of parameter `f` in its canonical form, in `a`; NULL with a
- * clause in `why` when it is none. */
+/* program_parameter_text: `text` as a value of parameter `f` in its canonical form, in `a`; NULL
+ * with a clause in `why` when it is none. */
 const char *program_parameter_text(const struct field *f, const char *text, struct arena *a,
                                    char *why, int size);
 
-/* program_value_find: what "NAME = VALUE" lines say of `name`: copied into buffer; false: nothing. */
+/* program_value_find: what "NAME = VALUE" lines say of `name`: copied into buffer; false: nothing.
+ */
 bool program_value_find(const char *lines, const char *name, char *buffer, int size);
 
 /* program_lines_add: one more "NAME = VALUE" line. */
 void program_lines_add(struct text *lines, const char *name, const char *value);
 
-/* program_lines_print: the lines with "program." before each, appended to *out; `lines` may be NULL. */
+/* program_lines_print: the lines with "program." before each, appended to *out; `lines` may be
+ * NULL. */
 void program_lines_print(const char *lines, struct text *out);
 
 #endif
