@@ -6,6 +6,7 @@
 #include "app/flag.h"
 #include "app/levels.h"
 #include "app/run_table.h"
+#include "app/shard.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "run/run.h"
@@ -23,6 +24,8 @@ static const char doc[] =
     "simulated time overflows (13.3 days), it is stored as failed, with the reason. The other "
     "points run, and the exit status "
     "is 1. A plan with no valid point is refused. Failed points are tried again the next time.\n\n"
+    "--shard K/N: only the runs of shard K of N, so that N hosts share the plan (mimdsim merge joins "
+    "their databases). --point ID: only this run of the plan (mimdsim plan lists them).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -61,11 +64,39 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     return store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
 }
 
-static bool *stored_already(struct store *s, const struct plan *p, bool force)
+/* Which part of the plan is asked for. */
+struct part {
+    struct shard shard;
+    const char *point; /* "HASH-REP" or the beginning of one; NULL: all */
+};
+
+static bool is_point(const char *point, const struct run_spec *r)
+{
+    char id[sizeof r->config_hash + 16];
+    snprintf(id, sizeof id, "%s-%d", r->config_hash, r->rep);
+    return point == NULL || strncmp(id, point, strlen(point)) == 0;
+}
+
+/* A point is one run: what names none, or several, was mistyped or cut too short. */
+static bool check_point(const char *point, const struct plan *p, struct err *e)
+{
+    int n = 0;
+    for (int i = 0; point != NULL && i < p->nrun; i++) n += is_point(point, &p->run[i]);
+    if (point == NULL || n == 1) return true;
+    return err_set(e, ERR_USAGE, "--point '%.80s': %s; `mimdsim plan` lists the runs", point,
+                   n == 0 ? "no run of this plan" : "the beginning of several runs");
+}
+
+/* What is stored already, and what other shards make. The plan's own runs decide about the shard: every host reads
+ * the same, before levels are settled by what its database knows. */
+static bool *skipped(struct store *s, const struct plan *p, const struct run_spec *settled, const struct part *part,
+                     bool force)
 {
     bool *skip = calloc((size_t)p->nrun, sizeof *skip);
     CHECK(skip);
-    for (int i = 0; i < p->nrun; i++) skip[i] = !force && store_has(s, &p->run[i]);
+    for (int i = 0; i < p->nrun; i++)
+        skip[i] = !shard_has(&part->shard, &p->run[i]) || !is_point(part->point, &p->run[i]) ||
+                  (!force && store_has(s, &settled[i]));
     return skip;
 }
 
@@ -93,7 +124,8 @@ static void say_failed(const struct keep *k)
             k->failed, k->done);
 }
 
-static bool answer(const struct common *c, const struct plan *p, bool keep_all, struct keep *k, struct err *e)
+static bool answer(const struct common *c, const struct plan *p, const struct part *part, bool keep_all,
+                   struct keep *k, struct err *e)
 {
     struct plan settled;
     if (!c->quiet) say_unused(p);
@@ -102,7 +134,7 @@ static bool answer(const struct common *c, const struct plan *p, bool keep_all, 
     k->store = arguments_store(c, c->database, e);
     if (!k->store) return false;
     if (!settle_plan(c, p, &settled, k, keep_all, e)) return false;
-    bool *skip = stored_already(k->store, &settled, c->force);
+    bool *skip = skipped(k->store, p, settled.run, part, c->force);
     bool ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
     return ok && run_table_print(k->store, &settled, c->json, stdout, e);
@@ -112,15 +144,18 @@ int cmd_run(int argc, char **argv)
 {
     struct common c;
     bool keep_all = take_flag(&argc, argv, "--keep-all");
+    const char *shard = take_value(&argc, argv, "--shard");
+    struct part part = {.point = take_value(&argc, argv, "--point")};
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO", doc, 1, 1);
     struct err e;
     err_clear(&e);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e, .quiet = c.quiet};
-    bool ok = plan_read(&p, c.arg[0], &o, &e);
+    bool ok = shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
+              check_point(part.point, &p, &e);
     c.force = c.force || keep_all; /* the same results, but not the same row */
-    ok = ok && answer(&c, &p, keep_all, &k, &e);
+    ok = ok && answer(&c, &p, &part, keep_all, &k, &e);
     store_close(k.store);
     bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);

@@ -1,0 +1,83 @@
+/* cmd_plan.c - mimdsim plan: the runs of a scenario, one a line, for engines that hand out work. */
+#include <stdio.h>
+#include <string.h>
+
+#include "app/flag.h"
+#include "app/shard.h"
+#include "app/verb.h"
+#include "base/json.h"
+
+static const char doc[] =
+    "List the runs of SCENARIO without running them: identity, kernel, machine, n, P, seed and repetition.\n\n"
+    "Example: mimdsim plan fig6 --shards 4\n"
+    "         mimdsim plan fig6 | tail -n +2 | cut -f 1 | parallel mimdsim run fig6 --point {} -o {}.db\n"
+    "\v--shards N adds the shard of N that each run belongs to (`mimdsim run SCENARIO --shard K/N`). Columns are "
+    "separated by tabs, and the first line names them. --json writes one document. `mimdsim run SCENARIO --point ID` "
+    "makes one of these runs, and `mimdsim merge` joins the databases.";
+
+static void line(const struct run_spec *r, int shards)
+{
+    printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name, r->machine.name, r->model.nbody,
+           r->nrank, (unsigned long long)r->seed, r->rep);
+    if (shards > 0) printf("\t%d", shard_of(r, shards));
+    printf("%s%s\n", r->refused != NULL ? "\trefused: " : "", r->refused != NULL ? r->refused : "");
+}
+
+static void row(struct json *j, const struct run_spec *r, int shards)
+{
+    char id[sizeof r->config_hash + 16];
+    snprintf(id, sizeof id, "%s-%d", r->config_hash, r->rep);
+    json_object(j);
+    json_key(j, "id"), json_text(j, id);
+    json_key(j, "config_hash"), json_text(j, r->config_hash);
+    json_key(j, "kernel"), json_text(j, r->kernel.name);
+    json_key(j, "machine"), json_text(j, r->machine.name);
+    json_key(j, "n"), json_int(j, r->model.nbody);
+    json_key(j, "P"), json_int(j, r->nrank);
+    json_key(j, "seed"), json_int(j, (int64_t)r->seed);
+    json_key(j, "rep"), json_int(j, r->rep);
+    if (shards > 0) json_key(j, "shard"), json_int(j, shard_of(r, shards));
+    if (r->refused != NULL) json_key(j, "refused"), json_text(j, r->refused);
+    json_end(j);
+}
+
+static void list(const struct common *c, const struct plan *p, int shards)
+{
+    struct json j = json_make(stdout);
+    if (c->json) json_array(&j);
+    else printf("id\tkernel\tmachine\tn\tP\tseed\trep%s\n", shards > 0 ? "\tshard" : "");
+    for (int i = 0; i < p->nrun; i++)
+        if (c->json) row(&j, &p->run[i], shards);
+        else line(&p->run[i], shards);
+    if (c->json) json_end(&j), json_finish(&j);
+}
+
+/* --shards N, 0 without it. */
+static bool read_shards(const char *text, int *shards, struct err *e)
+{
+    char whole[64];
+    struct shard s;
+    *shards = 0;
+    if (text == NULL) return true;
+    snprintf(whole, sizeof whole, "1/%s", text);
+    if (strlen(text) > 20 || !shard_parse(whole, &s, e))
+        return err_set(e, ERR_USAGE, "--shards '%.40s': expected a number of shards, such as 8", text);
+    *shards = s.of;
+    return true;
+}
+
+int cmd_plan(int argc, char **argv)
+{
+    struct common c;
+    struct err e;
+    struct plan p = {0};
+    int shards;
+    err_clear(&e);
+    const char *text = take_value(&argc, argv, "--shards");
+    common_parse(&c, argc, argv, TAKES_PLAN, "SCENARIO", doc, 1, 1);
+    const struct plan_options o = common_plan(&c);
+    const bool ok = read_shards(text, &shards, &e) && plan_read(&p, c.arg[0], &o, &e);
+    if (ok) list(&c, &p, shards);
+    plan_free(&p);
+    return ok ? 0 : common_fail(&c, &e);
+}

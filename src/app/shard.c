@@ -1,0 +1,31 @@
+/* shard.c - see shard.h. */
+#include "app/shard.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 };
+
+bool shard_parse(const char *text, struct shard *out, struct err *e)
+{
+    *out = (struct shard){0};
+    if (text == NULL) return true;
+    int used = 0;
+    const bool read = sscanf(text, "%9d/%9d%n", &out->number, &out->of, &used) == 2 && text[used] == '\0';
+    if (read && out->number >= 1 && out->number <= out->of && out->of <= MOST_SHARDS) return true;
+    return err_set(e, ERR_USAGE, "--shard '%.40s': expected K/N with 1 <= K <= N <= %d, such as 1/8", text,
+                   MOST_SHARDS);
+}
+
+int shard_of(const struct run_spec *run, int of)
+{
+    /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by one. */
+    char digits[HASH_DIGITS + 1];
+    snprintf(digits, sizeof digits, "%.*s", HASH_DIGITS, run->config_hash);
+    return (int)((strtoull(digits, NULL, 16) + (unsigned)run->rep) % (unsigned)of) + 1;
+}
+
+bool shard_has(const struct shard *s, const struct run_spec *run)
+{
+    return s->of == 0 || shard_of(run, s->of) == s->number;
+}
