@@ -4,7 +4,8 @@
  * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
  * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
  * pass unchanged between model order and here. H and its complement W are orthonormal.
- * Work: the functions do not count; joint_cost_of has what each does for a joint type. */
+ * Work: the functions do not count; joint_cost_of has what each does for a joint type. What is different for each type
+ * stands in a file of its own (joint_motion.h). */
 #ifndef DYNAMICS_BODY_H
 #define DYNAMICS_BODY_H
 
@@ -25,13 +26,13 @@ struct body {
     int q_at, u_at;         /* first of each in the model's arrays */
     bool has_spring, turned;/* turned: the internal frame differs from the user's */
     struct xform tree;      /* (E, t): joint frame -> parent's body frame, internal axes */
-    real pitch, unit;       /* helical: advance per radian and 1 / sqrt(1 + pitch^2) */
+    real pitch, unit;       /* JOINT_PITCH: advance per radian and 1 / sqrt(1 + pitch^2) */
     real m, s[3];           /* mass; centre of mass from the origin */
     real jc[6];             /* inertia about the centre of mass */
     struct inertia inertia; /* about the origin */
     struct sym6 phi;        /* inverse of the 6x6 inertia; zero when it has none */
     real user[9];           /* user's body axes = user * internal axes */
-    real slide[9];          /* slot, point-plane: rows: directions in the joint frame, the free ones first */
+    real slide[9];          /* JOINT_AS_IT_LIES: rows: own axes in the joint frame, the free directions first */
     real stiffness, rest, damping;
 };
 
@@ -57,12 +58,10 @@ struct joint_cost {
  * `a`. Bodies equal to their predecessor cost nothing. */
 const struct body *bodies_make(const struct model *m, struct arena *a);
 
-/* body_picks: no column of the joint's H and W is ever written: all of them are unit vectors for good. */
-static inline bool body_picks(const struct body *b)
-{
-    const enum model_joint j = b->joint;
-    return j != JOINT_HELICAL && j != JOINT_UNIVERSAL && j != JOINT_SLOT && j != JOINT_POINT_PLANE;
-}
+/* body_picks: no column of the joint's H and W is ever written: all of them are unit vectors for good. joint_pick: the
+ * numbers of these unit vectors for a joint type, H's then W's (6); NULL: they are none. */
+bool body_picks(const struct body *b);
+const signed char *joint_pick(enum model_joint joint);
 
 /* base_motion: acceleration of the base minus gravity (6), [angular; linear]. */
 void base_motion(const struct model *m, const struct state *s, real *a);
@@ -70,7 +69,7 @@ void base_motion(const struct model *m, const struct state *s, real *a);
 /* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
 void body_place(const struct body *b, const real *q, struct body_pose *pose);
 
-/* body_subspace: H and W alone, for a neighbour's joint; needs q only for universal, slot and point-plane. */
+/* body_subspace: H and W alone, for a neighbour's joint; needs q only where columns move. */
 void body_subspace(const struct body *b, const real *q, struct subspace *s);
 
 /* body_rate: h = H u (6), the joint's relative velocity. */

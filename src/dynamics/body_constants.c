@@ -52,59 +52,46 @@ static void rotation_from(quad *r, int i, const quad *first, const quad *second)
     }
 }
 
+/* Columns: the joint's own axes, its axis along z (or x), as its traits say. */
+static void own_axes(const struct body_def *b, quad *columns)
+{
+    quad n[3], t[3];
+    const bool directed = b->axis2[0] != 0 || b->axis2[1] != 0 || b->axis2[2] != 0;
+    unit_of(b->axis, n);
+    if (joint_has(b->joint, JOINT_TWO_AXES) || (joint_has(b->joint, JOINT_NORMAL) && directed)) {
+        unit_of(b->axis2, t);
+        orthonormalise(t, n);
+    } else {
+        any_orthogonal(n, t);
+    }
+    rotation_from(columns, joint_has(b->joint, JOINT_ALONG_X) ? 0 : 2, n, t);
+}
+
 /* Whether the joint's axis is z as it stands and nothing else is asked of x and y: the common case. */
 static bool along_z(const struct body_def *b)
 {
-    return b->joint != JOINT_UNIVERSAL && b->axis[0] == 0 && b->axis[1] == 0 && b->axis[2] > 0 && b->axis2[0] == 0 &&
-           b->axis2[1] == 0 && b->axis2[2] == 0;
+    return !joint_has(b->joint, JOINT_TWO_AXES) && b->axis[0] == 0 && b->axis[1] == 0 && b->axis[2] > 0 &&
+           b->axis2[0] == 0 && b->axis2[1] == 0 && b->axis2[2] == 0;
 }
 
-/* The rotation internal -> user of body i's frame: z (universal: x, y) along the axes. False: not turned. */
+/* The rotation internal -> user of body i's frame: the joint's own axes. False: not turned. */
 static bool turn_of(const struct model *m, int i, quad *r)
 {
     mat3_identity(r);
     if (i < 0) return false;
     const struct body_def *b = &m->body[i];
-    if (along_z(b)) return false;
-    quad n[3], t[3];
-    switch (b->joint) {
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_HELICAL:
-    case JOINT_CYLINDRICAL:
-    case JOINT_PLANAR:
-        unit_of(b->axis, n);
-        any_orthogonal(n, t);
-        if (b->joint == JOINT_PLANAR && (b->axis2[0] != 0 || b->axis2[1] != 0 || b->axis2[2] != 0)) {
-            unit_of(b->axis2, t);
-            orthonormalise(t, n);
-        }
-        rotation_from(r, 2, n, t);
-        break;
-    case JOINT_UNIVERSAL:
-        unit_of(b->axis, n);
-        unit_of(b->axis2, t);
-        orthonormalise(t, n);
-        rotation_from(r, 0, n, t);
-        break;
-    default: return false;
-    }
+    if (along_z(b) || !joint_has(b->joint, JOINT_AXIS) || joint_has(b->joint, JOINT_AS_IT_LIES)) return false;
+    own_axes(b, r);
     return !(r[0] == 1 && r[4] == 1 && r[8] == 1);
 }
 
-/* Directions of slot (x = axis) and point-plane (z = axis) as rows. */
+/* The joint's own axes as rows, where they do not turn the body's frame. */
 static void slide_of(const struct body_def *b, quad *slide)
 {
+    quad columns[9];
     mat3_identity(slide);
-    if (b->joint != JOINT_SLOT && b->joint != JOINT_POINT_PLANE) return;
-    quad n[3], t[3], columns[9];
-    unit_of(b->axis, n);
-    any_orthogonal(n, t);
-    if (b->joint == JOINT_POINT_PLANE && (b->axis2[0] != 0 || b->axis2[1] != 0 || b->axis2[2] != 0)) {
-        unit_of(b->axis2, t);
-        orthonormalise(t, n);
-    }
-    rotation_from(columns, b->joint == JOINT_SLOT ? 0 : 2, n, t);
+    if (!joint_has(b->joint, JOINT_AS_IT_LIES)) return;
+    own_axes(b, columns);
     mat3_transpose(slide, columns);
 }
 

@@ -14,7 +14,7 @@ typedef __float128 quad;
 struct body_constants {
     quad tree_r[9], tree_p[3]; /* joint frame -> parent's body frame, internal axes */
     quad user[9];              /* user's body axes = user * internal axes */
-    quad slide[9];             /* rows: directions of slot and point-plane in the joint frame */
+    quad slide[9];             /* rows: own axes of joints that do not turn the body's frame, in the joint frame */
     quad unit;                 /* 1 / sqrt(1 + pitch^2) */
     quad s[3], jc[6];          /* centre of mass; inertia about it */
     quad ms[3], j[6];          /* about the origin */

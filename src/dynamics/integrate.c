@@ -97,10 +97,9 @@ static void normalise(struct integrator *it)
 {
     for (int i = 0; i < it->d->nbody; i++) {
         const struct body *b = &it->d->body[i];
-        if (b->joint != JOINT_SPHERICAL && b->joint != JOINT_FLOATING && b->joint != JOINT_SLOT &&
-            b->joint != JOINT_POINT_PLANE)
-            continue;
-        real *c = it->q + b->q_at + (b->joint == JOINT_FLOATING ? 3 : 0);
+        const int quaternion = joint_quaternion(b->joint);
+        if (quaternion < 0) continue;
+        real *c = it->q + b->q_at + quaternion;
         real scale = 1 / real_sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
         for (int k = 0; k < 4; k++) c[k] *= scale;
         work_add(&it->work, &(struct work){.flop = 7 + 4, .div = 1, .sqrt = 1});

@@ -55,12 +55,15 @@ static void centripetal(const real *w, const real *p, real *y)
     vec3_cross(y, w, y);
 }
 
+/* Whether the constraints' directions are fixed in frame a, not in b. */
+static bool moves_with_a(const struct loop *l) { return joint_has(l->joint, JOINT_AS_IT_LIES); }
+
 /* Constraint columns in frame b for joints; r: frame b -> frame a. */
 static void joint_columns(const struct loop *l, const real *r, struct loop_pose *p)
 {
     struct body free = {.joint = l->joint, .d = 6 - l->c};
     struct subspace s;
-    if (l->joint == JOINT_SLOT || l->joint == JOINT_POINT_PLANE) {
+    if (moves_with_a(l)) {
         for (int k = 0; k < l->c; k++)
             for (int j = 0; j < 3; j++) p->w[6 * k + j] = 0, p->w[6 * k + 3 + j] = r[3 * (3 - l->c + k) + j];
         return;
@@ -118,7 +121,6 @@ enum {
                        2 * MAT3_VEC_FLOP + VEC3_CROSS_FLOP + 2 * CENTRIPETAL_FLOP + VEC3_ADD_FLOP + 3 +
                        VEC3_CROSS_ADD_FLOP + SMALL_ANGLE_FLOP + 2 * MAT3_VEC_FLOP
 };
-static bool moves_with_a(const struct loop *l) { return l->joint == JOINT_SLOT || l->joint == JOINT_POINT_PLANE; }
 static void place_joint(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va,
                         const real *vb, struct loop_pose *p)
 {
@@ -141,7 +143,7 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     centripetal(a, pa, t);
     vec3_sub(p->gamma + 3, t);
     for (int k = 0; k < 3; k++) t[k] = a[k] + a[k];
-    /* slot and point-plane: W moves with frame a, which cancels w_J x v_J */
+    /* W moving with frame a cancels w_J x v_J */
     if (!moves_with_a(l)) vec3_add(t, turn);
     vec3_cross_sub(p->gamma + 3, t, slip);
     small_angle(rel.r, angle);

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "dynamics/body.h"
 #include "dynamics/planar_frame.h"
 #include "linalg/vec3.h"
 
@@ -52,7 +53,12 @@ static void axis_in_base(const struct model *m, int i, quad *x)
     }
 }
 
-static bool turns(enum model_joint joint) { return joint == JOINT_REVOLUTE || joint == JOINT_PLANAR; }
+static bool turns(enum model_joint joint)
+{
+    return joint_plane(joint) == PLANE_TURNS || joint_plane(joint) == PLANE_MOVES;
+}
+
+static bool slides(enum model_joint joint) { return joint_plane(joint) == PLANE_SLIDES; }
 
 /* The first axis of a turn; or orthogonal to the first two slides that are not parallel; or to the only one there is.
  */
@@ -67,7 +73,7 @@ static void first_normal(const struct model *m, quad *n)
         }
     vec3_set(n, 0, 0, 1);
     for (int i = 0; i < m->nbody; i++) {
-        if (m->body[i].joint != JOINT_PRISMATIC) continue;
+        if (!slides(m->body[i].joint)) continue;
         if (first < 0) {
             first = i;
             axis_in_base(m, i, slide);
@@ -95,9 +101,9 @@ static bool same(const struct model *m, int i, int j, const quad *normal)
 static bool settle(const struct body_def *b, quad tolerance, quad *n)
 {
     quad axis[3], tilt[3];
-    if (b->joint == JOINT_FIXED) return true;
+    if (joint_plane(b->joint) == PLANE_STAYS) return true;
     unit(b->axis, axis);
-    if (b->joint == JOINT_PRISMATIC) {
+    if (slides(b->joint)) {
         if (!(fabsq(vec3_dot(axis, n)) <= tolerance)) return false;
         orthonormalise(n, axis);
         return true;
@@ -166,10 +172,10 @@ void planar_frame(const struct model *m, int i, const quad *normal, quad *rows)
     quad *x = rows + 3, *y = rows + 6;
     vec3_copy(rows, normal);
     any_orthogonal(normal, x);
-    if (i >= 0 && m->body[i].joint == JOINT_PRISMATIC) {
+    if (i >= 0 && slides(m->body[i].joint)) {
         unit(m->body[i].axis, x);
         orthonormalise(x, normal);
-    } else if (i >= 0 && m->body[i].joint == JOINT_PLANAR) {
+    } else if (i >= 0 && joint_plane(m->body[i].joint) == PLANE_MOVES) {
         struct body_constants c;
         body_constants_place(m, i, &c);
         for (int k = 0; k < 3; k++) x[k] = c.user[3 * k];
@@ -197,11 +203,8 @@ void planar_normal_in(const struct frame *f, const quad *outer, quad *normal)
 
 int planar_loop_direction(enum model_joint joint, int k)
 {
-    static const signed char direction[JOINT_MIXED][6] = {
-        [JOINT_FIXED] = {0, 1, 2, 3, 4, 5}, [JOINT_REVOLUTE] = {0, 1, 3, 4, 5}, [JOINT_PRISMATIC] = {0, 1, 2, 3, 4},
-        [JOINT_CYLINDRICAL] = {0, 1, 3, 4}, [JOINT_SPHERICAL] = {3, 4, 5},      [JOINT_PLANAR] = {0, 1, 5},
-    };
-    const bool known = joint == JOINT_FIXED || joint == JOINT_REVOLUTE || joint == JOINT_PRISMATIC ||
-                       joint == JOINT_CYLINDRICAL || joint == JOINT_SPHERICAL || joint == JOINT_PLANAR;
-    return known ? direction[joint][k] : -1;
+    /* a loop's constraints are W of its joint: what follows H's columns */
+    const signed char *pick = joint_pick(joint);
+    const int column = joint_nu(joint) + k;
+    return pick && column < 6 ? pick[column] : -1;
 }

@@ -17,7 +17,7 @@ static void make_frames(const struct model *m, int i, const quad *normal, struct
     b->tree = (struct xform){(real)x[0], (real)x[1], {(real)x[2], (real)x[3]}};
     for (int k = 0; k < 9; k++) b->frame[k] = (real)own[k];
     for (int k = 0; k < 3; k++) along += def->axis[k] * own[k];
-    b->flipped = (def->joint == JOINT_REVOLUTE || def->joint == JOINT_PLANAR) && along < 0;
+    b->flipped = (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) && along < 0;
     b->has_spring = def->stiffness != 0 || def->damping != 0;
     b->stiffness = (real)def->stiffness;
     b->rest = (real)def->rest;
@@ -50,6 +50,7 @@ static void place_in_model(const struct model *m, int i, struct body *b)
 {
     b->parent = m->body[i].parent;
     b->joint = m->body[i].joint;
+    b->plane = joint_plane(b->joint);
     b->d = joint_nu(b->joint);
     b->nq = joint_nq(b->joint);
     b->q_at = m->q_at[i];
@@ -128,12 +129,12 @@ static void subspace_set(const struct body *b, struct subspace *s)
     static const signed char straight[3] = {0, 1, 2}, slide[3] = {1, 0, 2};
     s->d = b->d;
     s->c = SPACE - b->d;
-    s->pick = b->flipped ? NULL : b->joint == JOINT_PRISMATIC ? slide : straight;
+    s->pick = b->flipped ? NULL : b->plane == PLANE_SLIDES ? slide : straight;
     if (!b->flipped) return;
     for (int k = 0; k < SQUARE; k++) s->col[k] = 0;
     s->col[0] = -1;
     s->col[4] = 1;
-    s->col[8] = b->joint == JOINT_PLANAR ? -1 : 1;
+    s->col[8] = b->plane == PLANE_MOVES ? -1 : 1;
 }
 
 void body_subspace(const struct body *b, const real *q, struct subspace *s)
@@ -156,15 +157,15 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
     struct xform *x = &pose->x;
     subspace_set(b, &pose->s);
     *x = b->tree;
-    switch (b->joint) {
-    case JOINT_REVOLUTE:
+    switch (b->plane) {
+    case PLANE_TURNS:
         turn(b, q[0], x);
         break;
-    case JOINT_PRISMATIC:
+    case PLANE_SLIDES:
         x->p[0] += q[0] * x->c;
         x->p[1] += q[0] * x->s;
         break;
-    case JOINT_PLANAR:
+    case PLANE_MOVES:
         xform_shift(&b->tree, q[1], b->flipped ? -q[2] : q[2], x->p);
         turn(b, q[0], x);
         break;
@@ -188,7 +189,7 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
     bias[0] = 0;
     bias[1] = pull * (x->c * x->p[0] + x->s * x->p[1]);
     bias[2] = pull * (x->c * x->p[1] - x->s * x->p[0]);
-    if (b->joint != JOINT_PRISMATIC && b->joint != JOINT_PLANAR) return;
+    if (b->plane != PLANE_SLIDES && b->plane != PLANE_MOVES) return;
     const real t = w + w + h[0];
     bias[1] -= t * h[2];
     bias[2] += t * h[1];
@@ -212,7 +213,7 @@ void body_spring(const struct body *b, const real *q, const real *u, real *tau)
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
 {
     for (int i = 0; i < b->d; i++) qd[i] = u[i];
-    if (b->joint != JOINT_PLANAR) return;
+    if (b->plane != PLANE_MOVES) return;
     real sine, cosine;
     angle_sincos(q[0], &sine, &cosine);
     qd[1] = cosine * u[1] - sine * u[2];
@@ -222,7 +223,7 @@ void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
 void body_step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[3];
-    if (b->joint == JOINT_PLANAR) { /* displacement along the axes of mid-step */
+    if (b->plane == PLANE_MOVES) { /* displacement along the axes of mid-step */
         const real half = (real)0.5 * h;
         q[0] += half * u[0];
         body_qdot(b, q, u, rate);
@@ -244,17 +245,17 @@ enum { TURN = 6, SHIFT = 8, BIAS = 10, SLIDES = 6 };
 #define STEPS(n) .step = {.flop = 2 * (n)}
 #define PLANAR_STEPS .qdot = {.flop = 6, .trig = 2}, .step = {.flop = 15, .trig = 2}
 
-static const struct joint_cost picked[JOINT_MIXED] = {
-    [JOINT_FIXED] = {.bias = BIAS, PICKED(0)},
-    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), PICKED(1)},
-    [JOINT_PRISMATIC] = {.place = 4, .bias = BIAS + SLIDES, STEPS(1), PICKED(1)},
-    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, PICKED(3)},
+static const struct joint_cost picked[PLANE_MOVES + 1] = {
+    [PLANE_STAYS] = {.bias = BIAS, PICKED(0)},
+    [PLANE_TURNS] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), PICKED(1)},
+    [PLANE_SLIDES] = {.place = 4, .bias = BIAS + SLIDES, STEPS(1), PICKED(1)},
+    [PLANE_MOVES] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, PICKED(3)},
 };
-static const struct joint_cost given[JOINT_MIXED] = {
-    [JOINT_REVOLUTE] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), GIVEN(1)},
-    [JOINT_PLANAR] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, GIVEN(3)},
+static const struct joint_cost given[PLANE_MOVES + 1] = {
+    [PLANE_TURNS] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), GIVEN(1)},
+    [PLANE_MOVES] = {.place = TURN + SHIFT, .place_trig = 2, .bias = BIAS + SLIDES, PLANAR_STEPS, GIVEN(3)},
 };
 
-const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint]; }
+const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint_plane(joint)]; }
 
-const struct joint_cost *body_cost(const struct body *b) { return b->flipped ? &given[b->joint] : &picked[b->joint]; }
+const struct joint_cost *body_cost(const struct body *b) { return b->flipped ? &given[b->plane] : &picked[b->plane]; }

@@ -18,6 +18,7 @@
 struct body {
     int parent;
     enum model_joint joint;
+    enum joint_plane plane; /* what the joint does in the plane: all that the functions below ask of it */
     int d, nq;
     int q_at, u_at;
     bool has_spring, flipped;

@@ -45,14 +45,14 @@ static real turned(const struct body *b, real x) { return b->flipped ? -x : x; }
 static void joint_motion(const struct body *b, const double *u, real *h)
 {
     screw_zero(h);
-    switch (b->joint) {
-    case JOINT_REVOLUTE:
+    switch (b->plane) {
+    case PLANE_TURNS:
         h[0] = turned(b, (real)u[0]);
         break;
-    case JOINT_PRISMATIC:
+    case PLANE_SLIDES:
         h[1] = (real)u[0];
         break;
-    case JOINT_PLANAR:
+    case PLANE_MOVES:
         h[0] = turned(b, (real)u[0]), h[1] = (real)u[1], h[2] = turned(b, (real)u[2]);
         break;
     default:
@@ -63,14 +63,14 @@ static void joint_motion(const struct body *b, const double *u, real *h)
 /* And back: y = H^T x. */
 static void joint_part(const struct body *b, const real *x, double *y)
 {
-    switch (b->joint) {
-    case JOINT_REVOLUTE:
+    switch (b->plane) {
+    case PLANE_TURNS:
         y[0] = (double)turned(b, x[0]);
         break;
-    case JOINT_PRISMATIC:
+    case PLANE_SLIDES:
         y[0] = (double)x[1];
         break;
-    case JOINT_PLANAR:
+    case PLANE_MOVES:
         y[0] = (double)turned(b, x[0]), y[1] = (double)x[1], y[2] = (double)turned(b, x[2]);
         break;
     default:
@@ -81,12 +81,12 @@ static void joint_part(const struct body *b, const real *x, double *y)
 /* a += what joint_motion found, d flops. */
 static void joint_add(const struct body *b, const real *h, real *a)
 {
-    if (b->joint == JOINT_PLANAR) screw_add(a, h);
-    else if (b->joint == JOINT_PRISMATIC) a[1] += h[1];
+    if (b->plane == PLANE_MOVES) screw_add(a, h);
+    else if (b->plane == PLANE_SLIDES) a[1] += h[1];
     else if (b->d > 0) a[0] += h[0];
 }
 
-static bool slides(const struct body *b) { return b->joint == JOINT_PRISMATIC || b->joint == JOINT_PLANAR; }
+static bool slides(const struct body *b) { return b->plane == PLANE_SLIDES || b->plane == PLANE_MOVES; }
 
 /* start: place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: where the parent
  * moves 1 flop, and 1, 2 and 6 for the centripetal part; 5 for slides. */
@@ -249,14 +249,14 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
     struct moving *m = &x->moving[i], *parent = b->parent < 0 ? NULL : &x->moving[b->parent];
     real left[6], moved[SPACE], force[SPACE], shifted[SPACE];
     joint_motion(b, tau, force);
-    switch (b->joint) {
-    case JOINT_REVOLUTE:
+    switch (b->plane) {
+    case PLANE_TURNS:
         if (!give_way(m, 0, force[0], left, w)) return false;
         break;
-    case JOINT_PRISMATIC:
+    case PLANE_SLIDES:
         if (!give_way(m, 1, force[1], left, w)) return false;
         break;
-    case JOINT_PLANAR:
+    case PLANE_MOVES:
         break;
     default:
         for (int k = 0; k < 6; k++) left[k] = m->inertia[k];
@@ -265,8 +265,8 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
         w->flop += 15 + SCREW_ADD_FLOP;
     }
     if (!parent) return true;
-    if (b->joint != JOINT_PLANAR) hand_inertia(&m->pose.x, left, b->joint == JOINT_REVOLUTE, parent->inertia, w);
-    xform_force(moved, &m->pose.x, b->joint == JOINT_PLANAR ? force : m->f);
+    if (b->plane != PLANE_MOVES) hand_inertia(&m->pose.x, left, b->plane == PLANE_TURNS, parent->inertia, w);
+    xform_force(moved, &m->pose.x, b->plane == PLANE_MOVES ? force : m->f);
     screw_add(parent->f, moved);
     w->flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
     return true;
@@ -300,7 +300,7 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
     carried[1] += m->bias[1], carried[2] += m->bias[2];
     screw_copy(m->a, carried);
     w->flop += XFORM_MOTION_FLOP + 2;
-    if (b->joint == JOINT_PLANAR) {
+    if (b->plane == PLANE_MOVES) {
         real own[SPACE];
         joint_motion(b, tau, force);
         screw_sub(force, m->f);
@@ -310,7 +310,7 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
         screw_add(m->a, own);
         w->flop += 3 * SCREW_ADD_FLOP;
     } else if (b->d == 1) {
-        const int k = b->joint == JOINT_REVOLUTE ? 0 : 1;
+        const int k = b->plane == PLANE_TURNS ? 0 : 1;
         real along = m->inertia[row[k][0]] * carried[0], y[SPACE] = {0};
         for (int j = 1; j < 3; j++) along += m->inertia[row[k][j]] * carried[j];
         y[k] = m->per * (m->rest - along);

@@ -72,9 +72,10 @@ static void state_from(const struct dynamics *d, const double *y, struct state *
     memcpy(s->q, y, (size_t)m->nq * sizeof *y);
     memcpy(s->qd, y + m->nq, (size_t)m->nu * sizeof *y);
     for (int i = 0; i < m->nbody; i++) {
-        int nq = d->body[i].nq, at = d->body[i].q_at + (d->body[i].joint == JOINT_FLOATING ? 3 : 0);
-        if (nq < 4) continue;
-        double *c = s->q + at, length = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
+        const int quaternion = joint_quaternion(d->body[i].joint);
+        if (quaternion < 0) continue;
+        double *c = s->q + d->body[i].q_at + quaternion;
+        const double length = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
         for (int k = 0; k < 4; k++) c[k] /= length;
     }
 }

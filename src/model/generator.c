@@ -60,9 +60,8 @@ static void random_body(const struct model_spec *spec, int i, struct body_def *b
 /* Axes of the joint types: z, x, or x and y. */
 static void axes_of(struct body_def *b)
 {
-    b->axis[2] = 1;
-    if (b->joint == JOINT_UNIVERSAL || b->joint == JOINT_SLOT) b->axis[0] = 1, b->axis[2] = 0;
-    if (b->joint == JOINT_UNIVERSAL) b->axis2[1] = 1;
+    b->axis[joint_has(b->joint, JOINT_ALONG_X) ? 0 : 2] = 1;
+    if (joint_has(b->joint, JOINT_TWO_AXES)) b->axis2[1] = 1;
 }
 
 /* Twisted axes: about the rod for chains, any rotation where bodies branch. */
@@ -97,7 +96,7 @@ static bool add_rods(struct model *m, const struct model_spec *spec, struct err 
         b.joint = joint_of(spec, i, &r);
         name_body(&b, i);
         axes_of(&b);
-        b.pitch = b.joint == JOINT_HELICAL ? 0.1 * spec->length : 0;
+        b.pitch = joint_has(b.joint, JOINT_PITCH) ? 0.1 * spec->length : 0;
         placement_of(spec, &b, &r);
         if (spec->inertia == INERTIA_RANDOM)
             random_body(spec, i, &b);
@@ -119,7 +118,7 @@ static void turn_z(double *quat, double angle)
 /* The joint that closes rings: as the others, revolute where those would leave nothing to close. */
 static enum model_joint closing_joint(const struct model_spec *spec)
 {
-    bool fine = spec->joint == JOINT_SPHERICAL || spec->joint == JOINT_CYLINDRICAL || spec->joint == JOINT_PLANAR;
+    bool fine = spec->joint < JOINT_MIXED && joint_has(spec->joint, JOINT_CLOSES_RINGS);
     return fine ? spec->joint : JOINT_REVOLUTE;
 }
 

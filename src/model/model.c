@@ -45,14 +45,6 @@ static void complete_frame(struct frame *f)
 
 static bool frame_finite(const struct frame *f) { return all_finite(f->quat, 4) && all_finite(f->p, 3); }
 
-/* Joints whose axis must not be zero. */
-static bool needs_axis(enum model_joint joint)
-{
-    return joint == JOINT_REVOLUTE || joint == JOINT_PRISMATIC || joint == JOINT_HELICAL ||
-           joint == JOINT_CYLINDRICAL || joint == JOINT_UNIVERSAL || joint == JOINT_PLANAR || joint == JOINT_SLOT ||
-           joint == JOINT_POINT_PLANE;
-}
-
 static bool orthogonal(const double *x, const double *y)
 {
     double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -65,10 +57,10 @@ static const char *joint_fault(const struct body_def *b)
 {
     if (b->joint >= JOINT_MIXED) return "unknown joint type";
     if (!all_finite(b->axis, 3) || !all_finite(b->axis2, 3) || !isfinite(b->pitch)) return "axis or pitch not finite";
-    if (needs_axis(b->joint) && norm(b->axis, 3) == 0) return "its joint needs an axis that is not zero";
-    if (b->joint == JOINT_UNIVERSAL && (norm(b->axis2, 3) == 0 || !orthogonal(b->axis, b->axis2)))
-        return "a universal joint needs two orthogonal axes (use two revolute joints otherwise)";
-    if ((b->joint == JOINT_PLANAR || b->joint == JOINT_POINT_PLANE) && !orthogonal(b->axis, b->axis2))
+    if (joint_has(b->joint, JOINT_AXIS) && norm(b->axis, 3) == 0) return "its joint needs an axis that is not zero";
+    if (joint_has(b->joint, JOINT_TWO_AXES) && (norm(b->axis2, 3) == 0 || !orthogonal(b->axis, b->axis2)))
+        return "its joint needs two orthogonal axes (use two revolute joints otherwise)";
+    if (joint_has(b->joint, JOINT_NORMAL) && !orthogonal(b->axis, b->axis2))
         return "the direction of x must lie in the joint's plane";
     if (!isfinite(b->stiffness) || !isfinite(b->rest) || !isfinite(b->damping)) return "spring or damper not finite";
     if ((b->stiffness != 0 || b->damping != 0) && joint_nu(b->joint) != 1)
@@ -107,9 +99,8 @@ static const char *loop_fault(const struct model *m, const struct loop_def *l)
     if (l->nrow > 0 && !all_finite(&l->row[0][0], 6 * l->nrow)) return "row not finite";
     for (int i = 0; i < l->nrow; i++)
         if (norm(l->row[i], 6) == 0) return "a row is zero";
-    if (l->nrow == 0 && (l->joint >= JOINT_MIXED || l->joint == JOINT_FLOATING)) return "its joint constrains nothing";
-    if (l->nrow == 0 && (l->joint == JOINT_HELICAL || l->joint == JOINT_UNIVERSAL))
-        return "helical and universal joints can only be tree joints";
+    if (l->nrow == 0 && (l->joint >= JOINT_MIXED || joint_nu(l->joint) == 6)) return "its joint constrains nothing";
+    if (l->nrow == 0 && joint_has(l->joint, JOINT_IN_TREES)) return "a joint of its type cannot close a loop";
     if (!isfinite(l->alpha) || !isfinite(l->beta) || l->alpha < 0 || l->beta < 0)
         return "stabilisation must be finite and not negative";
     return NULL;

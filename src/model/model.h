@@ -1,23 +1,10 @@
 /* model.h - a multibody system as its user describes it: bodies, joints, loops; and its state.
  *
  * Bodies are numbered parents first. All vectors over joints (q, u, u', tau) are stacked in body order, in the
- * conventions below, which are those of reference files and robots, and every algorithm takes and gives them so:
+ * conventions of spec/joint_list.h, which are those of reference files and robots, and every algorithm takes and gives
+ * them so; tau is conjugate to u.
  *
- *   joint        q (nq)                       u = velocity (nu), tau is conjugate to it
- *   fixed        -                            -
- *   revolute     angle                        rate
- *   prismatic    displacement                 rate
- *   helical      angle                        s * rate, s = sqrt(1 + pitch^2), so that the axis has unit length
- *   cylindrical  angle, displacement          rates
- *   universal    angle 1, angle 2             rates
- *   spherical    quaternion x y z w           angular velocity relative to the parent, body axes
- *   planar       angle, x, y                  angular rate, then velocity of the origin in body axes x, y
- *   slot         quaternion x y z w, x        angular velocity in body axes, rate of x
- *   point-plane  quaternion x y z w, x, y     angular velocity in body axes, rates of x, y
- *   floating     p (3), quaternion x y z w    velocity of the origin in body axes (3), angular velocity in body axes
- *
- * Quaternions turn body into joint-frame components and need not be normalised. Units: the model's own, coherent;
- * the factors to SI are in the model. */
+ * Units: the model's own, coherent; the factors to SI are in the model. */
 #ifndef MODEL_MODEL_H
 #define MODEL_MODEL_H
 
@@ -134,9 +121,19 @@ struct state *state_generate(const struct model *m, const struct model_spec *spe
 /* state_fext_need: the state's fext array, taken (zero) when there was none. */
 double *state_fext_need(struct state *s, const struct model *m, struct arena *a);
 
-/* joint_nq, joint_nu: numbers of coordinates and velocities of a joint type. joint_name: as in scenario files. */
+/* joint_nq, joint_nu: numbers of coordinates and velocities of a joint type. joint_name: as in scenario files.
+ * joint_coordinates, joint_plane, joint_has: the columns of spec/joint_list.h. */
 int joint_nq(enum model_joint joint);
 int joint_nu(enum model_joint joint);
 const char *joint_name(enum model_joint joint);
+const char *joint_coordinates(enum model_joint joint);
+enum joint_plane joint_plane(enum model_joint joint);
+bool joint_has(enum model_joint joint, enum joint_trait trait);
+
+/* joint_quaternion: which coordinate is the first of its quaternion; -1: it has none. */
+int joint_quaternion(enum model_joint joint);
+
+/* joint_is_linear: whether component k of its velocity is linear, not angular. */
+bool joint_is_linear(enum model_joint joint, int k);
 
 #endif

@@ -15,9 +15,8 @@ struct state *state_take(const struct model *m, struct arena *a)
     s->qdd = TAKE(a, m->nu, double);
     s->tau = TAKE(a, m->nu, double);
     for (int i = 0; i < m->nbody; i++) {
-        enum model_joint joint = m->body[i].joint;
-        if (joint == JOINT_FLOATING) s->q[m->q_at[i] + 6] = 1;
-        if (joint == JOINT_SPHERICAL || joint == JOINT_SLOT || joint == JOINT_POINT_PLANE) s->q[m->q_at[i] + 3] = 1;
+        const int quaternion = joint_quaternion(m->body[i].joint);
+        if (quaternion >= 0) s->q[m->q_at[i] + quaternion + 3] = 1;
     }
     return s;
 }
@@ -28,20 +27,6 @@ double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
     return s->fext;
 }
 
-/* Whether component k of a joint's velocity is linear. */
-static bool is_linear(enum model_joint joint, int k)
-{
-    switch (joint) {
-    case JOINT_PRISMATIC: return true;
-    case JOINT_CYLINDRICAL: return k == 1;
-    case JOINT_PLANAR: return k > 0;
-    case JOINT_SLOT:
-    case JOINT_POINT_PLANE: return k > 2;
-    case JOINT_FLOATING: return k < 3;
-    default: return false;
-    }
-}
-
 /* x (nu) = normal numbers, scaled by `angular` or `linear` as each component is. */
 static void scatter(const struct model *m, uint64_t seed, enum pose_stream stream, double angular, double linear,
                     double *x)
@@ -50,7 +35,7 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
         struct random r = random_make(seed, stream, (uint64_t)i);
         enum model_joint joint = m->body[i].joint;
         for (int k = 0; k < joint_nu(joint); k++)
-            x[m->u_at[i] + k] = random_normal(&r) * (is_linear(joint, k) ? linear : angular);
+            x[m->u_at[i] + k] = random_normal(&r) * (joint_is_linear(joint, k) ? linear : angular);
     }
 }
 

@@ -9,8 +9,11 @@
 
 static const char *const generators[] = {"serial-chain", "comb", "star", "random-tree", "dendrimer", "ring",
                                          "four-bar", "polymer", "urdf", "vector", NULL};
-static const char *const joints[] = {"fixed", "revolute", "prismatic", "helical", "cylindrical", "universal",
-                                     "spherical", "planar", "slot", "point-plane", "floating", "mixed", NULL};
+static const char *const joints[] = {
+#define WORD(constant, word, stem, coordinates, plane, traits) word,
+    JOINT_LIST(WORD)
+#undef WORD
+    "mixed", NULL};
 static const char *const bases[] = {"fixed", "moving", "floating", NULL};
 static const char *const inertias[] = {"uniform", "random", NULL};
 static const char *const poses[] = {"straight", "folded", "coiled", "random", NULL};

@@ -5,13 +5,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "spec/joint_list.h"
+
 enum model_generator {
     MODEL_SERIAL_CHAIN, MODEL_COMB, MODEL_STAR, MODEL_RANDOM_TREE, MODEL_DENDRIMER, MODEL_RING, MODEL_FOUR_BAR,
     MODEL_POLYMER, MODEL_URDF, MODEL_VECTOR
 };
 enum model_joint {
-    JOINT_FIXED, JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_HELICAL, JOINT_CYLINDRICAL, JOINT_UNIVERSAL,
-    JOINT_SPHERICAL, JOINT_PLANAR, JOINT_SLOT, JOINT_POINT_PLANE, JOINT_FLOATING, JOINT_MIXED
+#define CONSTANT(constant, word, stem, coordinates, plane, traits) constant,
+    JOINT_LIST(CONSTANT)
+#undef CONSTANT
+    JOINT_MIXED /* every body's type is drawn among the others */
 };
 enum model_base { BASE_FIXED, BASE_MOVING, BASE_FLOATING };
 enum model_inertia { INERTIA_UNIFORM, INERTIA_RANDOM };
