@@ -1,5 +1,5 @@
-/* net.c - makes a net of a level: converts the machine's numbers to picoseconds once, sizes messages, forms the
- * closed form of the empty network. */
+/* net.c - makes a net of a level: converts the machine's numbers to picoseconds once, sizes
+ * messages, forms the closed form of the empty network. */
 #include <string.h>
 
 #include "base/random.h"
@@ -11,27 +11,34 @@ static const struct net_type *const levels[] = {
 #undef X
 };
 
-/* a bus is one resource, served first come first served: all levels mean the same, which is what `link` does */
+/* A bus is one resource, served first come first served: all levels mean the same, which is what
+ * `link` does. */
 static const struct net_type *level_of(const struct machine_spec *m)
 {
-    enum network_level level = topology_has(m->topology.family, TOPOLOGY_SHARED) ? LEVEL_LINK : m->network.level;
+    enum network_level level =
+        topology_has(m->topology.family, TOPOLOGY_SHARED) ? LEVEL_LINK : m->network.level;
     return (size_t)level < sizeof levels / sizeof *levels ? levels[level] : NULL;
 }
 
-static struct net_rate rate_make(const struct network_spec *w, double bandwidth, double least_s_per_byte)
+/* A rate from a bandwidth [B/s] and a floor from the software [s/B]: the slower one counts. With
+ * flits the time of a flit is rounded once to whole picoseconds, and the time of a byte follows
+ * from it, so that flits and bytes never disagree. */
+static struct net_rate rate_make(const struct network_spec *w, double bandwidth,
+                                 double least_s_per_byte)
 {
     double s_per_byte = bandwidth > 0 ? 1 / bandwidth : 0;
     if (s_per_byte < least_s_per_byte) s_per_byte = least_s_per_byte;
     struct net_rate r = {0, s_per_byte * SIM_PS_PER_S};
     if (w->flit_bytes > 0) {
         r.flit = ps_rounded((double)w->flit_bytes * r.byte);
+        /* A flit faster than a picosecond would take no time at all. */
         if (r.flit == 0 && r.byte > 0) r.flit = 1;
         r.byte = (double)r.flit / (double)w->flit_bytes;
     }
     return r;
 }
 
-/* rates of single links, only where they differ */
+/* Rates of single links, only where they differ: a torus of a million links has one. */
 static void link_rates_make(struct net *n, const struct network_spec *w)
 {
     if (topology_uniform(n->topology)) return;
@@ -42,26 +49,31 @@ static void link_rates_make(struct net *n, const struct network_spec *w)
     }
 }
 
-/* Segments of the software that differ in neither gap, rate nor latency share a range. */
+/* Injection ports by message size: the software's gap, rate and latency may change with the
+ * protocol. Segments that differ in neither share a range. */
 static void ports_make(struct net *n, const struct machine_spec *m)
 {
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
     const struct network_spec *w = &m->network;
-    const double bandwidth = w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth;
+    const double bandwidth =
+        w->injection_bandwidth > 0 ? w->injection_bandwidth : w->link_bandwidth;
     const int nlist = software_segments(&m->software, list);
     n->nport = 0;
     for (int i = 0; i < nlist; i++) {
-        struct net_port p = {INT64_MAX, rate_make(w, bandwidth, list[i].gap_per_byte), sim_from_seconds(list[i].gap),
+        struct net_port p = {INT64_MAX, rate_make(w, bandwidth, list[i].gap_per_byte),
+                             sim_from_seconds(list[i].gap),
                              sim_from_seconds(w->end_latency) + sim_from_seconds(list[i].latency)};
         struct net_port *last = n->nport > 0 ? &n->port[n->nport - 1] : NULL;
-        if (last && last->rate.flit == p.rate.flit && last->rate.byte == p.rate.byte && last->gap == p.gap &&
-            last->end == p.end)
+        if (last && last->rate.flit == p.rate.flit && last->rate.byte == p.rate.byte &&
+            last->gap == p.gap && last->end == p.end)
             continue;
         if (last) last->below = list[i].from;
         n->port[n->nport++] = p;
     }
 }
 
+/* Statistics of each resource: who it is (a node's port, or a link from router to router), then
+ * what passes. Only on demand: it costs memory in proportion to the machine. */
 static void loads_make(struct net *n)
 {
     n->load = TAKE(n->arena, n->nresource, struct link_load);
@@ -81,52 +93,69 @@ static void loads_make(struct net *n)
     }
 }
 
+/* Resources are numbered in an int: two ports for each node and every link. */
 static bool sizes_fit(const struct topology *t, struct err *e)
 {
     if (2 * (int64_t)t->nnode + t->nlink <= INT32_MAX) return true;
-    return err_set(e, ERR_CONFIG, "the network has %d nodes and %d links, more than can be numbered", t->nnode,
+    return err_set(e, ERR_CONFIG,
+                   "the network has %d nodes and %d links, more than can be numbered", t->nnode,
                    t->nlink);
 }
 
-/* what a router does for a head before its flits go on; the flits behind it do not wait for that */
+/* What a router does for a head before its flits go on; the flits behind it do not wait for that.
+ * Both parts lie within the hop latency, so that the empty network does not change. */
 static bool setup_make(struct net *n, const struct network_spec *w, struct err *e)
 {
     n->allocation = sim_from_seconds(w->vc_allocation_latency);
     n->setup = n->allocation + sim_from_seconds(w->routing_latency);
     if (n->setup <= n->tau) return true;
-    return err_set(e, ERR_CONFIG,
-                   "network.routing_latency %lld ps and network.vc_allocation_latency %lld ps are parts of "
-                   "network.hop_latency, which is %lld ps; expected at most that together",
-                   (long long)(n->setup - n->allocation), (long long)n->allocation, (long long)n->tau);
+    return err_set(
+        e, ERR_CONFIG,
+        "network.routing_latency %lld ps and network.vc_allocation_latency %lld ps are parts of "
+        "network.hop_latency, which is %lld ps; expected at most that together",
+        (long long)(n->setup - n->allocation), (long long)n->allocation, (long long)n->tau);
 }
 
-struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s, struct arena *a,
-                       net_deliver_fn *deliver, void *context, bool want_links, struct err *e)
+struct net *net_create(const struct machine_spec *m, const struct topology *t, struct sim *s,
+                       struct arena *a, net_deliver_fn *deliver, void *context, bool want_links,
+                       struct err *e)
 {
     const struct network_spec *w = &m->network;
     struct net *n = TAKE(a, 1, struct net);
     if (!level_of(m)) err_set(e, ERR_CONFIG, "there is no network level %d", (int)w->level);
     if (!level_of(m) || !sizes_fit(t, e)) return NULL;
-    *n = (struct net){
-        .type = level_of(m), .machine = m, .topology = t, .sim = s, .arena = a, .deliver = deliver, .context = context};
+    *n = (struct net){.type = level_of(m),
+                      .machine = m,
+                      .topology = t,
+                      .sim = s,
+                      .arena = a,
+                      .deliver = deliver,
+                      .context = context};
+    /* Seconds of the machine's file become picoseconds here, once; no level converts again. */
     n->nnode = t->nnode;
     n->nlink = t->nlink;
     n->nresource = 2 * t->nnode + t->nlink;
     n->tau = sim_from_seconds(w->hop_latency);
     n->credit = sim_from_seconds(w->credit_latency);
     if (!setup_make(n, w, e)) return NULL;
+    /* The levels add (R + 1) tau without a look at the clock: refuse what could wrap. */
     if (ps_times(t->max_hops + 2, n->tau) > PS_LAST) {
-        err_set(e, ERR_CONFIG, "network.hop_latency: a route of %d routers takes longer than the largest "
-                               "simulated time, %.3g s",
+        err_set(e, ERR_CONFIG,
+                "network.hop_latency: a route of %d routers takes longer than the largest "
+                "simulated time, %.3g s",
                 t->max_hops + 1, PS_LAST / SIM_PS_PER_S);
         return NULL;
     }
     n->flit_bytes = w->flit_bytes > 0 ? w->flit_bytes : 1;
     n->link = rate_make(w, w->link_bandwidth, 0);
     ports_make(n, m);
-    n->ejection = rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
+    n->ejection =
+        rate_make(w, w->ejection_bandwidth > 0 ? w->ejection_bandwidth : w->link_bandwidth, 0);
     link_rates_make(n, w);
-    n->port_private = software_eager_most(&m->software) == INT64_MAX && t->spec->processors_per_node == 1;
+    /* An eager message leaves when its sender says so, in the order of the sends. A rendezvous
+     * waits for an answer, and another processor of the node may come in between. */
+    n->port_private =
+        software_eager_most(&m->software) == INT64_MAX && t->spec->processors_per_node == 1;
     if (want_links) loads_make(n);
     return n->type->create(n, e) ? n : NULL;
 }
@@ -143,6 +172,7 @@ void net_send(struct net *n, struct net_message *m)
     n->type->send(n, m);
 }
 
+/* T = R tau + (S - 1) flits + end, the same on every level (net_internal.h). */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes)
 {
     struct net_message m = {.src = src, .dst = dst, .bytes = bytes};
@@ -166,6 +196,8 @@ bool net_ask_others(struct net *n, net_others_fn *others, void *context)
     return true;
 }
 
+/* Messages in the network and no event left: a cycle of full buffers, or none of the net's
+ * making. */
 bool net_deadlock(const struct net *n, char *text, int size)
 {
     if (n->in_flight == 0 || !n->type->deadlock) return false;

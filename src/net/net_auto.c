@@ -1,38 +1,45 @@
-/* net_auto.c - level auto: the answer of level packet, bit for bit, without simulating messages that meet nobody.
+/* net_auto.c - level auto: the answer of level packet, bit for bit, without simulating messages
+ * that meet nobody.
  *
- * Because a granted packet never stalls, a message alone follows a closed form. When a message starts, its closed
- * form is compared with the claims of other such messages on its resources and with the earliest possible arrivals of
- * simulated ones. If nothing can interfere, the claims are noted and one event, the delivery, is posted. Otherwise it
- * is simulated, and so is every optimistic message that it might meet (net_auto_simulate.c): up to now each of those
- * is exactly where its closed form says, so nothing has to be taken back. */
+ * Because a granted packet never stalls, a message alone follows a closed form. When a message
+ * starts, its closed form is compared with the claims of other such messages on its resources and
+ * with the earliest possible arrivals of simulated ones. If nothing can interfere, the claims are
+ * noted and one event, the delivery, is posted. Otherwise it is simulated, and so is every
+ * optimistic message that it might meet (net_auto_simulate.c): up to now each of those is exactly
+ * where its closed form says, so nothing has to be taken back. */
 #include "net/net_auto.h"
 
 static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
 /* ---- the closed form ---- */
 
-/* In a message of several packets none waits for the one before when the injection port is the slowest resource and
- * each finds room: packet i passes a resource i paces after the first, and by the credit rule (credit_bound in
- * net_packet.c) it may, whichever packet `ahead` of it one looks at.
- * Routers that need time between packets make it wait. */
+/* In a message of several packets none waits for the one before when the injection port is the
+ * slowest resource and each finds room: packet i passes a resource i paces after the first, and by
+ * the credit rule (credit_bound in net_packet.c) it may, whichever packet `ahead` of it one looks
+ * at. Routers that need time between packets make it wait. */
 static bool train_flows(const struct fabric *f, const struct flight *w)
 {
     if (w->npacket == 1) return true;
     sim_ps flit = w->pass[0].flit, tau = f->net->tau, credit = f->net->credit;
     if (flit < w->slowest || f->net->setup > 0) return false;
+    /* Each earlier packet that may bind: its first and last flits that matter, as in credit_bound,
+     * but with all packets one pace apart. */
     for (int64_t apart = w->full; apart - w->full < f->buffer; apart += w->full) {
         if (apart + w->full <= f->buffer) continue;
-        int64_t ahead = apart - f->buffer, k0 = ahead < 0 ? -ahead : 0, k1 = w->full - 1 - (ahead > 0 ? ahead : 0);
+        int64_t ahead = apart - f->buffer, k0 = ahead < 0 ? -ahead : 0,
+                k1 = w->full - 1 - (ahead > 0 ? ahead : 0);
         sim_ps since = apart * flit - tau;
         if (since < 0 || since < (k0 + ahead) * flit + credit - k0 * f->fastest) return false;
         if (since < (k1 + ahead) * flit + credit - k1 * f->fastest) return false;
     }
+    /* Packets that overlap behind a link need a channel each. */
     for (int h = 0; h < w->nhop; h++)
         if (w->pass[h].nchannel > 1 && auto_overlap(f, w, h) > w->pass[h].nchannel) return false;
     return true;
 }
 
-/* fill in the claims of w, starting at `start`; returns when it will be delivered */
+/* Fill in the claims of w, starting at `start`; returns when it will be delivered. The head is at
+ * resource h at start + h tau; flits leave at the slowest rate so far. */
 static sim_ps closed_form(const struct fabric *f, struct flight *w, sim_ps start)
 {
     const struct net *n = f->net;
@@ -47,6 +54,8 @@ static sim_ps closed_form(const struct fabric *f, struct flight *w, sim_ps start
     }
     for (int h = 0; h <= w->nhop; h++) {
         struct pass *s = &w->pass[h];
+        /* With one channel and equal rates the next message may follow sooner, namely as soon as
+         * the credit rule cannot bind it; else only when every trace is gone. */
         bool plain = s->nchannel == 1 && w->slowest == f->fastest;
         sim_ps clear = auto_clear(f, s);
         if (!plain || h == w->nhop) s->follow = clear;
@@ -62,6 +71,9 @@ static bool same_fifo(const struct pass *a, const struct pass *b)
     return a->channel == b->channel;
 }
 
+/* Claims are in order of time: those that begin after this one has gone cannot meet it. In
+ * different FIFOs messages only compete for the link itself, in the same FIFO for its room as
+ * well. */
 static bool meets_claims(const struct resource *o, const struct pass *s)
 {
     for (const struct pass *c = o->claim; c; c = c->next) {
@@ -73,7 +85,10 @@ static bool meets_claims(const struct resource *o, const struct pass *s)
     return false;
 }
 
-static bool meets_simulated(const struct fabric *f, const struct resource *o, const struct pass *s, sim_ps now)
+/* Simulated messages have no fixed times: compare with the earliest at which each could come. MOST
+ * bounds the cost; beyond it the message is simulated, which is always right. */
+static bool meets_simulated(const struct fabric *f, const struct resource *o, const struct pass *s,
+                            sim_ps now)
 {
     enum { MOST = 32 };
     if (s->hop > 0 && o->free > s->begin) return true;
@@ -81,6 +96,7 @@ static bool meets_simulated(const struct fabric *f, const struct resource *o, co
     for (const struct pass *d = o->pending; d; d = d->next)
         if (looked++ == MOST || auto_earliest(f, d, now) < auto_clear(f, s)) return true;
     if (s->hop == s->flight->nhop || !o->fifo) return false;
+    /* Whoever stands in a FIFO, or whose credits are on their way, might delay it. */
     for (int i = s->channel; i < s->channel + s->nchannel; i++) {
         const struct fifo *q = &o->fifo[i];
         if (q->front || later(q->left, q->free) > s->begin || q->home > s->begin) return true;
@@ -88,7 +104,8 @@ static bool meets_simulated(const struct fabric *f, const struct resource *o, co
     return false;
 }
 
-/* a message of this node that was admitted at this same time but comes after w in the order of sending */
+/* A message of this node that was admitted at this same time but comes after w in the order of
+ * sending: w must go first, so that neither closed form holds. */
 static bool overtakes(const struct fabric *f, const struct flight *w)
 {
     const struct pass *s = f->source[w->m->src].last_claim;
@@ -97,25 +114,30 @@ static bool overtakes(const struct fabric *f, const struct flight *w)
     return o->ready > w->m->ready || (o->ready == w->m->ready && o->id > w->m->id);
 }
 
-/* when w, alone, will be delivered; SIM_NEVER when it might meet somebody */
+/* When w, alone, will be delivered; SIM_NEVER when it might meet somebody. Doubtful cases are
+ * simulated: only time is lost then, never exactness. */
 static sim_ps foresee(struct fabric *f, struct flight *w, sim_ps now)
 {
-    if (f->source[w->m->src].front || overtakes(f, w) || !train_flows(f, w) || f->net->tau == 0) return SIM_NEVER;
+    if (f->source[w->m->src].front || overtakes(f, w) || !train_flows(f, w) || f->net->tau == 0)
+        return SIM_NEVER;
     sim_ps arrival = closed_form(f, w, later(now, f->resource[w->m->src].free));
     for (int h = 0; h <= w->nhop; h++) {
         const struct resource *o = &f->resource[w->pass[h].resource];
-        if (meets_simulated(f, o, &w->pass[h], now) || meets_claims(o, &w->pass[h])) return SIM_NEVER;
+        if (meets_simulated(f, o, &w->pass[h], now) || meets_claims(o, &w->pass[h]))
+            return SIM_NEVER;
     }
     return arrival;
 }
 
+/* The claims are noted and the injection port is taken; nothing else of the fabric is touched. */
 static void admit(struct fabric *f, struct flight *w, sim_ps arrival)
 {
     struct resource *port = &f->resource[w->m->src];
     f->nadmitted++;
     w->optimistic = true;
     w->port_before = port->free;
-    port->free = later(w->pass[0].end, w->pass[0].end - w->pass[0].flit + net_port(f->net, w->m->bytes)->gap);
+    port->free = later(w->pass[0].end,
+                       w->pass[0].end - w->pass[0].flit + net_port(f->net, w->m->bytes)->gap);
     w->m->injected = w->pass[0].begin;
     for (int h = 0; h <= w->nhop; h++) pass_claim(f, &w->pass[h]);
     packet_deliver_at(f, w, arrival);
@@ -124,6 +146,7 @@ static void admit(struct fabric *f, struct flight *w, sim_ps arrival)
 
 /* ---- the level ---- */
 
+/* Two events at most for a message that meets nobody: start and delivery. */
 static void auto_start(struct fabric *f, struct flight *w, sim_ps now)
 {
     if (!f->net->port_private) flight_measure(f, w);
@@ -156,7 +179,9 @@ static void auto_send(struct net *n, struct net_message *m)
     if (m->ready == now)
         auto_start(f, w, now);
     else
-        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), start_event, f, (uintptr_t)w);
+        sim_at(n->sim, m->ready, NET_LANE_START, net_event_key(0, m->id), start_event, f,
+               (uintptr_t)w);
 }
 
-const struct net_type net_auto = {"auto", LEVEL_AUTO, auto_create, auto_send, packet_occupy, packet_deadlock, false};
+const struct net_type net_auto = {"auto",        LEVEL_AUTO,      auto_create, auto_send,
+                                  packet_occupy, packet_deadlock, false};

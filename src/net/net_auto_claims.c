@@ -1,11 +1,12 @@
-/* net_auto_claims.c - what optimistic messages have claimed: where each is by its closed form, and what stays of it
- * when it has been delivered (net_auto.h). */
+/* net_auto_claims.c - what optimistic messages have claimed: where each is by its closed form, and
+ * what stays of it when it has been delivered (net_auto.h). */
 #include "net/net_auto.h"
 
 static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
 /* ---- lists of passes ---- */
 
+/* A pass is in one list at a time: as a claim, or as one that is still to come. */
 static struct pass **pass_list(struct fabric *f, const struct pass *s)
 {
     struct resource *o = &f->resource[s->resource];
@@ -20,10 +21,13 @@ void pass_unlink(struct fabric *f, struct pass *s)
     else
         *pass_list(f, s) = s->next;
     if (s->next) s->next->prev = s->prev;
-    if (s->hop == 0 && f->source[s->resource].last_claim == s) f->source[s->resource].last_claim = s->prev;
+    if (s->hop == 0 && f->source[s->resource].last_claim == s)
+        f->source[s->resource].last_claim = s->prev;
     s->state = PASS_NONE;
 }
 
+/* Insertion by time from the front. Claims of an injection port come in order, so that they are
+ * appended without a search. */
 void pass_claim(struct fabric *f, struct pass *s)
 {
     struct resource *o = &f->resource[s->resource];
@@ -46,6 +50,8 @@ void pass_claim(struct fabric *f, struct pass *s)
 
 /* ---- where a message is ---- */
 
+/* A packet stays behind pass h from its head's arrival until its tail has left; packets come one
+ * pace apart. */
 int auto_overlap(const struct fabric *f, const struct flight *w, int h)
 {
     sim_ps pace = auto_pace(w), stay = f->net->tau + pace - w->pass[0].flit + w->pass[h + 1].flit;
@@ -59,18 +65,22 @@ int auto_lane(const struct fabric *f, const struct flight *w, int index, int h)
     return s->channel + index % auto_overlap(f, w, h);
 }
 
+/* The last pass behind that has granted a packet more: from there the next packet needs tau a hop,
+ * if nothing delays it. A lower bound that only grows with time. */
 sim_ps auto_earliest(const struct fabric *f, const struct pass *s, sim_ps now)
 {
     const struct flight *w = s->flight;
     int g = s->hop - 1;
     while (g >= 0 && w->pass[g].granted <= s->granted) g--;
     sim_ps at = now;
-    if (g >= 0 && w->pass[g].granted == s->granted + 1) at = later(now, w->pass[g].last + f->net->tau);
+    if (g >= 0 && w->pass[g].granted == s->granted + 1)
+        at = later(now, w->pass[g].last + f->net->tau);
     return at + (s->hop - g - 1) * f->net->tau;
 }
 
 /* ---- after delivery ---- */
 
+/* A pointer that a later grant has set already stays. */
 void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s, int granted)
 {
     const struct flight *w = s->flight;
@@ -80,6 +90,7 @@ void auto_turn(const struct fabric *f, struct resource *o, const struct pass *s,
     o->turn_time = at;
 }
 
+/* Packets begin one pace apart, strictly before `until`. */
 int auto_granted(const struct flight *w, int h, sim_ps until)
 {
     if (!w->m) return w->npacket; /* delivered */
@@ -90,12 +101,14 @@ int auto_granted(const struct flight *w, int h, sim_ps until)
     return count < w->npacket ? (int)count : w->npacket;
 }
 
+/* Round-robin pointers are brought up to date when somebody needs them, not at every claim. */
 void auto_catch_up(struct fabric *f, struct resource *o, sim_ps now)
 {
     for (const struct pass *s = o->claim; s && s->begin < now; s = s->next)
         auto_turn(f, o, s, auto_granted(s->flight, s->hop, now));
 }
 
+/* The same sums as the grants of level packet would have made. */
 static void auto_account(struct fabric *f, const struct flight *w, sim_ps wait)
 {
     sim_ps slow = 0;
@@ -103,11 +116,13 @@ static void auto_account(struct fabric *f, const struct flight *w, sim_ps wait)
         const struct pass *s = &w->pass[h];
         slow = later(slow, s->flit);
         int64_t gaps = (int64_t)(w->npacket - 1) * (w->full - 1) + w->last - 1;
-        net_account(f->net, s->resource, 1, w->m->bytes, gaps * slow + w->npacket * s->flit, h == 0 ? wait : 0);
+        net_account(f->net, s->resource, 1, w->m->bytes, gaps * slow + w->npacket * s->flit,
+                    h == 0 ? wait : 0);
     }
 }
 
-/* forget messages whose last trace is gone */
+/* Forget messages whose last trace is gone. A delivered message still matters for a while: its last
+ * credits are on their way. */
 static void retire(struct fabric *f, sim_ps now)
 {
     while (f->retired && f->retired->clear <= now) {

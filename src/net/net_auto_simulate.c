@@ -1,10 +1,11 @@
 /* net_auto_simulate.c - level auto: messages become simulated ones, from now on and without loss.
  *
- * Up to now an optimistic message is where its closed form says. What is left of its past is written into the state
- * of level packet: packets and credits in FIFOs, reservations, round-robin pointers. Then it may be met by others, so
- * everybody is turned who might: whose claim has not cleared a resource when a simulated message may come there, and
- * who comes into a FIFO behind one. Earliest possible arrivals only grow with time, so nobody else need be looked at
- * later. FIFOs are filled only when all are known, in the order of time. */
+ * Up to now an optimistic message is where its closed form says. What is left of its past is
+ * written into the state of level packet: packets and credits in FIFOs, reservations, round-robin
+ * pointers. Then it may be met by others, so everybody is turned who might: whose claim has not
+ * cleared a resource when a simulated message may come there, and who comes into a FIFO behind one.
+ * Earliest possible arrivals only grow with time, so nobody else need be looked at later. FIFOs are
+ * filled only when all are known, in the order of time. */
 #include <stdlib.h>
 
 #include "net/net_auto.h"
@@ -40,7 +41,8 @@ static void mark_push(struct fabric *f, struct flight *w)
     f->marked[f->nmarked++] = w;
 }
 
-/* one pass of w: what was done before now is history, the rest is to come */
+/* One pass of w: what was done before now is history, the rest is to come. The history is written
+ * as grants would have left it: pointer, reservation, accounts. */
 static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow)
 {
     struct pass *s = &w->pass[h];
@@ -63,7 +65,8 @@ static void pass_turn(struct fabric *f, struct flight *w, int h, sim_ps slow)
     }
 }
 
-/* the injection port was taken for packets that may now be sent at other times */
+/* The injection port was taken for packets that may now be sent at other times: give it back from
+ * the end of what has been sent. */
 static void port_turn(struct fabric *f, const struct flight *w)
 {
     struct resource *port = &f->resource[w->pass[0].resource];
@@ -74,6 +77,7 @@ static void port_turn(struct fabric *f, const struct flight *w)
     if (free < port->free) port->free = free;
 }
 
+/* From here on w is a simulated message in the state that level packet would have it in. */
 static void mark(struct fabric *f, struct flight *w)
 {
     sim_ps slow = 0;
@@ -90,13 +94,15 @@ static void mark(struct fabric *f, struct flight *w)
     mark_push(f, w);
 }
 
-/* Does claim c on the resource of s, a pass of a simulated message, touch it: it has not cleared when s may come
- * there; it comes into the FIFO in which s stands; or its credits are ahead of those of s in the FIFO? */
+/* Does claim c on the resource of s, a pass of a simulated message, touch it: it has not cleared
+ * when s may come there; it comes into the FIFO in which s stands; or its credits are ahead of
+ * those of s in the FIFO? */
 static bool touches(const struct fabric *f, const struct pass *c, const struct pass *s, sim_ps now)
 {
     const struct flight *w = s->flight;
     if (s->granted < w->npacket && auto_clear(f, c) > auto_earliest(f, s, now)) return true;
     if (s->granted == 0 || s->hop == w->nhop || c->channel != s->channel) return false;
+    /* c comes behind s in the same FIFO, while packets of s are still in it. */
     if (c->begin > s->begin) return s->granted > s[1].granted;
     return auto_clear(f, c) > now && auto_clear(f, s) > now;
 }
@@ -113,6 +119,8 @@ static void mark_all(struct fabric *f, sim_ps now)
     for (int i = 0; i < f->nmarked; i++) {
         struct flight *w = f->marked[i], *other;
         for (int h = 0; h <= w->nhop; h++)
+            /* The closure: those who become simulated now may in turn touch others. marked grows
+             * while it is walked; each message enters once. */
             while ((other = met(f, &w->pass[h], now))) mark(f, other);
     }
 }
@@ -129,17 +137,21 @@ static void presence_push(struct fabric *f, struct presence p)
     f->presence[f->npresence++] = p;
 }
 
-/* the packets of w behind pass h, and those whose credits are not home, the youngest first */
+/* The packets of w behind pass h, and those whose credits are not home, the youngest first: older
+ * ones than the first without a trace have none either. */
 static void presence_find(struct fabric *f, struct flight *w, int h, sim_ps slow, sim_ps now)
 {
     const struct pass *next = &w->pass[h + 1];
-    sim_ps after = later(f->net->credit, next->flit) + (f->net->setup > 0 ? f->net->setup + w->pass[h].flit : 0);
+    sim_ps after = later(f->net->credit, next->flit) +
+                   (f->net->setup > 0 ? f->net->setup + w->pass[h].flit : 0);
     for (int i = w->pass[h].granted - 1; i >= 0; i--) {
         if (i < next->granted && auto_tail(w, i, h + 1, slow) + after <= now) return;
         presence_push(f, (struct presence){auto_begin(w, i, h), w, i, h});
     }
 }
 
+/* FIFOs must be filled in the order in which packets came in; the resource makes the order
+ * total. */
 static int presence_order(const void *a, const void *b)
 {
     const struct presence *p = a, *q = b;
@@ -148,13 +160,17 @@ static int presence_order(const void *a, const void *b)
     return r < s ? -1 : r > s;
 }
 
+/* A packet that has been granted its next resource leaves only credits behind; any other is put
+ * into the FIFO, as its front or behind others. */
 static void presence_place(struct fabric *f, const struct presence *e)
 {
     struct flight *w = e->flight;
     const struct pass *s = &w->pass[e->hop];
     struct fifo *q = fifo_of(f, &f->resource[s->resource], auto_lane(f, w, e->index, e->hop));
     int32_t flits = flight_packet_flits(w, e->index);
-    if (e->hop > 0) q->free = auto_tail(w, e->index, e->hop, auto_slow(w, e->hop)) + s->flit + f->net->allocation;
+    if (e->hop > 0)
+        q->free =
+            auto_tail(w, e->index, e->hop, auto_slow(w, e->hop)) + s->flit + f->net->allocation;
     if (e->index < s[1].granted) {
         sim_ps tail = auto_tail(w, e->index, e->hop + 1, auto_slow(w, e->hop + 1));
         packet_left(f, q, q->position, flits, auto_begin(w, e->index, e->hop + 1), tail, s[1].flit);
@@ -169,6 +185,8 @@ static void presence_place(struct fabric *f, const struct presence *e)
     packet_enter(f, p);
 }
 
+/* First all FIFOs, then the sources: a source that is looked at must see the FIFO behind its
+ * port. */
 static void place_all(struct fabric *f, int first, sim_ps now)
 {
     f->npresence = 0;
@@ -176,12 +194,14 @@ static void place_all(struct fabric *f, int first, sim_ps now)
         struct flight *w = f->marked[i];
         for (int h = 0; h < w->nhop; h++) presence_find(f, w, h, auto_slow(w, h + 1), now);
     }
-    if (f->npresence > 1) qsort(f->presence, (size_t)f->npresence, sizeof *f->presence, presence_order);
+    if (f->npresence > 1)
+        qsort(f->presence, (size_t)f->npresence, sizeof *f->presence, presence_order);
     for (int i = 0; i < f->npresence; i++) presence_place(f, &f->presence[i]);
     for (int i = 0; i < f->nmarked; i++)
         if (f->marked[i]->injected < f->marked[i]->npacket) source_enter(f, f->marked[i]);
 }
 
+/* w itself has no past: all its passes are to come. */
 void auto_simulate(struct fabric *f, struct flight *w, sim_ps now)
 {
     f->nmarked = 0;
@@ -191,9 +211,10 @@ void auto_simulate(struct fabric *f, struct flight *w, sim_ps now)
     place_all(f, 1, now);
 }
 
-/* how long resource o is taken by what was granted before `until`, and *delayed: a message that would go on in the
- * `busy` after that */
-static sim_ps taken_until(const struct resource *o, sim_ps until, sim_ps busy, struct flight **delayed)
+/* How long resource o is taken by what was granted before `until`, and *delayed: a message that
+ * would go on in the `busy` after that and must be simulated, since others' traffic delays it. */
+static sim_ps taken_until(const struct resource *o, sim_ps until, sim_ps busy,
+                          struct flight **delayed)
 {
     sim_ps taken = later(o->free, until - 1);
     *delayed = NULL;

@@ -1,10 +1,11 @@
 /* net_flit_event.c - wormhole switching with several virtual channels per link, flit by flit.
  *
- * Packets on different channels share a link flit by flit, so their flits are at no fixed distances and each crossing
- * is an event of the link: it first gives free channels to heads that ask, then sends one flit, round robin over the
- * channels that have a flit and a credit. Behind each channel lies a ring as long as the buffer; the slot of flit n
- * holds the time of its arrival and later that of its departure, which is the credit for flit n + buffer. A node
- * sends its packets one after the other, and an input port passes on one flit at a time. */
+ * Packets on different channels share a link flit by flit, so their flits are at no fixed distances
+ * and each crossing is an event of the link: it first gives free channels to heads that ask, then
+ * sends one flit, round robin over the channels that have a flit and a credit. Behind each channel
+ * lies a ring as long as the buffer; the slot of flit n holds the time of its arrival and later
+ * that of its departure, which is the credit for flit n + buffer. A node sends its packets one
+ * after the other, and an input port passes on one flit at a time. */
 #include "net/net_flit.h"
 
 struct worm;
@@ -57,8 +58,12 @@ enum { WORM_STEP = 4 };
 static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 static inline sim_ps sooner(sim_ps a, sim_ps b) { return a < b ? a : b; }
 static inline bool is_last(const struct leg *l) { return l->hop == l->worm->nhop; }
-static inline const struct pass *pass_of(const struct leg *l) { return &l->worm->flight->pass[l->hop]; }
+static inline const struct pass *pass_of(const struct leg *l)
+{
+    return &l->worm->flight->pass[l->hop];
+}
 
+/* Made at the first use. Ejection ports have no FIFO behind: the sink always accepts. */
 static struct vc *vcs_of(struct flits *g, int r)
 {
     struct crossing *x = &g->crossing[r];
@@ -71,12 +76,14 @@ static struct vc *vcs_of(struct flits *g, int r)
     return x->vc;
 }
 
+/* The ring: flit n and flit n + buffer share a slot, since the second may only come when the first
+ * has left. */
 static inline sim_ps *slot_of(const struct flits *g, struct vc *v, int64_t flit)
 {
     return &v->slot[flit % g->fabric.buffer];
 }
 
-/* the channel in which l's next flit waits; not for injection */
+/* The channel in which l's next flit waits; not for injection. */
 static struct vc *vc_before(struct flits *g, const struct leg *l)
 {
     return &g->crossing[l[-1].resource].vc[l[-1].channel];
@@ -84,7 +91,8 @@ static struct vc *vc_before(struct flits *g, const struct leg *l)
 
 /* ---- channels for heads ---- */
 
-/* the front of the FIFO v, if its head is there or on its way, asks for its next resource */
+/* The front of the FIFO v, if its head is there or on its way, asks for its next resource: not
+ * before its head has arrived, and not before the tail in front of it is through the router. */
 static void front_asks(struct flits *g, struct vc *v)
 {
     struct leg *l = v->front;
@@ -97,7 +105,9 @@ static void front_asks(struct flits *g, struct vc *v)
     packet_wake(&g->fabric, to->resource, later(to->ask, g->fabric.resource[to->resource].free));
 }
 
-/* a channel for l: an idle one if there is one, else one that nobody owns; -1: none, *again is when to try again */
+/* A channel for l: an idle one if there is one, else one that nobody owns; -1: none, *again is when
+ * to try again. A channel may be given away while it has no credit: the worm then waits as its
+ * owner. */
 static int channel_for(struct flits *g, const struct leg *l, sim_ps now, sim_ps *again)
 {
     struct vc *v = vcs_of(g, l->resource);
@@ -116,6 +126,8 @@ static int channel_for(struct flits *g, const struct leg *l, sim_ps now, sim_ps 
     return found;
 }
 
+/* From its head to its tail the channel belongs to this worm, so that flits of different worms
+ * never mix in a FIFO. */
 static void own(struct flits *g, struct leg *l, int channel)
 {
     l->channel = channel;
@@ -132,7 +144,9 @@ static uint32_t input_of(const struct flits *g, const struct leg *l)
     return (uint32_t)(pass_of(l - 1)->port * g->fabric.nchannel + l[-1].channel);
 }
 
-static bool better(const struct flits *g, const struct resource *o, const struct leg *l, const struct leg *m)
+/* The same order as on level packet. */
+static bool better(const struct flits *g, const struct resource *o, const struct leg *l,
+                   const struct leg *m)
 {
     const struct fabric *f = &g->fabric;
     if (f->first_come && l->ask != m->ask) return l->ask < m->ask;
@@ -140,7 +154,8 @@ static bool better(const struct flits *g, const struct resource *o, const struct
     return input_of(g, l) - turn < input_of(g, m) - turn;
 }
 
-/* give the free channels of resource r to heads that ask; returns when it may be worth trying again */
+/* Give the free channels of resource r to heads that ask; returns when it may be worth trying
+ * again. One at a time, because each channel given away changes what the others can get. */
 static sim_ps channels_give(struct flits *g, int r, sim_ps now)
 {
     struct resource *o = &g->fabric.resource[r];
@@ -154,6 +169,7 @@ static sim_ps channels_give(struct flits *g, int r, sim_ps now)
                 continue;
             }
             int i = channel_for(g, *l, now, &again);
+            /* A head without a free channel waits; others may still get one. */
             if (i < 0 || (best && !better(g, o, *l, *best))) continue;
             best = l;
             channel = i;
@@ -168,7 +184,8 @@ static sim_ps channels_give(struct flits *g, int r, sim_ps now)
 
 /* ---- flits ---- */
 
-/* from when on the next flit of l can cross; SIM_NEVER when that depends on something yet to come */
+/* From when on the next flit of l can cross; SIM_NEVER when that depends on something yet to come,
+ * whose event will wake this resource. */
 static sim_ps flit_ready(struct flits *g, const struct leg *l, sim_ps now)
 {
     const struct fabric *f = &g->fabric;
@@ -192,18 +209,21 @@ static void worm_return(struct flits *g, struct worm *w)
     *pool = w;
 }
 
-/* the tail of l crosses now */
+/* The tail of l crosses now: the channel is free for the next worm, the FIFO before it has a new
+ * front, and at the ejection port the message may be complete. */
 static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
 {
     struct fabric *f = &g->fabric;
     struct worm *w = l->worm;
     struct flight *m = w->flight;
+    /* Room behind: the flit a buffer's size earlier must have left, and its credit must be back. */
     struct vc *v = &g->crossing[l->resource].vc[l->channel];
     sim_ps flit = pass_of(l)->flit;
     v->owner = NULL;
     v->free = now + flit + (l->hop > 0 ? f->net->allocation : 0);
-    net_account(f->net, l->resource, w->index == 0, w->index == 0 ? m->m->bytes : 0, w->flits * flit,
-                l->first - l->ask);
+    net_account(f->net, l->resource, w->index == 0, w->index == 0 ? m->m->bytes : 0,
+                w->flits * flit, l->first - l->ask);
+    /* The gap g follows the last packet of a message. */
     if (l->hop == 0 && w->index == m->npacket - 1) {
         struct resource *o = &f->resource[l->resource];
         o->free = later(o->free, now + net_port(f->net, m->m->bytes)->gap);
@@ -219,7 +239,8 @@ static void tail_sent(struct flits *g, struct leg *l, sim_ps now)
     worm_return(g, w);
 }
 
-/* the next flit of l crosses its resource now */
+/* The next flit of l crosses its resource now: credit to the resource before, arrival at the end of
+ * this one. */
 static void flit_send(struct flits *g, struct leg *l, sim_ps now)
 {
     struct fabric *f = &g->fabric;
@@ -228,23 +249,28 @@ static void flit_send(struct flits *g, struct leg *l, sim_ps now)
     bool head = l->sent++ == 0, tail = l->sent == l->worm->flits, last = is_last(l);
     if (head) l->first = now;
     if (head && l->hop == 0 && l->worm->index == 0) l->worm->flight->m->injected = now;
+    /* The slot keeps the departure: the credit of the flit a buffer's size later. */
     if (l->hop > 0) {
         struct vc *v = vc_before(g, l);
         *slot_of(g, v, v->out++) = now;
         g->crossing[l[-1].resource].passed = now + s->flit;
-        packet_wake(f, l[-1].resource, later(now + f->net->credit, f->resource[l[-1].resource].free));
+        packet_wake(f, l[-1].resource,
+                    later(now + f->net->credit, f->resource[l[-1].resource].free));
     }
     if (!last) {
         struct vc *v = &g->crossing[l->resource].vc[l->channel];
+        /* The setup part of the hop latency is the head's alone; front_asks adds it. */
         sim_ps there = now + f->net->tau - f->net->setup;
         *slot_of(g, v, v->in++) = there;
         if (head && v->front == l) front_asks(g, v);
-        if (l[1].channel >= 0) packet_wake(f, l[1].resource, later(there, f->resource[l[1].resource].free));
+        if (l[1].channel >= 0)
+            packet_wake(f, l[1].resource, later(there, f->resource[l[1].resource].free));
     }
     if (tail) tail_sent(g, l, now);
 }
 
-/* send a flit over resource r if one can go; returns when to look again */
+/* Send a flit over resource r if one can go; returns when to look again. Round robin over the
+ * channels: worms that share a link get turns, flit by flit. */
 static sim_ps resource_send(struct flits *g, int r, sim_ps now)
 {
     struct crossing *x = &g->crossing[r];
@@ -264,6 +290,7 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
         else
             go = l;
     }
+    /* Nobody can send now: look again when the first flit or credit is due. */
     if (!go) return again;
     x->next = (go->channel + 1) % n;
     bool more = go->sent + 1 < go->worm->flits;
@@ -273,6 +300,7 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
 
 /* ---- sources ---- */
 
+/* Pools by length of route, as for flights (net_packet_fabric.c). */
 static struct worm *worm_take(struct flits *g, struct flight *v)
 {
     struct worm **pool = &g->free_worm[v->nhop / WORM_STEP], *w = *pool;
@@ -284,11 +312,12 @@ static struct worm *worm_take(struct flits *g, struct flight *v)
     *w = (struct worm){.flight = v, .index = v->injected, .nhop = v->nhop};
     w->flits = flight_packet_flits(v, w->index);
     for (int h = 0; h <= v->nhop; h++)
-        w->leg[h] = (struct leg){.worm = w, .hop = h, .resource = v->pass[h].resource, .channel = -1};
+        w->leg[h] =
+            (struct leg){.worm = w, .hop = h, .resource = v->pass[h].resource, .channel = -1};
     return w;
 }
 
-/* a free channel with room, round robin; -1: none */
+/* A free channel with room, round robin; -1: none. */
 static int source_channel(struct flits *g, int node)
 {
     struct vc *v = vcs_of(g, node);
@@ -300,6 +329,7 @@ static int source_channel(struct flits *g, int node)
     return -1;
 }
 
+/* A node sends one packet at a time. */
 static bool source_busy(const struct flits *g, int node)
 {
     const struct vc *v = g->crossing[node].vc;
@@ -308,7 +338,8 @@ static bool source_busy(const struct flits *g, int node)
     return false;
 }
 
-/* the next packet of a node begins when the one before has gone */
+/* The next packet of a node begins when the one before has gone: packets of one message never
+ * overtake each other. */
 static void source_next(struct flits *g, int node, sim_ps now)
 {
     struct source *z = &g->fabric.source[node];
@@ -339,12 +370,14 @@ static void flits_look(void *subject, uint64_t argument, sim_ps now)
     struct fabric *f = &g->fabric;
     int r = (int)argument;
     struct resource *o = &f->resource[r];
+    /* An event that an earlier one has made unnecessary. */
     if (o->wake != now + 1) return;
     o->wake = 0;
     if (o->free > now) {
         packet_wake(f, r, o->free);
         return;
     }
+    /* Channels first, then flits: a head that gets its channel now may send now. */
     bool source = net_is_injection(f->net, r);
     sim_ps again = SIM_NEVER;
     if (source)
@@ -368,7 +401,7 @@ static struct fabric *flits_create(struct net *n, struct err *e)
     return &g->fabric;
 }
 
-/* the front of a FIFO behind resource r, on the channel of `v` or any, that has not gone on */
+/* The front of a FIFO behind resource r, on channel `channel` (-1: any), that has not gone on. */
 static const struct leg *front_at(const struct flits *g, int r, int channel)
 {
     const struct vc *v = g->crossing[r].vc;
@@ -383,14 +416,18 @@ static bool flits_deadlock(const struct net *n, char *text, int size)
     const struct leg *l = NULL;
     for (int i = n->nnode; i < n->nresource && !l; i++) l = front_at(g, i, -1);
     struct arena_mark mark = arena_mark(n->arena);
-    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int), count = 0;
+    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int),
+        count = 0;
     while (l && !seen[l->resource]) {
         way[count++] = l->resource;
         seen[l->resource] = count;
+        /* It waits for its next resource: there, whoever stands in the FIFO of its channel. */
         const struct leg *to = l + 1;
         l = front_at(g, to->resource, to->channel >= 0 ? to->channel : pass_of(to)->channel);
     }
-    if (l) packet_name_cycle(n, way + seen[l->resource] - 1, count - seen[l->resource] + 1, text, size);
+    if (l)
+        packet_name_cycle(n, way + seen[l->resource] - 1, count - seen[l->resource] + 1, text,
+                          size);
     arena_release(n->arena, mark);
     return l != NULL;
 }

@@ -1,10 +1,11 @@
 /* net_flit_train.c - wormhole switching with one virtual channel per link, by trains of flits.
  *
- * Once a packet owns a resource, the times of its flits there follow from those at the resource before and from the
- * credits of the FIFO behind. These are piecewise linear: runs of flits at equal distances. So a whole run is worked
- * out at once, far into the future, and exactly, since it depends on grants already made. Whenever a packet's flits
- * are known further at one resource, those at its next resource, and those of the owner of the one before (credits),
- * may be worked out further. Events are only needed to allocate a resource: one per packet and resource. */
+ * Once a packet owns a resource, the times of its flits there follow from those at the resource
+ * before and from the credits of the FIFO behind. These are piecewise linear: runs of flits at
+ * equal distances. So a whole run is worked out at once, far into the future, and exactly, since it
+ * depends on grants already made. Whenever a packet's flits are known further at one resource,
+ * those at its next resource, and those of the owner of the one before (credits), may be worked out
+ * further. Events are only needed to allocate a resource: one per packet and resource. */
 #include "net/net_flit.h"
 
 /* `count` flits, the first at `at`, the others `step` apart. */
@@ -31,7 +32,7 @@ struct stage {
     sim_ps ask;           /* from when it could have had the resource */
     sim_ps grant;         /* when it got it, -1: not yet */
     sim_ps head, last;    /* when its first and its last known flit cross */
-    int64_t base;         /* place of its first flit in the sequence of all flits over the resource */
+    int64_t base; /* place of its first flit in the sequence of all flits over the resource */
     int32_t known;        /* flits whose times are known */
     int32_t hop, resource, input; /* input: the port through which it asks for the resource */
 };
@@ -50,10 +51,11 @@ struct line {
     struct stage *owner;        /* to whom it is allocated until its tail's time is known */
     struct stage *request;      /* FIFO fronts that want it */
     struct stage *front, *back; /* worms in the FIFO behind */
-    sim_ps left;                /* when the tail of the one that left last has left the FIFO behind */
+    sim_ps left; /* when the tail of the one that left last has left the FIFO behind */
     int64_t position;           /* flits that were ever sent over it */
     sim_ps debt;                /* time for others' traffic after the owner */
-    struct runs credit;         /* departures from the FIFO behind, not yet used by flits a buffer's size later */
+    struct runs
+        credit; /* departures from the FIFO behind, not yet used by flits a buffer's size later */
 };
 
 struct train {
@@ -72,6 +74,8 @@ static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
 /* ---- runs ---- */
 
+/* Append `count` flits; they join the last run where they continue its line. A run of one flit has
+ * no distance yet and takes whatever comes next. */
 static void run_push(struct train *g, struct runs *q, sim_ps at, sim_ps step, int64_t count)
 {
     enum { CHUNK = 256 };
@@ -93,6 +97,7 @@ static void run_push(struct train *g, struct runs *q, sim_ps at, sim_ps step, in
     q->last = r;
 }
 
+/* Forget the first `count` flits, at most those of the first run. */
 static void run_read(struct train *g, struct runs *q, int64_t count)
 {
     struct run *r = q->first;
@@ -111,7 +116,8 @@ struct bound {
     int64_t count;
 };
 
-/* the latest of n bounds as one run, as long as it is straight */
+/* The latest of n bounds as one run, as long as it is straight: until a bound that starts earlier
+ * but rises faster overtakes. The rest is worked out in the next round. */
 static struct bound bound_latest(const struct bound *b, int n)
 {
     struct bound m = b[0];
@@ -132,6 +138,8 @@ static struct bound bound_latest(const struct bound *b, int n)
 
 /* ---- working out the times of flits ---- */
 
+/* A stage not granted or fully known has nothing to gain. Stages may stand on the stack twice; the
+ * second look finds nothing new. */
 static void task_push(struct train *g, struct stage *s)
 {
     if (s->grant < 0 || s->known == s->worm->flits) return;
@@ -147,20 +155,25 @@ static void task_push(struct train *g, struct stage *s)
 
 static inline bool is_last(const struct stage *s) { return s->hop == s->worm->nhop; }
 
-/* the bounds for the next flits of s; returns how many bounds, 0: one of them is not known yet */
+/* The bounds for the next flits of s; returns how many bounds, 0: one of them is not known yet. The
+ * three rules of net_flit.h: one flit time after the flit before, tau after the resource before, a
+ * credit latency after the flit a buffer's size earlier has left. */
 static int bounds_of(struct train *g, const struct stage *s, struct bound b[3])
 {
     const struct fabric *f = &g->fabric;
     int n = 0;
-    b[n++] = (struct bound){s->known ? s->last + s->flit : s->grant, s->flit, s->worm->flits - s->known};
+    b[n++] =
+        (struct bound){s->known ? s->last + s->flit : s->grant, s->flit, s->worm->flits - s->known};
     if (s->hop > 0) {
         const struct run *r = s[-1].crossed.first;
         if (!r) return 0;
+        /* The head pays the router's setup, the flits behind it do not. */
         bool head = s->known == 0 && f->net->setup > 0;
         sim_ps pass = f->net->tau - (head ? 0 : f->net->setup);
         b[n++] = (struct bound){r->at + pass, r->step, head ? 1 : r->count};
     }
     if (is_last(s)) return n;
+    /* Flits that need no credit yet: the first ones over a resource that was never full. */
     int64_t spare = f->buffer - s->base - s->known; /* flits that need no credit */
     if (spare > 0) {
         if (spare < b[0].count) b[0].count = spare;
@@ -172,7 +185,8 @@ static int bounds_of(struct train *g, const struct stage *s, struct bound b[3])
     return n;
 }
 
-/* work out the times of flits at s as far as they are determined; true when there were any new ones */
+/* Work out the times of flits at s as far as they are determined; true when there were any new
+ * ones. O(runs), not O(flits): a worm that nobody disturbs is one run. */
 static bool stage_advance(struct train *g, struct stage *s)
 {
     struct bound b[3];
@@ -181,10 +195,13 @@ static bool stage_advance(struct train *g, struct stage *s)
     while (s->known < s->worm->flits && (n = bounds_of(g, s, b)) > 0) {
         struct bound m = bound_latest(b, n);
         if (s->known == 0) s->head = m.at;
+        /* Flits that cross here feed the next resource and use up the credits of this FIFO. */
         if (!is_last(s)) {
-            if (s->base + s->known >= g->fabric.buffer) run_read(g, &g->line[s->resource].credit, m.count);
+            if (s->base + s->known >= g->fabric.buffer)
+                run_read(g, &g->line[s->resource].credit, m.count);
             run_push(g, &s->crossed, m.at, m.step, m.count);
         }
+        /* What has left the FIFO before is credit for the owner of the resource before. */
         if (s->hop > 0) {
             run_read(g, &s[-1].crossed, m.count);
             run_push(g, &g->line[s[-1].resource].credit, m.at, m.step, m.count);
@@ -197,7 +214,8 @@ static bool stage_advance(struct train *g, struct stage *s)
 
 /* ---- FIFOs, requests, ends ---- */
 
-/* s, whose head's time is known, asks for the next resource if it is the first in the FIFO behind its own */
+/* s, whose head's time is known, asks for the next resource if it is the first in the FIFO behind
+ * its own. */
 static void stage_ask(struct train *g, struct stage *s)
 {
     const struct line *l = &g->line[s->resource];
@@ -207,9 +225,12 @@ static void stage_ask(struct train *g, struct stage *s)
     to->ask = later(s->head + g->fabric.net->tau, l->left + g->fabric.net->setup);
     to->rival = next->request;
     next->request = to;
-    if (!next->owner) packet_wake(&g->fabric, to->resource, later(to->ask, g->fabric.resource[to->resource].free));
+    if (!next->owner)
+        packet_wake(&g->fabric, to->resource,
+                    later(to->ask, g->fabric.resource[to->resource].free));
 }
 
+/* Not given back at once: a task on the stack may still name its stages. */
 static void worm_end(struct train *g, struct worm *w)
 {
     struct flight *v = w->flight;
@@ -219,7 +240,8 @@ static void worm_end(struct train *g, struct worm *w)
     g->ended = w;
 }
 
-/* the time of the tail at s is known, so the resource may have its next owner and the FIFO before it its next front */
+/* The time of the tail at s is known, so the resource may have its next owner and the FIFO before
+ * it its next front. The tail may lie in the future: the wake-up is posted for then. */
 static void tail_known(struct train *g, struct stage *s)
 {
     struct fabric *f = &g->fabric;
@@ -227,15 +249,20 @@ static void tail_known(struct train *g, struct stage *s)
     struct resource *o = &f->resource[s->resource];
     struct line *l = &g->line[s->resource];
     sim_ps free = s->last + s->flit;
+    /* The gap g follows the last packet of a message; others' traffic follows the tail. */
     bool ends_message = w->index == w->flight->npacket - 1;
-    o->free = s->hop == 0 && ends_message ? later(free, s->last + net_port(f->net, w->flight->m->bytes)->gap) : free;
+    o->free = s->hop == 0 && ends_message
+                  ? later(free, s->last + net_port(f->net, w->flight->m->bytes)->gap)
+                  : free;
     if (s->hop > 0) o->free += f->net->allocation;
     o->free += l->debt;
     l->debt = 0;
     l->owner = NULL;
-    net_account(f->net, s->resource, w->index == 0, w->index == 0 ? w->flight->m->bytes : 0, free - s->grant,
-                s->grant - s->ask);
-    if (l->request || (s->hop == 0 && f->source[s->resource].front)) packet_wake(f, s->resource, o->free);
+    net_account(f->net, s->resource, w->index == 0, w->index == 0 ? w->flight->m->bytes : 0,
+                free - s->grant, s->grant - s->ask);
+    /* Somebody waits for the resource, or the node has more to send. */
+    if (l->request || (s->hop == 0 && f->source[s->resource].front))
+        packet_wake(f, s->resource, o->free);
     if (s->hop > 0) {
         struct line *before = &g->line[s[-1].resource];
         before->left = free;
@@ -255,6 +282,9 @@ static void worms_return(struct train *g)
     }
 }
 
+/* New times at one stage may determine those of the next resource and, by credits, of the owner of
+ * the one before. A depth-first walk to the end; the order does not matter, since times are bounds
+ * that only depend on grants. */
 static void tasks_do(struct train *g)
 {
     while (g->ntask > 0) {
@@ -273,6 +303,8 @@ static void tasks_do(struct train *g)
 
 /* ---- allocation ---- */
 
+/* The grant: the place in the sequence of flits is fixed, and everything that it determines is
+ * worked out now. */
 static void allocate(struct train *g, struct stage *s, sim_ps now)
 {
     struct line *l = &g->line[s->resource];
@@ -288,13 +320,15 @@ static void allocate(struct train *g, struct stage *s, sim_ps now)
     tasks_do(g);
 }
 
-static bool better(const struct fabric *f, const struct resource *o, const struct stage *s, const struct stage *t)
+static bool better(const struct fabric *f, const struct resource *o, const struct stage *s,
+                   const struct stage *t)
 {
     if (f->first_come && s->ask != t->ask) return s->ask < t->ask;
     uint32_t turn = f->first_come ? 0 : o->turn;
     return (uint32_t)s->input - turn < (uint32_t)t->input - turn;
 }
 
+/* One grant an event; the tail of the owner will bring the next. */
 static void line_serve(struct train *g, int r, sim_ps now)
 {
     struct fabric *f = &g->fabric;
@@ -331,12 +365,17 @@ static struct worm *worm_take(struct train *g, struct flight *v)
     for (int h = 0; h <= v->nhop; h++) {
         const struct pass *s = &v->pass[h];
         int input = h > 0 ? s[-1].port : 0;
-        w->stage[h] = (struct stage){.worm = w, .flit = s->flit, .grant = -1, .hop = h, .resource = s->resource,
+        w->stage[h] = (struct stage){.worm = w,
+                                     .flit = s->flit,
+                                     .grant = -1,
+                                     .hop = h,
+                                     .resource = s->resource,
                                      .input = input};
     }
     return w;
 }
 
+/* The worm owns its injection port from its first packet on; flits follow as credits allow. */
 static void source_serve(struct train *g, int node, sim_ps now)
 {
     struct fabric *f = &g->fabric;
@@ -372,7 +411,7 @@ static void train_look(void *subject, uint64_t argument, sim_ps now)
 
 /* ---- the way ---- */
 
-/* others' traffic waits for the tail of the owner */
+/* Others' traffic waits for the tail of the owner: it cannot cut a worm in two. */
 static void train_occupied(void *subject, uint64_t argument, sim_ps now)
 {
     struct train *g = subject;
@@ -395,7 +434,8 @@ static struct fabric *train_create(struct net *n, struct err *e)
     return &g->fabric;
 }
 
-/* who keeps the owner of resource r from going on: the resource that the front of the FIFO behind r waits for */
+/* Who keeps the owner of resource r from going on: the resource that the front of the FIFO behind r
+ * waits for; -1: nobody. */
 static int waits_for(const struct train *g, int r)
 {
     const struct stage *front = g->line[r].front;
@@ -406,9 +446,11 @@ static bool train_deadlock(const struct net *n, char *text, int size)
 {
     const struct train *g = n->state;
     struct arena_mark mark = arena_mark(n->arena);
-    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int), count = 0, r = -1;
+    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int),
+        count = 0, r = -1;
     for (int i = 0; i < n->nresource && r < 0; i++)
         if (g->line[i].owner) r = i;
+    /* From any owner along the waiting worms; a deadlock comes round. */
     while (r >= 0 && !seen[r]) {
         way[count++] = r;
         seen[r] = count;

@@ -1,12 +1,14 @@
-/* net_link.c - message-level cut-through: every resource serves one message at a time, first come first served.
+/* net_link.c - message-level cut-through: every resource serves one message at a time, first come
+ * first served.
  *
- * When a message's head arrives at resource h at time t, it crosses at x_h = max(t, free_h), and free_h becomes
- * x_h + S, whatever happens downstream: buffers are unbounded, nobody blocks the one behind. The head is at the next
- * resource at x_h + tau. A resource is never taken before the head is there: reserving a whole path at injection
- * mis-orders messages and is worse than no contention at all. Heads that arrive together go by input port, then id.
+ * When a message's head arrives at resource h at time t, it crosses at x_h = max(t, free_h), and
+ * free_h becomes x_h + S, whatever happens downstream: buffers are unbounded, nobody blocks the one
+ * behind. The head is at the next resource at x_h + tau. A resource is never taken before the head
+ * is there: reserving a whole path at injection mis-orders messages and is worse than no contention
+ * at all. Heads that arrive together go by input port, then id.
  *
- * Events: one per link and one for the ejection port, which already knows the arrival. The injection port of a node
- * with one sender needs none. */
+ * Events: one per link and one for the ejection port, which already knows the arrival. The
+ * injection port of a node with one sender needs none. */
 #include "net/net_internal.h"
 
 /* A message on its way. */
@@ -22,7 +24,8 @@ struct flight {
 
 struct link_level {
     sim_ps *free;     /* (nresource) from when on */
-    sim_ps *own_port; /* (nnode x processors) injection port had no other processor of the node sent anything */
+    /* (nnode x processors) injection port had no other processor of the node sent anything */
+    sim_ps *own_port;
     int nprocessor;
     struct flight *pool;
 };
@@ -33,11 +36,15 @@ static bool link_create(struct net *n, struct err *e)
     struct link_level *g = TAKE(n->arena, 1, struct link_level);
     g->nprocessor = n->topology->spec->processors_per_node;
     g->free = TAKE(n->arena, n->nresource, sim_ps);
-    g->own_port = g->nprocessor == 1 ? g->free : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
+    g->own_port = g->nprocessor == 1
+                      ? g->free
+                      : TAKE(n->arena, size_product(n->nnode, g->nprocessor), sim_ps);
     n->state = g;
     return true;
 }
 
+/* Flights in use are messages in the network: after the busiest moment nothing is allocated any
+ * more. */
 static struct flight *flight_take(struct net *n)
 {
     enum { CHUNK = 256 };
@@ -60,12 +67,15 @@ static void flight_return(struct net *n, struct flight *f)
 }
 
 /* the message takes `resource` at `now` or when it is free; returns when */
-static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, sim_ps now, sim_ps busy)
+static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, sim_ps now,
+                            sim_ps busy)
 {
     struct link_level *g = n->state;
-    /* Others' messages go by links alone; those that came since a link was last taken are served before. */
+    /* Others' messages go by links alone; those that came since a link was last taken are served
+     * before. */
     if (n->others && !net_is_injection(n, resource) && !net_is_ejection(n, resource))
-        g->free[resource] = n->others(n->others_context, resource - n->nnode, now, g->free[resource]);
+        g->free[resource] =
+            n->others(n->others_context, resource - n->nnode, now, g->free[resource]);
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
     net_account(n, resource, 1, m->bytes, busy, at - now);
@@ -85,7 +95,9 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
     } else {
         f->resource = net_ejection(n, f->m->dst);
     }
-    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->m->id), head_arrives, n, (uintptr_t)f);
+    /* The key is the port through which the head entered the resource it leaves. */
+    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->m->id), head_arrives, n,
+           (uintptr_t)f);
 }
 
 static void head_arrives(void *subject, uint64_t argument, sim_ps now)
@@ -104,6 +116,7 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
     net_arrive(n, m);
 }
 
+/* The injection port is taken like any resource, its time with the gap g included. */
 static void link_inject(struct net *n, struct net_message *m)
 {
     struct link_level *g = n->state;
@@ -115,6 +128,7 @@ static void link_inject(struct net *n, struct net_message *m)
     f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
     f->port = topology_injection_port(n->topology, m->src);
     sim_ps busy = net_port_busy(n, m->bytes, f->flits), own = 0;
+    /* When the port would have been free for this processor alone. */
     if (g->nprocessor > 1) {
         sim_ps *port = &g->own_port[m->src * g->nprocessor + m->processor];
         own = m->ready > *port ? m->ready : *port;
@@ -122,7 +136,9 @@ static void link_inject(struct net *n, struct net_message *m)
     }
     m->injected = resource_take(n, net_injection(n, m->src), m, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
-    m->uncontended = own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
+    /* The closed form of the empty network from there on. */
+    m->uncontended =
+        own + (nhop + 1) * n->tau + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
     head_sent(n, f, m->injected);
 }
 
@@ -135,9 +151,11 @@ static void link_start(void *subject, uint64_t argument, sim_ps now)
 static void link_send(struct net *n, struct net_message *m)
 {
     if (n->port_private) link_inject(n, m);
-    else sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
+    else
+        sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
+/* Others' traffic queues like a message, without one. */
 static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
 {
     struct link_level *g = n->state;
@@ -145,4 +163,5 @@ static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
     *free = ps_later(now > *free ? now : *free, busy);
 }
 
-const struct net_type net_link = {"link", LEVEL_LINK, link_create, link_send, link_occupy, NULL, true};
+const struct net_type net_link = {"link",      LEVEL_LINK, link_create, link_send,
+                                  link_occupy, NULL,       true};

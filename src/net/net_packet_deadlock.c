@@ -1,7 +1,8 @@
 /* net_packet_deadlock.c - who waits for whom when nothing moves.
  *
- * At a standstill every waiting packet wants a resource whose FIFO is full of packets that wait themselves, so
- * following the front packet of the full FIFO must come round to a resource seen before. */
+ * At a standstill every waiting packet wants a resource whose FIFO is full of packets that wait
+ * themselves, so following the front packet of the full FIFO must come round to a resource seen
+ * before. */
 #include <stdio.h>
 
 #include "net/net_packet.h"
@@ -16,6 +17,7 @@ static int resource_name(const struct net *n, int r, char *text, int size)
     return snprintf(text, (size_t)size, "link %d (router %d to %d)", r - n->nnode, from, to);
 }
 
+/* The first resource is named again at the end, so that the cycle is seen to close. */
 bool packet_name_cycle(const struct net *n, const int *way, int count, char *text, int size)
 {
     int at = snprintf(text, (size_t)size, "network deadlock: ");
@@ -39,12 +41,15 @@ bool packet_deadlock(const struct net *n, char *text, int size)
 {
     const struct fabric *f = n->state;
     const struct packet *p = NULL;
+    /* Any packet that waits leads to the cycle. */
     for (int r = 0; r < n->nresource && !p; r++) p = f->resource[r].request;
     if (!p) return false;
     struct arena_mark mark = arena_mark(n->arena);
-    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int), count = 0;
+    int *way = TAKE(n->arena, n->nresource, int), *seen = TAKE(n->arena, n->nresource, int),
+        count = 0;
     while (p) {
         int r = p->flight->pass[p->hop + 1].resource;
+        /* seen[r] is the place of r in way, counted from 1. */
         if (seen[r]) {
             packet_name_cycle(n, way + seen[r] - 1, count - seen[r] + 1, text, size);
             break;

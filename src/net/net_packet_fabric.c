@@ -1,30 +1,35 @@
-/* net_packet_fabric.c - the state of cut-through levels: checks of the machine, pools, messages on their routes.
+/* net_packet_fabric.c - the state of cut-through levels: checks of the machine, pools, messages on
+ * their routes.
  *
- * Records come from chunks of the arena and go back to lists, so that a steady load allocates nothing. */
+ * Records come from chunks of the arena and go back to lists, so that a steady load allocates
+ * nothing. */
 #include "net/net_packet.h"
 
 enum { CHUNK = 128, FLIGHT_STEP = 4 };
 
+/* The keys that levels with buffers need and others do not: refused with key, value and range. */
 static bool packet_config(const struct net *n, struct err *e)
 {
     const struct network_spec *w = &n->machine->network;
     if (w->flit_bytes < 1)
-        return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit_bytes of at least 1 B", n->type->name);
+        return err_set(e, ERR_CONFIG, "network.level: %s needs network.flit_bytes of at least 1 B",
+                       n->type->name);
     if (n->link.flit < 1 || n->port[0].rate.flit < 1 || n->ejection.flit < 1)
-        return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link_bandwidth", n->type->name);
+        return err_set(e, ERR_CONFIG, "network.level: %s needs a finite network.link_bandwidth",
+                       n->type->name);
     if (w->virtual_channels < 1 || w->virtual_channels > 1024)
-        return err_set(e, ERR_CONFIG, "network.virtual_channels is %d; level %s needs 1 to 1024", w->virtual_channels,
-                       n->type->name);
+        return err_set(e, ERR_CONFIG, "network.virtual_channels is %d; level %s needs 1 to 1024",
+                       w->virtual_channels, n->type->name);
     if (w->buffer_flits < 1)
-        return err_set(e, ERR_CONFIG, "network.buffer_flits is %d; level %s needs at least 1", w->buffer_flits,
-                       n->type->name);
+        return err_set(e, ERR_CONFIG, "network.buffer_flits is %d; level %s needs at least 1",
+                       w->buffer_flits, n->type->name);
     if (n->topology->max_hops > INT16_MAX - 2)
-        return err_set(e, ERR_CONFIG, "routes of up to %d links; level %s can follow %d", n->topology->max_hops,
-                       n->type->name, INT16_MAX - 2);
+        return err_set(e, ERR_CONFIG, "routes of up to %d links; level %s can follow %d",
+                       n->topology->max_hops, n->type->name, INT16_MAX - 2);
     return true;
 }
 
-/* flit time of the fastest resource */
+/* Flit time of the fastest resource: the shortest time in which a flit can follow another. */
 static sim_ps fastest_flit(const struct net *n)
 {
     sim_ps best = n->ejection.flit;
@@ -36,7 +41,9 @@ static sim_ps fastest_flit(const struct net *n)
     return best;
 }
 
-/* The credit round trip, in flits, is what a buffer must hold for a packet to follow another without a gap. */
+/* The credit round trip, in flits, is what a buffer must hold for a packet to follow another
+ * without a gap. Smaller buffers stall packets in mid-link, and the exact interval arithmetic of
+ * the levels packet and auto ends; level flit has no such limit. */
 static bool cut_through_config(const struct net *n, struct err *e)
 {
     const struct network_spec *w = &n->machine->network;
@@ -44,18 +51,23 @@ static bool cut_through_config(const struct net *n, struct err *e)
     int64_t least = (trip + flit - 1) / flit;
     if (w->buffer_flits < least)
         return err_set(e, ERR_CONFIG,
-                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + credit_latency = "
+                       "network.buffer_flits is %d; level %s needs at least %lld (hop_latency + "
+                       "credit_latency = "
                        "%lld ps in flits of %lld ps)",
-                       w->buffer_flits, n->type->name, (long long)least, (long long)trip, (long long)flit);
+                       w->buffer_flits, n->type->name, (long long)least, (long long)trip,
+                       (long long)flit);
+    /* Without packets a message is cut to a buffer's size (flight_cut). */
     if (w->packet_bytes <= 0) return true;
     int64_t flits = net_flits(n, w->packet_bytes);
     if (flits > w->buffer_flits)
         return err_set(e, ERR_CONFIG,
-                       "network.packet_bytes %lld with network.header_bytes %lld makes packets of %lld flits, but "
-                       "network.buffer_flits is %d; level %s needs whole packets to fit: buffer_flits >= %lld or "
+                       "network.packet_bytes %lld with network.header_bytes %lld makes packets of "
+                       "%lld flits, but "
+                       "network.buffer_flits is %d; level %s needs whole packets to fit: "
+                       "buffer_flits >= %lld or "
                        "packet_bytes <= %lld",
-                       (long long)w->packet_bytes, (long long)w->header_bytes, (long long)flits, w->buffer_flits,
-                       n->type->name, (long long)flits,
+                       (long long)w->packet_bytes, (long long)w->header_bytes, (long long)flits,
+                       w->buffer_flits, n->type->name, (long long)flits,
                        (long long)(w->buffer_flits * w->flit_bytes - w->header_bytes));
     return true;
 }
@@ -69,7 +81,10 @@ struct fabric *fabric_create(struct net *n, size_t size, sim_action *look, struc
     f->look = look;
     f->nprocessor = n->topology->spec->processors_per_node;
     f->nchannel = w->virtual_channels;
+    /* Too few channels for the topology's deadlock classes: one class, and deadlock becomes
+     * possible, as in the real machine. */
     f->nclass = f->nchannel < n->topology->nclass ? 1 : n->topology->nclass;
+    /* Channels of one class; those left over by the division stay idle on links. */
     f->nlane = f->nchannel / f->nclass;
     f->buffer = w->buffer_flits;
     f->late = -1;
@@ -125,6 +140,7 @@ void credit_return(struct fabric *f, struct credit *c)
     f->free_credit = c;
 }
 
+/* FIFOs of a resource are made at its first use: idle parts of a large machine have none. */
 struct fifo *fifo_of(struct fabric *f, struct resource *r, int channel)
 {
     if (!r->fifo) {
@@ -140,12 +156,16 @@ struct fifo *fifo_of(struct fabric *f, struct resource *r, int channel)
     return &r->fifo[channel];
 }
 
+/* Flights vary in length with their routes: pools by length, rounded up to FLIGHT_STEP hops, so
+ * that a record is used again for any route of its class. */
 static struct flight *flight_alloc(struct fabric *f, int nhop)
 {
     int kind = nhop / FLIGHT_STEP;
     struct flight *w = f->free_flight[kind];
     if (!w) {
-        size_t npass = (size_t)(kind + 1) * FLIGHT_STEP, size = sizeof *w + npass * sizeof(struct pass);
+        size_t npass = (size_t)(kind + 1) * FLIGHT_STEP,
+               size = sizeof *w + npass * sizeof(struct pass);
+        /* Whole cache lines; chunks of about 32 KiB. */
         size = (size + 63) / 64 * 64;
         size_t count = size > 16384 ? 1 : 32768 / size;
         char *chunk = arena_take(f->net->arena, size_product(count, size));
@@ -166,12 +186,14 @@ void flight_return(struct fabric *f, struct flight *w)
     f->free_flight[kind] = w;
 }
 
-/* cut the message into packets; one that is larger than a buffer travels in pieces of a buffer's size */
+/* Cut the message into packets; one that is larger than a buffer travels in pieces of a buffer's
+ * size, without headers of their own. */
 static void flight_cut(const struct fabric *f, struct flight *w)
 {
     const struct net *n = f->net;
     int64_t bytes = w->m->bytes, packets = net_packets(n, bytes);
-    int64_t last = net_packet_flits(n, bytes, packets - 1), full = packets > 1 ? net_packet_flits(n, bytes, 0) : last;
+    int64_t last = net_packet_flits(n, bytes, packets - 1),
+            full = packets > 1 ? net_packet_flits(n, bytes, 0) : last;
     if (f->cuts && packets == 1 && last > f->buffer) {
         packets = (last + f->buffer - 1) / f->buffer;
         full = f->buffer;
@@ -183,6 +205,7 @@ static void flight_cut(const struct fabric *f, struct flight *w)
     w->last = (int32_t)last;
 }
 
+/* A link offers the channels of the message's deadlock class; ports offer all of them. */
 static void pass_init(struct fabric *f, struct flight *w, int h, const struct hop *way)
 {
     struct pass *s = &w->pass[h];
@@ -194,15 +217,18 @@ static void pass_init(struct fabric *f, struct flight *w, int h, const struct ho
     s->flit = net_resource_rate(f->net, way->link, w->m->bytes).flit;
 }
 
+/* The route is found once, when the message is handed over; random routes by its id. */
 struct flight *flight_take(struct fabric *f, struct net_message *m)
 {
     struct hop *way = f->way;
     struct net_rate slowest;
     int nhop = net_route(f->net, m, way, &slowest);
     struct flight *w = flight_alloc(f, nhop);
-    *w = (struct flight){.m = m, .nhop = nhop, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
+    *w = (struct flight){
+        .m = m, .nhop = nhop, .slowest = slowest.flit, .arrival = SIM_NEVER, .foreseen = -1};
     flight_cut(f, w);
-    /* Flits so slow that the message outlasts simulated time: as slow as that takes, so that no sum of times wraps. */
+    /* Flits so slow that the message outlasts simulated time: as slow as that takes, so that no sum
+     * of times wraps. */
     const sim_ps longest = PS_TOO_LONG / ((int64_t)(w->npacket - 1) * w->full + w->last);
     if (w->slowest > longest) w->slowest = longest;
     for (int h = 0; h <= nhop; h++) {

@@ -1,4 +1,5 @@
-/* net_wire.c - what every level asks of the wire: sizes in packets and flits, routes, the slowest rate of a route. */
+/* net_wire.c - what every level asks of the wire: sizes in packets and flits, routes, the slowest
+ * rate of a route. */
 #include "net/net_internal.h"
 
 int64_t net_packets(const struct net *n, int64_t bytes)
@@ -7,9 +8,11 @@ int64_t net_packets(const struct net *n, int64_t bytes)
     return most > 0 && bytes > most ? (bytes + most - 1) / most : 1;
 }
 
+/* Payload and header in whole flits; an empty message is still one flit. */
 static int64_t wire_flits(const struct net *n, int64_t payload)
 {
-    int64_t flits = (payload + n->machine->network.header_bytes + n->flit_bytes - 1) / n->flit_bytes;
+    int64_t flits =
+        (payload + n->machine->network.header_bytes + n->flit_bytes - 1) / n->flit_bytes;
     return flits > 0 ? flits : 1;
 }
 
@@ -17,9 +20,11 @@ int64_t net_packet_flits(const struct net *n, int64_t bytes, int64_t index)
 {
     int64_t most = n->machine->network.packet_bytes, packets = net_packets(n, bytes);
     CHECK(index >= 0 && index < packets);
+    /* All packets are full but the last, which carries the rest. */
     return wire_flits(n, index < packets - 1 ? most : bytes - (packets - 1) * most * (packets > 1));
 }
 
+/* Every packet has a header of its own, hence not the flits of the sum of bytes. */
 int64_t net_flits(const struct net *n, int64_t bytes)
 {
     int64_t most = n->machine->network.packet_bytes;
@@ -28,6 +33,7 @@ int64_t net_flits(const struct net *n, int64_t bytes)
     return full * wire_flits(n, most) + wire_flits(n, bytes - full * most);
 }
 
+/* Random routes must not depend on how many numbers others have drawn: a hash, no stream. */
 uint64_t net_choice(const struct net_message *m)
 {
     uint64_t z = ((uint64_t)m->id + 1) * 0x9e3779b97f4a7c15u; /* splitmix64 */
@@ -36,12 +42,15 @@ uint64_t net_choice(const struct net_message *m)
     return z ^ z >> 31;
 }
 
-int net_route(const struct net *n, const struct net_message *m, struct hop *route, struct net_rate *slowest)
+/* One walk along the route serves both: the resources, and the rate that spreads the flits. */
+int net_route(const struct net *n, const struct net_message *m, struct hop *route,
+              struct net_rate *slowest)
 {
     struct route_cursor c = topology_start(n->topology, m->src, m->dst, net_choice(m));
     struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);
     int h = 0;
-    route[h++] = (struct hop){net_injection(n, m->src), 0, topology_injection_port(n->topology, m->src)};
+    route[h++] =
+        (struct hop){net_injection(n, m->src), 0, topology_injection_port(n->topology, m->src)};
     while (topology_next(n->topology, &c, &route[h])) {
         int link = route[h].link;
         slow = net_rate_slower(slow, n->link_rate ? n->link_rate[link] : n->link);
@@ -52,6 +61,7 @@ int net_route(const struct net *n, const struct net_message *m, struct hop *rout
     return h;
 }
 
+/* Where all links are alike and routes are fixed, the distance is known without a walk. */
 struct net_rate net_slowest(const struct net *n, const struct net_message *m, int *nhop)
 {
     struct net_rate slow = net_rate_slower(net_port(n, m->bytes)->rate, n->ejection);

@@ -1,7 +1,8 @@
-/* traffic.c - replay of message lists: starts what is ready, counts down dependencies as messages arrive.
+/* traffic.c - replay of message lists: starts what is ready, counts down dependencies as messages
+ * arrive.
  *
- * Messages without dependencies are started one event ahead, in the order (time, number), so that the queue holds
- * what is in the network and not the whole list. */
+ * Messages without dependencies are started one event ahead, in the order (time, number), so that
+ * the queue holds what is in the network and not the whole list. */
 #include "net/traffic.h"
 
 #include <stdlib.h>
@@ -27,6 +28,7 @@ struct start {
     int message;
 };
 
+/* A total order: qsort is not stable. */
 static int start_order(const void *a, const void *b)
 {
     const struct start *p = a, *q = b;
@@ -45,6 +47,7 @@ static void start_message(void *subject, uint64_t argument, sim_ps now)
 {
     struct replay *r = subject;
     int m = (int)argument;
+    /* This start releases the next one in the list: one event pending at a time. */
     if (r->next_initial < r->ninitial && r->initial[r->next_initial - 1] == m)
         start_at(r, r->initial[r->next_initial++]);
     r->message[m].ready = now;
@@ -62,6 +65,8 @@ static void message_arrived(void *context, struct net_message *msg)
     if (out->injected) out->injected[m] = msg->injected;
     if (out->uncontended) out->uncontended[m] = msg->uncontended;
     if (!r->out_first) return;
+    /* Dependents start at the latest arrival plus their delay, when the last of their dependencies
+     * has arrived. */
     for (int i = r->out_first[m]; i < r->out_first[m + 1]; i++) {
         int later = r->out[i];
         sim_ps ready = msg->arrival + r->q->delay[later];
@@ -74,20 +79,24 @@ static bool traffic_check(const struct traffic *q, const struct topology *t, str
 {
     for (int m = 0; m < q->nmessage; m++) {
         if (q->src[m] < 0 || q->src[m] >= t->nnode || q->dst[m] < 0 || q->dst[m] >= t->nnode)
-            return err_set(e, ERR_DATA, "message %d goes from node %d to node %d; the network has nodes 0 to %d", m,
-                           q->src[m], q->dst[m], t->nnode - 1);
+            return err_set(e, ERR_DATA,
+                           "message %d goes from node %d to node %d; the network has nodes 0 to %d",
+                           m, q->src[m], q->dst[m], t->nnode - 1);
         if (q->bytes[m] < 0 || q->time[m] < 0 || (q->delay && q->delay[m] < 0))
             return err_set(e, ERR_DATA, "message %d has a negative size, time or delay", m);
         if (!q->dep_first) continue;
         for (int i = q->dep_first[m]; i < q->dep_first[m + 1]; i++)
             if (q->dep[i] < 0 || q->dep[i] >= q->nmessage || q->dep[i] == m)
-                return err_set(e, ERR_DATA, "message %d depends on message %d, which does not exist or is itself", m,
-                               q->dep[i]);
+                return err_set(
+                    e, ERR_DATA,
+                    "message %d depends on message %d, which does not exist or is itself", m,
+                    q->dep[i]);
     }
     return true;
 }
 
-/* the inverse of the dependencies, and how many each message waits for */
+/* The inverse of the dependencies, and how many each message waits for. Counting sort; the offset
+ * by two lets the same array serve as running sums and as write positions. */
 static void dependents_make(struct replay *r, struct arena *a)
 {
     const struct traffic *q = r->q;
@@ -100,7 +109,8 @@ static void dependents_make(struct replay *r, struct arena *a)
     for (int m = 0; m < n; m++) r->out_first[m + 2] += r->out_first[m + 1];
     for (int m = 0; m < n; m++) {
         r->waits[m] = q->dep_first[m + 1] - q->dep_first[m];
-        for (int i = q->dep_first[m]; i < q->dep_first[m + 1]; i++) r->out[r->out_first[q->dep[i] + 1]++] = m;
+        for (int i = q->dep_first[m]; i < q->dep_first[m + 1]; i++)
+            r->out[r->out_first[q->dep[i] + 1]++] = m;
     }
 }
 
@@ -122,8 +132,10 @@ static void replay_make(struct replay *r, struct arena *a)
     r->message = TAKE(a, n + 1, struct net_message);
     r->ready = TAKE(a, n + 1, sim_ps);
     for (int m = 0; m < n; m++) {
-        r->message[m] = (struct net_message){.src = q->src[m], .dst = q->dst[m], .bytes = q->bytes[m], .id = m};
+        r->message[m] =
+            (struct net_message){.src = q->src[m], .dst = q->dst[m], .bytes = q->bytes[m], .id = m};
         r->ready[m] = q->time[m];
+        /* What never arrives keeps SIM_NEVER. */
         if (r->result->arrival) r->result->arrival[m] = SIM_NEVER;
         if (r->result->injected) r->result->injected[m] = SIM_NEVER;
         if (r->result->uncontended) r->result->uncontended[m] = SIM_NEVER;
@@ -140,13 +152,16 @@ static void replay_run(struct replay *r)
     out->events = sim_events(r->sim);
     out->digest = sim_digest(r->sim);
     out->link = net_links(r->net, &out->nlink);
+    /* No event left and messages missing: the net names its cycle, or the list itself is
+     * circular. */
     out->deadlock = out->arrived < r->q->nmessage;
     if (out->deadlock && !net_deadlock(r->net, out->text, (int)sizeof out->text))
         strcpy(out->text, "messages wait for each other");
 }
 
-bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t, struct arena *a,
-                 bool want_links, struct traffic_result *out, struct err *e)
+/* The simulation is made and destroyed here; everything else lives in the caller's arena. */
+bool traffic_run(const struct traffic *q, const struct machine_spec *m, const struct topology *t,
+                 struct arena *a, bool want_links, struct traffic_result *out, struct err *e)
 {
     if (!traffic_check(q, t, e)) return false;
     out->makespan = 0;
