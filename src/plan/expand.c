@@ -16,7 +16,8 @@
 #include "plan/program_file.h"
 #include "spec/identity.h"
 
-enum { MAX_RUNS = 1000000, MAX_BODIES = 1 << 27 };
+/* A run of a plan takes about 7 KB, so the largest plan takes 0.7 GB and a few seconds. */
+enum { MAX_RUNS = 100000, MAX_BODIES = 1 << 27 };
 
 /* What holds for all runs on one machine. */
 struct start {
@@ -291,10 +292,14 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena}};
     int64_t n = s->repetitions;
     int ntable;
-    for (int i = 0; i < s->naxis; i++) n = n > MAX_RUNS ? n : n * s->axis[i].npoint;
+    /* Counted before anything is built: a few lines can ask for any number of runs. The count stops
+     * growing long before it overflows. */
+    for (int i = 0; i < s->naxis && n < INT64_MAX / SCENARIO_MAX_POINTS; i++) n *= s->axis[i].npoint;
     if (n > MAX_RUNS)
-        return err_set_at(e, ERR_CONFIG, s->path, 0, "more than %d runs; make the sweep smaller",
-                          MAX_RUNS);
+        return err_set_at(e, ERR_CONFIG, s->path, 0,
+                          "the sweep has %s%lld runs; expected at most %d: make it smaller, or split "
+                          "it into several scenarios",
+                          n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n, MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
     x.identity = identity_create(table, ntable);
     bool fine = expand_points(&x, n);

@@ -211,3 +211,15 @@ draw_all() {
         if grep -nE 'system *\(|[`]|(^|[^"a-zA-Z_^])@[A-Za-z]|set macros|["'\''][<|]' "$script"; then return 1; fi
     done
 }
+
+@test "a few lines that ask for a million runs are refused before they take memory or time" {
+    seq -s ', ' 0 999 >thousand
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'kernel: dynamics' 'ranks: 1' 'n: 4' \
+        "seed: [$(cat thousand)]" "model.seed: [$(cat thousand)]" >million.yaml
+    for verb in check explain run plan; do
+        (ulimit -v 300000; mimdsim $verb million.yaml) >out 2>err && status=0 || status=$?
+        [ "$status" -eq 78 ]
+        grep -q 'the sweep has 1000000 runs; expected at most 100000' err
+    done
+    [ ! -e mimdsim.db ]
+}

@@ -267,7 +267,8 @@ static const struct bad_file {
     {HEAD "only: n >= ranks\nn: 2\n", 0, ERR_CONFIG, "'only' excludes all runs"},
     {HEAD "model: {generator: urdf}\n", 0, ERR_DATA, "model.path is missing"},
     {HEAD "model: {generator: urdf, path: nowhere.urdf}\n", 0, ERR_NO_INPUT, "cannot open"},
-    {HEAD "repetitions: 100000\nsweep: {n: [1,2,3,4,5,6,7,8,9,10,11,12]}\n", 0, ERR_CONFIG, "more than 1000000 runs"},
+    {HEAD "repetitions: 100000\nsweep: {n: [1,2,3,4,5,6,7,8,9,10,11,12]}\n", 0, ERR_CONFIG,
+     "has 1200000 runs; expected at most 100000"},
 };
 
 static void wrong_files_are_refused_with_line_and_reason(void **state)
