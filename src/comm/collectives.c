@@ -150,12 +150,12 @@ static void run_named(const struct collective_call *k, const char *algorithm)
     a->run(k);
 }
 
-void collective_barrier(struct comm *c, int tag)
+void collective_barrier(struct comm *c, int64_t tag)
 {
     run_named(&(struct collective_call){.kind = COLLECTIVE_BARRIER, .comm = c, .tag = tag}, "dissemination");
 }
 
-void collective_broadcast(struct comm *c, int root, int tag, void *data, int64_t bytes)
+void collective_broadcast(struct comm *c, int root, int64_t tag, void *data, int64_t bytes)
 {
     struct collective_call k = {.kind = COLLECTIVE_BROADCAST, .comm = c, .tag = tag, .root = root};
     k.count = bytes;
@@ -175,7 +175,7 @@ static void add_doubles(void *into, const void *with, bool before, int64_t n, vo
 
 enum { SUM_CHUNK = 64 };
 
-void collective_sum(struct comm *c, int tag, double *data, int n)
+void collective_sum(struct comm *c, int64_t tag, double *data, int n)
 {
     const struct collective_op add = {.combine = add_doubles, .commutative = true};
     double scratch[2 * SUM_CHUNK];

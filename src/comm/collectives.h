@@ -51,7 +51,7 @@ struct collective_op {
 struct collective_call {
     enum collective_kind kind;
     struct comm *comm;
-    int tag;
+    int64_t tag;
     int root;
     int64_t count, element; /* elements of a vector or block, bytes of one */
     /* Blocks of different sizes; NULL: all of `count`, one behind the other. (size) elements, and where they begin.
@@ -129,8 +129,8 @@ void collective_run(const struct collective_algorithm *a, const struct collectiv
 /* For kernels, each by one algorithm of the tables. collective_barrier: dissemination. collective_broadcast: `bytes`
  * bytes of `data` from `root`, binomial. collective_sum: data[k] = sum over ranks, binomial to rank 0 and back, the
  * same bits on every rank; n doubles. */
-void collective_barrier(struct comm *c, int tag);
-void collective_broadcast(struct comm *c, int root, int tag, void *data, int64_t bytes);
-void collective_sum(struct comm *c, int tag, double *data, int n);
+void collective_barrier(struct comm *c, int64_t tag);
+void collective_broadcast(struct comm *c, int root, int64_t tag, void *data, int64_t bytes);
+void collective_sum(struct comm *c, int64_t tag, double *data, int n);
 
 #endif

@@ -1,8 +1,9 @@
 /* comm.h - the only face of the machine that a kernel sees: ranks, messages, computing, stages.
  *
  * A kernel written against this header runs on virtual processors (room vp), on one rank without any simulator
- * (comm_serial.h), and could run on MPI. Messages match by (source, tag) in the order sent, as MPI's; there is no
- * wildcard. Peers that do not exist are errors of the kernel (CHECK). */
+ * (comm_serial.h), and could run on MPI. Messages match by (source, tag) in the order sent, as MPI's; wildcards, tests
+ * and probes are in comm_match.h, which this header includes. What a program does wrong (a peer that does not exist)
+ * is a CHECK in a built-in one and ends the run of a foreign one as comm_fail does. */
 #ifndef COMM_COMM_H
 #define COMM_COMM_H
 
@@ -10,48 +11,7 @@
 #include <stdint.h>
 
 #include "base/work.h"
-
-struct comm;
-
-/* A pending operation. Zero-initialised ones are complete. Owned by the kernel, usually on its stack; it must stay
- * in place until its wait returns. */
-struct comm_request {
-    void *buffer;                /* receive: where the bytes go */
-    int64_t bytes;
-    int peer, tag;
-    int active;                  /* 0: complete or never started */
-    void *detail;                /* of the implementation */
-    const char *file;            /* where in the kernel it was posted, for the deadlock report */
-    int line;
-};
-
-/* Where the numbers of one output gather on this host; x NULL: nobody wants them. */
-struct comm_output {
-    double *x;                   /* (n) */
-    int64_t n;
-};
-
-struct comm_type {
-    const char *name;
-    void (*isend)(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r);
-    void (*irecv)(struct comm *c, int src, int tag, void *buffer, int64_t bytes, struct comm_request *r);
-    void (*wait)(struct comm *c, struct comm_request *r);
-    void (*barrier)(struct comm *c);
-    void (*work)(struct comm *c, const struct work *w);
-    void (*stage)(struct comm *c, int stage);
-    int64_t (*now_ps)(struct comm *c);
-    void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data);
-};
-
-/* Every implementation's struct begins with this. */
-struct comm {
-    const struct comm_type *type;
-    int rank, size;
-    int noutput;
-    const struct comm_output *output; /* (noutput) where comm_publish_here puts what is published; borrowed */
-    const char *file;            /* call site of the operation in progress, set by the macros below */
-    int line;
-};
+#include "comm/comm_type.h"
 
 /* comm_rank, comm_size: 0 .. size-1. */
 static inline int comm_rank(const struct comm *c) { return c->rank; }
@@ -60,14 +20,14 @@ static inline int comm_size(const struct comm *c) { return c->size; }
 /* comm_isend: start sending `bytes` bytes of `data` to `dst` with `tag` (>= 0). The data are copied before return;
  * r completes when the sender's software is done with the message. r may be NULL for an eager, forgotten send. */
 #define comm_isend(c, dst, tag, data, bytes, r)                                                                        \
-    ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->isend((c), (dst), (tag), (data), (bytes), (r)))
+    (COMM_HERE(c), (c)->type->isend((c), (dst), (tag), (data), (bytes), (r)))
 
 /* comm_irecv: post a receive of exactly `bytes` bytes from `src` with `tag` into `buffer`, valid until its wait. */
 #define comm_irecv(c, src, tag, buffer, bytes, r)                                                                      \
-    ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->irecv((c), (src), (tag), (buffer), (bytes), (r)))
+    (COMM_HERE(c), (c)->type->irecv((c), (src), (tag), (buffer), (bytes), (r)))
 
 /* comm_wait: return when r is complete; a receive's data are then in its buffer and o_r is charged. */
-#define comm_wait(c, r) ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->wait((c), (r)))
+#define comm_wait(c, r) (COMM_HERE(c), (c)->type->wait((c), (r)))
 
 /* comm_waitall: wait for n requests in the order given. */
 #define comm_waitall(c, n, r)                                                                                          \
@@ -85,10 +45,22 @@ static inline int comm_size(const struct comm *c) { return c->size; }
     } while (0)
 
 /* comm_barrier: return when every rank has entered; hardware barrier or messages, as the machine has it. */
-#define comm_barrier(c) ((c)->file = __FILE__, (c)->line = __LINE__, (c)->type->barrier((c)))
+#define comm_barrier(c) (COMM_HERE(c), (c)->type->barrier((c)))
 
 /* comm_work: advance this rank's clock by what `w` costs on the node, and count it. */
 static inline void comm_work(struct comm *c, const struct work *w) { c->type->work(c, w); }
+
+/* comm_elapse: advance this rank's clock by `ps` >= 0 of computing whose time is known [ps]. */
+static inline void comm_elapse(struct comm *c, int64_t ps) { c->type->elapse(c, ps); }
+
+/* comm_fail: this rank's program has failed, `text` says why. The run ends RUN_FAILED with rank, simulated time, stage,
+ * call site and text; the call does not return. */
+static inline _Noreturn void comm_fail_here(struct comm *c, const char *text)
+{
+    c->type->end_run(c, text);
+    __builtin_unreachable();
+}
+#define comm_fail(c, text) (COMM_HERE(c), comm_fail_here((c), (text)))
 
 /* comm_stage: the following time belongs to stage number `stage` (index into the kernel's list of stage names). */
 static inline void comm_stage(struct comm *c, int stage) { c->type->stage(c, stage); }
@@ -111,5 +83,7 @@ static inline int comm_wanted(const struct comm *c, int output)
 
 /* comm_publish_here: comm_publish where ranks share the memory of c->output. */
 void comm_publish_here(struct comm *c, int output, int64_t first, int64_t n, const double *data);
+
+#include "comm/comm_match.h"
 
 #endif

@@ -34,12 +34,13 @@ struct rank_program {
 
     /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
     size_t (*workspace_bytes)(const void *job, int rank);
-
     /* largest_message: no message of this job is larger [B]; -1: not known. NULL: not known. */
     int64_t (*largest_message)(const void *job);
 
     /* run: the program of one rank. */
     void (*run)(struct comm *c, const void *job, void *workspace);
+    bool timed, foreign, leftovers; /* as in world_load; false for built-in programs */
+    int64_t stack_bytes;            /* of each rank, 0: as for built-in programs */
 };
 
 /* One run of a program, from open to check. The caller fills the first part, open and prepare the second; after open
@@ -53,7 +54,7 @@ struct program_run {
     struct arena *arena;         /* memory of open: lives as long as this struct */
 
     void *own;                       /* the program's own, made by open in `arena` */
-    const struct rank_program *rank; /* set by open; open may choose among several texts */
+    const struct rank_program *rank; /* set by open; may be chosen among several, or made in `arena` */
     const void *job;                 /* what the ranks get; set by prepare */
     int nbody, nu;                   /* bodies and degrees of freedom of the scene; 0: it has none */
     double metre, kilogram, second;  /* its units in SI; 0: it has none */

@@ -36,6 +36,8 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m, const
     const struct world_load load = {.nrank = r->spec.nrank, .program = program, .context = &l,
                                     .nstage = r->rank->nstage, .stage_name = r->rank->stage_name,
                                     .largest_message = largest, .output = r->output, .noutput = PROGRAM_OUTPUTS,
-                                    .heartbeat = r->heartbeat};
+                                    .heartbeat = r->heartbeat, .stack_bytes = r->rank->stack_bytes,
+                                    .timed = r->rank->timed, .foreign = r->rank->foreign,
+                                    .leftovers = r->rank->leftovers};
     return world_run(m, &load, record, seed, a, out, e);
 }

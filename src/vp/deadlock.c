@@ -3,37 +3,67 @@
 #include <string.h>
 
 #include "base/picoseconds.h"
+#include "vp/explain.h"
 #include "vp/vp.h"
-
-static const char *base_name(const char *path)
-{
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    return slash ? slash + 1 : path ? path : "?";
-}
 
 static int peer_of(const struct vp *v)
 {
     return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer : -1;
 }
 
+/* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its lower 32 bits. */
+static int describe_receive(const struct comm_request *r, char *s, int size)
+{
+    char tag[48] = "any tag", from[24] = "any rank";
+    if (r->mask & UINT32_MAX) snprintf(tag, sizeof tag, "tag %lld", (long long)(r->tag & UINT32_MAX));
+    if (r->peer >= 0) snprintf(from, sizeof from, "rank %d", r->peer);
+    if (r->kind == RECEIVE_PROBE) return snprintf(s, size, "probes for a message, %s, from %s", tag, from);
+    return snprintf(s, size, "waits to receive %s%lld bytes, %s, from %s", r->kind == RECEIVE_EXACT ? "" : "at most ",
+                    (long long)r->bytes, tag, from);
+}
+
 static int describe(const struct vp *v, char *s, int size)
 {
     const char *stage = v->world->result->stage_name[v->stage];
     const struct comm_request *r = v->waiting;
+    char receive[160];
     switch (v->waiting_for) {
     case WAITING_RECEIVE:
-        return snprintf(s, size, "rank %d in %s waits to receive %lld bytes, tag %d, from rank %d (%s:%d)",
-                        v->comm.rank, stage, (long long)r->bytes, r->tag, r->peer, base_name(r->file), r->line);
+        describe_receive(r, receive, sizeof receive);
+        return snprintf(s, size, "rank %d in %s %s (%s:%d)", v->comm.rank, stage, receive, vp_base_name(r->file),
+                        r->line);
     case WAITING_SEND:
-        return snprintf(s, size, "rank %d in %s waits for rank %d to take %lld bytes, tag %d (%s:%d)", v->comm.rank,
-                        stage, r->peer, (long long)r->bytes, r->tag, base_name(r->file), r->line);
+        return snprintf(s, size, "rank %d in %s waits for rank %d to take %lld bytes, tag %lld (%s:%d)", v->comm.rank,
+                        stage, r->peer, (long long)r->bytes, (long long)(r->tag & UINT32_MAX), vp_base_name(r->file),
+                        r->line);
     case WAITING_BARRIER:
         return snprintf(s, size, "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
-                        v->comm.rank, stage, base_name(v->comm.file), v->comm.line, v->world->barrier_count,
+                        v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line, v->world->barrier_count,
                         v->world->nrank);
+    case WAITING_ANY:
+        return snprintf(s, size, "rank %d in %s waits for any of several requests (%s:%d)", v->comm.rank, stage,
+                        vp_base_name(v->comm.file), v->comm.line);
     default:
         return snprintf(s, size, "rank %d in %s waits for the kernel server", v->comm.rank, stage);
     }
+}
+
+/* Anybody could end the wait of `v`: all others have finished or wait, too. Three of them are told. */
+static void describe_others(struct world *w, const struct vp *v, char *s, int size)
+{
+    int finished = 0, told = 0, used = 0;
+    for (int i = 0; i < w->nrank; i++) finished += w->vp[i].waiting_for == WAITING_NOTHING;
+    used += snprintf(s, size, "; of the others %d have finished and %d wait", finished, w->nrank - 1 - finished);
+    for (int i = 0; i < w->nrank && told < 3 && used < size; i++) {
+        if (&w->vp[i] == v || w->vp[i].waiting_for == WAITING_NOTHING) continue;
+        used += snprintf(s + used, size - used, "%s", told++ ? "; " : ": ");
+        if (used < size) used += describe(&w->vp[i], s + used, size - used);
+    }
+}
+
+static bool waits_for_anybody(const struct vp *v)
+{
+    return v->waiting_for == WAITING_ANY || (v->waiting_for == WAITING_RECEIVE && v->waiting->peer < 0);
 }
 
 static struct vp *first_blocked(struct world *w)
@@ -64,6 +94,7 @@ void deadlock_explain(struct world *w)
     for (int k = 0; k < 8 && used < size; k++) {
         used += describe(v, text + used, size - used);
         int peer = peer_of(v);
+        if (waits_for_anybody(v) && used < size) describe_others(w, v, text + used, size - used);
         if (peer < 0 || used >= size) return;
         if (w->vp[peer].waiting_for == WAITING_NOTHING) {
             snprintf(text + used, size - used, ", and rank %d has finished", peer);
@@ -88,8 +119,4 @@ void late_explain(struct world *w)
     snprintf(r->text, sizeof r->text, "simulated time ends at %.3g s: rank %d had reached %.6g s in %s, and what %s "
              "next comes later", PS_LAST / SIM_PS_PER_S, v->comm.rank, (double)v->clock / SIM_PS_PER_S,
              r->stage_name[v->stage], w->late ? "it does" : "happens");
-    /* What the ranks have so far is no result. */
-    r->stage = NULL;
-    r->finish_ps = NULL;
-    r->nspan = 0;
 }

@@ -2,9 +2,19 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "vp/explain.h"
 #include "vp/vp.h"
 
-enum { CLASS_BYTES = 64, CHUNK_MESSAGES = 64 };
+enum { CLASS_BYTES = 64, SMALL_CLASSES = 65, CHUNK_MESSAGES = 64 };
+
+/* Of more than 4 KiB: the class of the next quarter of an octave, whose size *bytes becomes. */
+static int large_class(int64_t *bytes)
+{
+    const int octave = 63 - __builtin_clzll((uint64_t)*bytes - 1); /* 2^octave <= bytes - 1 */
+    const int64_t quarter = (INT64_C(1) << octave) / 4, n = (*bytes + quarter - 1) / quarter; /* 5 .. 8 */
+    *bytes = n * quarter;
+    return SMALL_CLASSES + (octave - 12) * 4 + (int)n - 5;
+}
 
 static struct message *refill(struct world *w, int class)
 {
@@ -20,18 +30,23 @@ static struct message *refill(struct world *w, int class)
     return head;
 }
 
+static struct message *alone(struct world *w, int64_t bytes)
+{
+    struct message *m = arena_take(w->scratch, sizeof *m + (size_t)bytes);
+    m->next = NULL;
+    return m;
+}
+
 struct message *message_take(struct world *w, int64_t bytes)
 {
-    int64_t class = (bytes + CLASS_BYTES - 1) / CLASS_BYTES;
+    int64_t class = (bytes + CLASS_BYTES - 1) / CLASS_BYTES, room = bytes;
     struct message *m;
-    if (class < MESSAGE_CLASSES) {
-        if (!w->free_message[class]) w->free_message[class] = refill(w, (int)class);
-        m = w->free_message[class];
-        w->free_message[class] = m->next;
-    } else {
-        m = arena_take(w->scratch, sizeof *m + (size_t)bytes);
-        class = MESSAGE_CLASSES;
-    }
+    if (class >= SMALL_CLASSES) class = large_class(&room);
+    CHECK(class < MESSAGE_CLASSES);
+    if (!w->free_message[class])
+        w->free_message[class] = class < SMALL_CLASSES ? refill(w, (int)class) : alone(w, room);
+    m = w->free_message[class];
+    w->free_message[class] = m->next;
     memset(m, 0, sizeof *m);
     m->size_class = (uint16_t) class;
     m->bytes = bytes;
@@ -40,29 +55,34 @@ struct message *message_take(struct world *w, int64_t bytes)
 
 void message_give(struct world *w, struct message *m)
 {
-    if (m->size_class == MESSAGE_CLASSES) return; /* large ones are rare: their memory goes with the run */
     m->next = w->free_message[m->size_class];
     w->free_message[m->size_class] = m;
 }
 
 static inline bool fits(const struct message *m, const struct comm_request *r)
 {
-    return m->from->comm.rank == r->peer && m->tag == r->tag;
+    return message_fits(m, m->from->comm.rank, r);
 }
 
-static void bind(struct vp *v, struct comm_request *r, struct message *m)
+void message_bind(struct vp *v, struct comm_request *r, struct message *m, sim_ps now)
 {
-    CHECK(m->bytes == r->bytes); /* the kernel's two ends disagree about the size */
+    if (r->kind == RECEIVE_EXACT && m->bytes != r->bytes) size_mismatch(v, r, m);
+    r->truncated = m->bytes > r->capacity;
+    r->bytes = m->bytes;
+    r->tag = m->tag;
+    r->peer = m->from->comm.rank;
     r->detail = m;
     if (m->kind == MESSAGE_REQUEST_TO_SEND) {
-        r->active = REQUEST_POSTED; /* until the data are here */
+        r->active = REQUEST_COMING;
         m->receive = r;
-        rendezvous_matched(m, r, m->net.arrival > v->clock ? m->net.arrival : v->clock);
+        rendezvous_matched(m, r, now);
         return;
     }
     r->active = REQUEST_MATCHED;
-    if (v->waiting == r) vp_wake(v->world, v);
+    vp_notify(v, r, m->net.arrival);
 }
+
+static inline sim_ps later(sim_ps a, sim_ps b) { return a > b ? a : b; }
 
 void mailbox_post(struct vp *v, struct comm_request *r)
 {
@@ -71,7 +91,7 @@ void mailbox_post(struct vp *v, struct comm_request *r)
         if (!fits(m, r)) continue;
         *p = m->next;
         if (!m->next) v->unexpected_end = p;
-        bind(v, r, m);
+        message_bind(v, r, m, later(m->net.arrival, v->clock));
         return;
     }
     r->active = REQUEST_POSTED;
@@ -87,7 +107,7 @@ void mailbox_deliver(struct vp *v, struct message *m)
         if (!fits(m, r)) continue;
         *p = r->detail;
         if (!r->detail) v->posted_end = p;
-        bind(v, r, m);
+        message_bind(v, r, m, later(m->net.arrival, v->clock));
         return;
     }
     m->next = NULL;

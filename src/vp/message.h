@@ -3,6 +3,7 @@
 #ifndef VP_MESSAGE_H
 #define VP_MESSAGE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "comm/comm.h"
@@ -12,32 +13,66 @@
 struct vp;
 struct world;
 
-/* States of comm_request.active. */
-enum { REQUEST_DONE, REQUEST_POSTED, REQUEST_MATCHED, REQUEST_SENDING, REQUEST_SENT, REQUEST_DELIVERED };
+struct unmatched;
+
+/* States of comm_request.active. COMING: a request to send is bound, its data are not here; TAKEN: bound by a probe and
+ * still without a buffer. */
+enum {
+    REQUEST_DONE,
+    REQUEST_POSTED,
+    REQUEST_COMING,
+    REQUEST_MATCHED,
+    REQUEST_SENDING,
+    REQUEST_SENT,
+    REQUEST_DELIVERED,
+    REQUEST_TAKEN
+};
+
+/* comm_request.kind of receives: any size up to the room, exactly that size, or a look that takes nothing. */
+enum { RECEIVE_MATCHING, RECEIVE_EXACT, RECEIVE_PROBE };
 
 enum message_kind { MESSAGE_EAGER, MESSAGE_REQUEST_TO_SEND, MESSAGE_CLEAR_TO_SEND, MESSAGE_DATA };
 
 struct message {
     struct net_message net; /* first */
-    struct message *next;
+    union {
+        struct message *next;        /* in the mailbox, or in the pool */
+        struct unmatched *unmatched; /* timed programs, until a receive has taken it */
+    };
     struct vp *from, *to;
     struct comm_request *send, *receive; /* rendezvous: both ends' requests */
     int64_t bytes;                       /* of the kernel's data */
     sim_ps sent;                         /* when the send began; for spans */
     sim_ps delay;                        /* rendezvous: contention of the hand-shake */
-    int tag;
+    int64_t tag;
     uint16_t size_class;
     uint16_t kind;
+    uint16_t synchronous; /* its sender waits until it is taken, whatever its size */
     char data[];
 };
 
-enum { MESSAGE_CLASSES = 65 };
+enum { MESSAGE_CLASSES = 65 + 4 * 40 }; /* by 64 bytes up to 4 KiB, by quarters of an octave up to 4 PiB */
+
+/* message_key: orders events of messages at one time by sender, then by count. */
+static inline uint64_t message_key(const struct message *m)
+{
+    return (uint64_t)(m->net.id >> 32 & 0xffffff) << 24 | (uint64_t)(m->net.id & 0xffffff);
+}
 
 /* --- mailbox.c --- */
 
 /* message_take: a message with room for `bytes` bytes, zeroed head; message_give: back to the pool. */
 struct message *message_take(struct world *w, int64_t bytes);
 void message_give(struct world *w, struct message *m);
+
+/* message_fits: whether the receive r may take m. */
+static inline bool message_fits(const struct message *m, int source, const struct comm_request *r)
+{
+    return (source == r->peer || r->peer < 0) && ((m->tag ^ r->tag) & r->mask) == 0;
+}
+
+/* message_bind: r has found m at `now`, the later of posting and arrival; wakes its owner v. */
+void message_bind(struct vp *v, struct comm_request *r, struct message *m, sim_ps now);
 
 /* mailbox_post: bind `r` to the first message that matches, or append it to the posted receives. */
 void mailbox_post(struct vp *v, struct comm_request *r);

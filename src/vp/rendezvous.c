@@ -41,12 +41,13 @@ static void release_sender(struct message *m, int state)
     s->active = state;
     s->detail = (void *)(intptr_t)m->net.arrival;
     m->send = NULL;
-    if (m->from->waiting == s) vp_wake(m->from->world, m->from);
+    vp_notify(m->from, s, m->net.arrival);
 }
 
 static void cleared(struct message *m)
 {
     bool held = message_cost(&m->from->world->software, m->bytes)->protocol == PROTOCOL_SYNCHRONOUS;
+    if (m->synchronous) held = false; /* the program asked to know that it is taken, which it is */
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_DATA;
     if (!held) release_sender(m, REQUEST_SENT);
@@ -65,5 +66,5 @@ void rendezvous_deliver(struct message *m)
     release_sender(m, REQUEST_DELIVERED);
     r->active = REQUEST_MATCHED;
     r->detail = m;
-    if (m->to->waiting == r) vp_wake(m->to->world, m->to);
+    vp_notify(m->to, r, m->net.arrival);
 }

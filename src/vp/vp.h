@@ -1,9 +1,8 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
  * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; clock.c its time; mailbox.c matches
- * messages; launch.c sends them off;
- * rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links; deadlock.c
- * explains deadlocks. */
+ * messages, matching.c and poll.c where that depends on time; launch.c sends them off; rendezvous.c carries large ones;
+ * server.c is the shared kernel server; background.c loads the links; deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
 
@@ -30,10 +29,13 @@
 struct world;
 struct vp;
 
-/* Lanes of the events that this room posts before the starts of messages at the same time. */
-enum { LANE_SERVER = NET_LANE_START - 2, LANE_BACKGROUND = NET_LANE_START - 1 };
+/* Lanes of the events that this room posts before the starts of messages at the same time: messages that arrive for
+ * receives from anybody, such receives, looks at the clock, others' services. */
+enum { LANE_ARRIVAL = NET_LANE_START - 5, LANE_POST, LANE_POLL, LANE_SERVER, LANE_BACKGROUND };
 
-enum waiting_for { WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER };
+enum waiting_for {
+    WAITING_NOTHING, WAITING_RECEIVE, WAITING_SEND, WAITING_BARRIER, WAITING_SERVER, WAITING_ANY, WAITING_POLL
+};
 
 struct vp {
     struct comm comm; /* first: a kernel's comm is its vp */
@@ -45,6 +47,7 @@ struct vp {
     struct comm_request *waiting;                 /* the request it waits for */
     struct comm_request *posted, **posted_end;    /* receives without a message, in order */
     struct message *unexpected, **unexpected_end; /* messages without a receive, in order */
+    struct matching *matching;                    /* timed programs: instead of `unexpected` */
     uint32_t sent;                                /* messages so far: the lower half of their numbers */
     int node, processor;
     uint64_t digest;     /* of what it received and when */
@@ -70,6 +73,7 @@ struct world {
     struct software_cost software;
     struct node_cost node_cost;
     bool shared_channel, eager_only, noisy;
+    bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
 
     int *ready; /* (nrank) ring of ranks that can go on */
     int ready_head, ready_count;
@@ -92,6 +96,9 @@ struct world {
 
 /* vp_wake: put a rank that waits at the end of the ready ring. */
 void vp_wake(struct world *w, struct vp *v);
+
+/* vp_notify: r of v becomes complete at `time`, now or later: wake v if it waits for that. */
+void vp_notify(struct vp *v, const struct comm_request *r, sim_ps time);
 
 /* vp_block: leave the fiber until somebody wakes `v`. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);
@@ -138,13 +145,5 @@ sim_ps server_pass(struct vp *v, int64_t bytes);
 /* background_start: begin the seeded traffic of others on the links, when the machine has it; it ends with the ranks.
  * Acts at levels that can occupy a link (net_occupy); the plan reports it as unused at the others. */
 void background_start(struct world *w, uint64_t seed);
-
-/* --- deadlock.c --- */
-
-/* late_explain: who had come how far when simulated time ended, into the result's text. */
-void late_explain(struct world *w);
-
-/* deadlock_explain: the wait-for cycle, and the network's if it is the network, into the result's text. */
-void deadlock_explain(struct world *w);
 
 #endif

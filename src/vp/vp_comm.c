@@ -8,6 +8,8 @@
 #include "base/digest.h"
 #include "base/picoseconds.h"
 #include "comm/collectives.h"
+#include "vp/explain.h"
+#include "vp/matching.h"
 #include "vp/vp.h"
 
 enum { BARRIER_TAG = 1 << 30 };
@@ -40,11 +42,12 @@ static void charge_receive(struct vp *v, const struct message *m)
     if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
 }
 
-static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r)
+static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data, int64_t bytes)
 {
-    struct vp *v = (struct vp *)c;
     struct world *w = v->world;
-    CHECK(dst >= 0 && dst < w->nrank && tag >= 0 && bytes >= 0);
+    if (dst < 0 || dst >= w->nrank) vp_misuse(v, "a message to rank %d: there are 0 .. %d", dst, w->nrank - 1);
+    if (tag < 0 || bytes < 0)
+        vp_misuse(v, "a message of %lld bytes with tag %lld to rank %d", (long long)bytes, (long long)tag, dst);
     CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
     struct message *m = message_take(w, bytes);
     if (bytes) memcpy(m->data, data, (size_t)bytes);
@@ -58,6 +61,15 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     charge_send(v, m);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
+    if (m->to->matching) matching_announce(m);
+    return m;
+}
+
+static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
+{
+    struct vp *v = (struct vp *)c;
+    struct world *w = v->world;
+    struct message *m = make_message(v, dst, tag, data, bytes);
     if (!w->eager_only && message_cost(&w->software, bytes)->protocol != PROTOCOL_EAGER) {
         rendezvous_send(v, m, r);
         return;
@@ -67,13 +79,58 @@ static void vp_isend(struct comm *c, int dst, int tag, const void *data, int64_t
     vp_launch(w, m, v, m->to);
 }
 
-static void vp_irecv(struct comm *c, int src, int tag, void *buffer, int64_t bytes, struct comm_request *r)
+static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                                 struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
-    CHECK(src >= 0 && src < v->world->nrank && tag >= 0 && bytes >= 0);
-    *r = (struct comm_request){
-        .buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .file = c->file, .line = c->line};
-    mailbox_post(v, r);
+    if (v->world->eager_only) vp_misuse(v, "a synchronous send in a program that has promised to do without it");
+    struct message *m = make_message(v, dst, tag, data, bytes);
+    m->synchronous = 1;
+    rendezvous_send(v, m, r);
+}
+
+static void post(struct vp *v, struct comm_request *r)
+{
+    if (v->matching) matching_post(v, r);
+    else mailbox_post(v, r);
+}
+
+static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
+{
+    struct vp *v = (struct vp *)c;
+    if (src < 0 || src >= v->world->nrank || tag < 0 || bytes < 0)
+        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d", (long long)bytes,
+                  (long long)tag, src, v->world->nrank - 1);
+    *r = (struct comm_request){.buffer = buffer,
+                               .bytes = bytes,
+                               .capacity = bytes,
+                               .peer = src,
+                               .tag = tag,
+                               .mask = COMM_WHOLE_TAG,
+                               .kind = RECEIVE_EXACT,
+                               .file = c->file,
+                               .line = c->line};
+    post(v, r);
+}
+
+static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer, int64_t capacity,
+                              struct comm_request *r)
+{
+    struct vp *v = (struct vp *)c;
+    if (src < COMM_ANY_SOURCE || src >= v->world->nrank || tag < 0 || capacity < 0)
+        vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d", (long long)capacity,
+                  (long long)tag, src, v->world->nrank - 1);
+    if (src < 0 && !v->matching)
+        vp_misuse(v, "a receive from any source in a program that has promised to do without it");
+    *r = (struct comm_request){.buffer = buffer,
+                               .bytes = capacity,
+                               .capacity = capacity,
+                               .peer = src,
+                               .tag = tag,
+                               .mask = mask,
+                               .file = c->file,
+                               .line = c->line};
+    post(v, r);
 }
 
 static void finish_receive(struct vp *v, struct comm_request *r)
@@ -83,7 +140,8 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     vp_wait_until(v, m->net.arrival, m->net.uncontended);
     if (v->world->record->spans) vp_span(v, SPAN_WAIT, begin, v->clock, r->peer, m->bytes, -1);
     charge_receive(v, m);
-    if (m->bytes) memcpy(r->buffer, m->data, (size_t)m->bytes);
+    const int64_t kept = m->bytes < r->capacity ? m->bytes : r->capacity;
+    if (kept) memcpy(r->buffer, m->data, (size_t)kept);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.id);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.arrival);
     message_give(v->world, m);
@@ -120,8 +178,8 @@ static void vp_wait(struct comm *c, struct comm_request *r)
         r->detail = NULL;
         return;
     }
-    if (r->active == REQUEST_POSTED) vp_block(v, WAITING_RECEIVE, r);
-    CHECK(r->active == REQUEST_MATCHED);
+    if (r->active == REQUEST_POSTED || r->active == REQUEST_COMING) vp_block(v, WAITING_RECEIVE, r);
+    if (r->active != REQUEST_MATCHED) vp_misuse(v, "a wait for a request that was never started");
     finish_receive(v, r);
 }
 
@@ -154,29 +212,51 @@ static void vp_barrier(struct comm *c)
     if (v->world->record->spans) vp_span(v, SPAN_BARRIER, begin, v->clock, -1, 0, -1);
 }
 
-static void vp_work(struct comm *c, const struct work *work)
+static inline void compute(struct vp *v, sim_ps cost)
 {
-    struct vp *v = (struct vp *)c;
     const struct world *w = v->world;
-    sim_ps begin = v->clock, cost = node_cost_ps(&w->node_cost, work);
+    sim_ps begin = v->clock;
     if (w->noisy) {
         double factor = 1 + w->machine->noise.compute_cv * random_normal(&v->noise);
         cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
     vp_advance(v, v->clock + cost);
     vp_stage_time(v)->compute_ps += cost;
-    work_add(&vp_stage_time(v)->work, work);
     if (w->record->spans) vp_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
+}
+
+static void vp_work(struct comm *c, const struct work *work)
+{
+    struct vp *v = (struct vp *)c;
+    work_add(&vp_stage_time(v)->work, work);
+    compute(v, node_cost_ps(&v->world->node_cost, work));
+}
+
+static void vp_elapse(struct comm *c, int64_t ps)
+{
+    struct vp *v = (struct vp *)c;
+    if (ps < 0) vp_misuse(v, "computing for %lld ps", (long long)ps);
+    compute(v, ps < PS_TOO_LONG ? ps : PS_TOO_LONG);
 }
 
 static void vp_stage(struct comm *c, int stage)
 {
     struct vp *v = (struct vp *)c;
-    CHECK(stage >= 0 && stage < v->world->nstage);
+    if (stage < 0 || stage >= v->world->nstage)
+        vp_misuse(v, "stage %d: there are 0 .. %d", stage, v->world->nstage - 1);
     v->stage = stage;
 }
 
 static int64_t vp_now(struct comm *c) { return ((struct vp *)c)->clock; }
+
+static void vp_publish(struct comm *c, int output, int64_t first, int64_t n, const double *data)
+{
+    const struct comm_output *o = output >= 0 && comm_wanted(c, output) ? &c->output[output] : NULL;
+    if (output < 0 || (o && (first < 0 || n < 0 || first > o->n - n)))
+        vp_misuse((struct vp *)c, "elements %lld .. %lld of output %d, which has %lld", (long long)first,
+                  (long long)(first + n - 1), output, o ? (long long)o->n : 0LL);
+    comm_publish_here(c, output, first, n, data);
+}
 
 const struct comm_type vp_comm_type = {
     .name = "vp",
@@ -187,5 +267,13 @@ const struct comm_type vp_comm_type = {
     .work = vp_work,
     .stage = vp_stage,
     .now_ps = vp_now,
-    .publish = comm_publish_here,
+    .publish = vp_publish,
+    .elapse = vp_elapse,
+    .end_run = vp_fail,
+    .isend_synchronous = vp_isend_synchronous,
+    .irecv_matching = vp_irecv_matching,
+    .complete_any = vp_complete_any,
+    .probe = vp_probe,
+    .receive_into = vp_receive_into,
+    .cancel = vp_cancel,
 };

@@ -9,6 +9,8 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "measure/run_heartbeat.h"
+#include "vp/explain.h"
+#include "vp/matching.h"
 #include "vp/vp.h"
 
 enum { STACK_BYTES = 64 * 1024 };
@@ -18,7 +20,8 @@ static void arrived(struct message *m)
     switch ((enum message_kind)m->kind) {
     case MESSAGE_EAGER:
     case MESSAGE_REQUEST_TO_SEND:
-        mailbox_deliver(m->to, m);
+        if (m->to->matching) matching_deliver(m->to, m);
+        else mailbox_deliver(m->to, m);
         break;
     case MESSAGE_CLEAR_TO_SEND:
     case MESSAGE_DATA:
@@ -62,8 +65,9 @@ static void make_ranks(struct world *w, uint64_t seed)
         v->digest = DIGEST_START;
         if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
         v->fiber = fiber_start(w->fibers, i, rank_main, v);
-        vp_wake(w, v);
+        if (w->load->timed) v->matching = matching_create(w);
     }
+    for (int i = 0; i < w->nrank; i++) vp_wake(w, &w->vp[w->load->order ? w->load->order[i] : i]);
 }
 
 static inline struct vp *ready_ahead(const struct world *w, int ahead)
@@ -112,7 +116,7 @@ static void loop(struct world *w)
 {
     unsigned quiet_events = PULSE_EVENTS;
     do {
-        while (w->ready_count && !w->late) {
+        while (w->ready_count && !w->stopped) {
             warm_up(w);
             struct vp *v = &w->vp[w->ready[w->ready_head]];
             if (++w->ready_head == w->nrank) w->ready_head = 0;
@@ -123,7 +127,7 @@ static void loop(struct world *w)
             tell_heartbeat(w);
             quiet_events = PULSE_EVENTS;
         }
-    } while (!w->late && sim_step(w->sim));
+    } while (!w->stopped && sim_step(w->sim));
 }
 
 static void begin_heartbeat(const struct world *w, double now)
@@ -188,7 +192,7 @@ static bool build(struct world *w, struct err *e)
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
     net_set_in_order(w->net, w->eager_only);
-    w->fibers = fiber_pool_create(w->nrank, STACK_BYTES, e);
+    w->fibers = fiber_pool_create(w->nrank, w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES, e);
     return w->fibers != NULL;
 }
 
@@ -201,14 +205,17 @@ static void run(struct world *w, uint64_t seed)
     background_start(w, seed);
     loop(w);
     r->host_s = host_seconds() - begin;
-    if (w->nfinished == w->nrank) {
+    if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
+    if (w->nfinished == w->nrank && !w->failed) {
         collect(w);
         copy_links(w);
         return;
     }
-    if (w->late || sim_beyond(w->sim)) late_explain(w);
-    else deadlock_explain(w);
-    r->status = w->late || sim_beyond(w->sim) ? RUN_FAILED : RUN_DEADLOCK;
+    const bool late = w->late || sim_beyond(w->sim), deadlock = !w->failed && !late;
+    if (deadlock) deadlock_explain(w);
+    else if (!w->failed) late_explain(w);
+    if (!deadlock) forget_parts(w);
+    r->status = deadlock ? RUN_DEADLOCK : RUN_FAILED;
 }
 
 static bool all_eager(const struct software_spec *s, int64_t largest)
@@ -234,7 +241,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .software = software_cost_make(&m->software),
         .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
-        .eager_only = all_eager(&m->software, load->largest_message),
+        .eager_only = !load->timed && all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
     out->nrank = load->nrank;

@@ -26,6 +26,11 @@ struct world_load {
     const struct comm_output *output; /* (noutput) where outputs gather; borrowed */
     int noutput;
     struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */
+    int64_t stack_bytes;           /* of each rank, 0: what built-in programs need */
+    bool timed;     /* the program may use wildcards, tests, cancel, probes and synchronous sends (comm_match.h) */
+    bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
+    bool leftovers; /* of a foreign program: messages that nobody has received at its end are no failure */
+    const int *order; /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
 };
 
 /* world_run: run a load on machine `m` to the end.
@@ -34,7 +39,7 @@ struct world_load {
  *   record, seed in   what to record; seed of the noise
  *   a            in   memory of the result's arrays
  *   out          out  makespan, stages, counts, digest, spans, links, host_s, stack peak; `status` RUN_OK or
- *                     RUN_DEADLOCK with the wait-for cycle in `text`
+ *                     RUN_DEADLOCK with the wait-for cycle in `text`, or RUN_FAILED with what failed
  *
  *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no memory). */
 bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,

@@ -84,7 +84,7 @@ static void deliver(struct rank *to, struct comm_request *r, const void *data, i
         to->clock[k] = to->in_free[k] = later(later(to->clock[k], there[k]), to->in_free[k] + (k == 0 ? 1 : bytes));
 }
 
-static void send_now(struct comm *c, int dst, int tag, const void *data, int64_t bytes, struct comm_request *r)
+static void send_now(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
 {
     struct rank *self = (struct rank *)c;
     struct many_ranks *all = self->all;
@@ -112,7 +112,7 @@ static void send_now(struct comm *c, int dst, int tag, const void *data, int64_t
     to->end = &m->next;
 }
 
-static void post_receive(struct comm *c, int src, int tag, void *buffer, int64_t bytes, struct comm_request *r)
+static void post_receive(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
 {
     CHECK(src >= 0 && src < c->size && src != c->rank && tag >= 0 && bytes >= 0);
     *r = (struct comm_request){.buffer = buffer, .bytes = bytes, .peer = src, .tag = tag, .active = 1};

@@ -1,0 +1,85 @@
+/* comm_type.h - what an implementation of comm.h provides: a struct comm and its table of
+ * functions. */
+#ifndef COMM_COMM_TYPE_H
+#define COMM_COMM_TYPE_H
+
+#include <stdint.h>
+
+#include "base/work.h"
+
+struct comm;
+
+/* A pending operation. Zero-initialised ones are complete. Owned by the kernel, usually on its
+ * stack; it must stay in place until its wait returns. */
+struct comm_request {
+    void *buffer;  /* receive: where the bytes go */
+    int64_t bytes; /* of the message; of a receive that is pending: the room for it */
+    int64_t tag;
+    int peer;         /* the other rank; COMM_ANY_SOURCE while a receive from any is pending */
+    int active;       /* 0: complete or never started */
+    void *detail;     /* of the implementation */
+    const char *file; /* where in the kernel it was posted, for the deadlock report */
+    int line;
+    int truncated;          /* receive: the message was longer than its room; the rest is lost */
+    int64_t mask, capacity; /* receive: bits of the tag that count; room in buffer [B] */
+    int64_t posted_ps;      /* receive: when it was posted */
+    int kind, open;         /* of the implementation */
+};
+
+struct comm_envelope;
+
+/* Where the numbers of one output gather on this host; x NULL: nobody wants them. */
+struct comm_output {
+    double *x; /* (n) */
+    int64_t n;
+};
+
+struct comm_type {
+    const char *name;
+    void (*isend)(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                  struct comm_request *r);
+    void (*irecv)(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes,
+                  struct comm_request *r);
+    void (*wait)(struct comm *c, struct comm_request *r);
+    void (*barrier)(struct comm *c);
+    void (*work)(struct comm *c, const struct work *w);
+    void (*stage)(struct comm *c, int stage);
+    int64_t (*now_ps)(struct comm *c);
+    void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data);
+    void (*elapse)(struct comm *c, int64_t ps);
+    void (*end_run)(struct comm *c, const char *text); /* never returns */
+
+    /* comm_match.h */
+    void (*isend_synchronous)(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
+                              struct comm_request *r);
+    void (*irecv_matching)(struct comm *c, int src, int64_t tag, int64_t mask, void *buffer,
+                           int64_t capacity, struct comm_request *r);
+    int (*complete_any)(struct comm *c, int n, struct comm_request *const *r, int block);
+    int (*probe)(struct comm *c, int src, int64_t tag, int64_t mask, int block,
+                 struct comm_envelope *out, struct comm_request *take);
+    void (*receive_into)(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
+    int (*cancel)(struct comm *c, struct comm_request *r);
+};
+
+/* Every implementation's struct begins with this. */
+struct comm {
+    const struct comm_type *type;
+    int rank, size;
+    int noutput;
+    const struct comm_output
+        *output;      /* (noutput) where comm_publish_here puts what is published; borrowed */
+    const char *file; /* call site of the operation in progress, set by the macros below */
+    int line;
+    int keep_site; /* the caller sets file and line itself, once for all that one call of it does */
+};
+
+/* comm_site: the operations that follow are called from `file`, line `line`. */
+static inline void comm_site(struct comm *c, const char *file, int line)
+{
+    if (c->keep_site) return;
+    c->file = file;
+    c->line = line;
+}
+#define COMM_HERE(c) comm_site((c), __FILE__, __LINE__)
+
+#endif

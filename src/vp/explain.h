@@ -1,0 +1,36 @@
+/* explain.h - why a run did not end well: deadlocks, failures of programs, the end of simulated
+ * time. */
+#ifndef VP_EXPLAIN_H
+#define VP_EXPLAIN_H
+
+#include "vp/vp.h"
+
+/* --- deadlock.c --- */
+
+/* --- failure.c --- */
+
+/* vp_fail: comm_fail. vp_misuse: v's program has done what it must not: in a foreign one the same,
+ * printf-like, else a CHECK. Neither returns. */
+_Noreturn void vp_fail(struct comm *c, const char *text);
+_Noreturn void vp_misuse(struct vp *v, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* size_mismatch: a receive of exactly r->bytes has found m, of another size. */
+void size_mismatch(struct vp *v, const struct comm_request *r, const struct message *m);
+
+/* find_leftovers: a message that no receive has taken fails the run. forget_parts: what the ranks
+ * of a run that failed have so far is no result. */
+void find_leftovers(struct world *w);
+void forget_parts(struct world *w);
+
+/* vp_base_name: the file name of a call site. */
+const char *vp_base_name(const char *path);
+
+/* late_explain: who had come how far when simulated time ended, into the result's text. */
+void late_explain(struct world *w);
+
+/* deadlock_explain: the wait-for cycle, and the network's if it is the network, into the result's
+ * text. */
+void deadlock_explain(struct world *w);
+
+#endif

@@ -1,0 +1,90 @@
+/* failure.c - a program has done wrong: the run ends, and says who, when, where and what. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "vp/explain.h"
+#include "vp/matching.h"
+#include "vp/vp.h"
+
+const char *vp_base_name(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path ? path : "?";
+}
+
+/* The first failure on the host is the one that is told: the order of ranks there is fixed. */
+static void record(struct vp *v, const char *file, int line, const char *text)
+{
+    struct world *w = v->world;
+    struct run_result *r = w->result;
+    if (w->stopped) return;
+    w->stopped = true;
+    w->failed = true;
+    snprintf(r->text, sizeof r->text, "rank %d in %s at %.9g s (%s:%d): %s", v->comm.rank,
+             r->stage_name[v->stage], (double)v->clock / SIM_PS_PER_S, vp_base_name(file), line,
+             text);
+}
+
+_Noreturn static void stop(struct vp *v)
+{
+    for (;;) vp_block(v, WAITING_NOTHING, NULL);
+}
+
+void vp_fail(struct comm *c, const char *text)
+{
+    struct vp *v = (struct vp *)c;
+    record(v, c->file, c->line, text);
+    stop(v);
+}
+
+void vp_misuse(struct vp *v, const char *format, ...)
+{
+    char text[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (!v->world->load->foreign)
+        check_failed(v->comm.file ? v->comm.file : "?", v->comm.line, text);
+    vp_fail(&v->comm, text);
+}
+
+/* Found by whoever delivers the message, so that the rank that receives may be at rest. */
+void size_mismatch(struct vp *v, const struct comm_request *r, const struct message *m)
+{
+    char text[512];
+    snprintf(
+        text, sizeof text,
+        "a receive of exactly %lld bytes from rank %d, tag %lld, meets a message of %lld bytes",
+        (long long)r->bytes, m->from->comm.rank, (long long)m->tag, (long long)m->bytes);
+    if (!v->world->load->foreign) check_failed(r->file ? r->file : "?", r->line, text);
+    record(v, r->file, r->line, text);
+}
+
+void find_leftovers(struct world *w)
+{
+    for (int i = 0; i < w->nrank; i++) {
+        struct vp *v = &w->vp[i];
+        const struct message *m = v->matching ? matching_leftover(v) : v->unexpected;
+        if (!m) continue;
+        char text[512];
+        snprintf(text, sizeof text,
+                 "it has ended without receiving the message of %lld bytes, tag %lld, that rank %d "
+                 "sent it at "
+                 "%.9g s",
+                 (long long)m->bytes, (long long)m->tag, m->from->comm.rank,
+                 (double)m->sent / SIM_PS_PER_S);
+        record(v, v->comm.file, v->comm.line, text);
+        return;
+    }
+}
+
+void forget_parts(struct world *w)
+{
+    struct run_result *r = w->result;
+    r->stage = NULL;
+    r->finish_ps = NULL;
+    r->nspan = 0;
+}
