@@ -1,7 +1,6 @@
 /* clock.c - a virtual processor's clock: when it stops, waits and goes on, and what the timeline keeps of it. */
 #include <string.h>
 
-#include "vp/matching.h"
 #include "vp/vp.h"
 
 void vp_wake(struct world *w, struct vp *v)
@@ -9,12 +8,6 @@ void vp_wake(struct world *w, struct vp *v)
     int at = w->ready_head + w->ready_count++;
     CHECK(w->ready_count <= w->nrank);
     w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
-}
-
-void vp_notify(struct vp *v, const struct comm_request *r, sim_ps time)
-{
-    if (v->waiting == r) vp_wake(v->world, v);
-    else if (v->matching) poll_notify(v, time);
 }
 
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)

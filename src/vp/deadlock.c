@@ -4,7 +4,7 @@
 
 #include "base/picoseconds.h"
 #include "vp/explain.h"
-#include "vp/vp.h"
+#include "vp/matching.h"
 
 static int peer_of(const struct vp *v)
 {
@@ -108,6 +108,24 @@ void deadlock_explain(struct world *w)
         used += snprintf(text + used, size - used, "; ");
     }
     if (used < size) snprintf(text + used, size - used, "and so on");
+}
+
+void find_leftovers(struct world *w)
+{
+    for (int i = 0; i < w->nrank; i++) {
+        struct vp *v = &w->vp[i];
+        const struct message *m = v->matching ? matching_leftover(v) : v->unexpected;
+        if (!m) continue;
+        char text[512];
+        snprintf(text, sizeof text,
+                 "it has ended without receiving the message of %lld bytes, tag %lld, that rank %d "
+                 "sent it at "
+                 "%.9g s",
+                 (long long)m->bytes, (long long)m->tag, m->from->comm.rank,
+                 (double)m->sent / SIM_PS_PER_S);
+        vp_record_failure(v, v->comm.file, v->comm.line, text);
+        return;
+    }
 }
 
 void late_explain(struct world *w)

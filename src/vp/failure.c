@@ -5,7 +5,6 @@
 
 #include "base/check.h"
 #include "vp/explain.h"
-#include "vp/matching.h"
 #include "vp/vp.h"
 
 const char *vp_base_name(const char *path)
@@ -14,8 +13,7 @@ const char *vp_base_name(const char *path)
     return slash ? slash + 1 : path ? path : "?";
 }
 
-/* The first failure on the host is the one that is told: the order of ranks there is fixed. */
-static void record(struct vp *v, const char *file, int line, const char *text)
+void vp_record_failure(struct vp *v, const char *file, int line, const char *text)
 {
     struct world *w = v->world;
     struct run_result *r = w->result;
@@ -35,7 +33,7 @@ _Noreturn static void stop(struct vp *v)
 void vp_fail(struct comm *c, const char *text)
 {
     struct vp *v = (struct vp *)c;
-    record(v, c->file, c->line, text);
+    vp_record_failure(v, c->file, c->line, text);
     stop(v);
 }
 
@@ -60,25 +58,7 @@ void size_mismatch(struct vp *v, const struct comm_request *r, const struct mess
         "a receive of exactly %lld bytes from rank %d, tag %lld, meets a message of %lld bytes",
         (long long)r->bytes, m->from->comm.rank, (long long)m->tag, (long long)m->bytes);
     if (!v->world->load->foreign) check_failed(r->file ? r->file : "?", r->line, text);
-    record(v, r->file, r->line, text);
-}
-
-void find_leftovers(struct world *w)
-{
-    for (int i = 0; i < w->nrank; i++) {
-        struct vp *v = &w->vp[i];
-        const struct message *m = v->matching ? matching_leftover(v) : v->unexpected;
-        if (!m) continue;
-        char text[512];
-        snprintf(text, sizeof text,
-                 "it has ended without receiving the message of %lld bytes, tag %lld, that rank %d "
-                 "sent it at "
-                 "%.9g s",
-                 (long long)m->bytes, (long long)m->tag, m->from->comm.rank,
-                 (double)m->sent / SIM_PS_PER_S);
-        record(v, v->comm.file, v->comm.line, text);
-        return;
-    }
+    vp_record_failure(v, r->file, r->line, text);
 }
 
 void forget_parts(struct world *w)

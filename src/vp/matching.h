@@ -84,8 +84,15 @@ int vp_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
 void vp_receive_into(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
 int vp_cancel(struct comm *c, struct comm_request *r);
 
-/* poll_notify: at `time`, now or later, something becomes complete for v, which may be looking out
- * for it. */
+/* --- timer.c --- */
+
+/* timer_set: v, about to block as WAITING_ANY or WAITING_POLL, goes on at `time`, not before now. */
+void timer_set(struct vp *v, sim_ps time);
+
+/* timer_catch_up: stop until all that has happened by v's clock is known. */
+void timer_catch_up(struct vp *v);
+
+/* poll_notify: at `time`, now or later, something comes for v, which may be looking out for it. */
 void poll_notify(struct vp *v, sim_ps time);
 
 #endif

@@ -22,50 +22,6 @@ static sim_ps poll_cost(const struct world *w)
     return cost > 1000 ? cost : 1000;
 }
 
-/* ---- the timer of a rank: of several set one after the other the last counts ---- */
-
-static void ring(void *subject, uint64_t argument, sim_ps now)
-{
-    struct vp *v = subject;
-    struct matching *k = v->matching;
-    if (argument != k->timer || (v->waiting_for != WAITING_ANY && v->waiting_for != WAITING_POLL))
-        return;
-    k->synced = now;
-    v->waiting_for = WAITING_NOTHING; /* nobody else wakes it again */
-    vp_wake(v->world, v);
-}
-
-static void set_timer(struct vp *v, sim_ps time)
-{
-    struct matching *k = v->matching;
-    k->until = time;
-    sim_at(v->world->sim, time, LANE_POLL, (uint64_t)v->comm.rank, ring, v, ++k->timer);
-}
-
-void poll_notify(struct vp *v, sim_ps time)
-{
-    struct matching *k = v->matching;
-    if (v->waiting_for == WAITING_ANY) {
-        v->waiting_for = WAITING_NOTHING;
-        vp_wake(v->world, v);
-    }
-    if (v->waiting_for != WAITING_POLL || k->least == SIM_NEVER) return;
-    const sim_ps now = sim_now(v->world->sim);
-    if (time < k->least) time = k->least;
-    if (time < now) time = now;
-    if (time < k->until) set_timer(v, time);
-}
-
-/* Stop until all that has happened by v's clock is known. */
-static void catch_up(struct vp *v)
-{
-    struct matching *k = v->matching;
-    if (k->synced >= v->clock) return;
-    k->least = SIM_NEVER; /* nothing shortens this */
-    set_timer(v, v->clock);
-    vp_block(v, WAITING_POLL, NULL);
-}
-
 static void wait_of(struct vp *v, sim_ps time)
 {
     const sim_ps begin = v->clock;
@@ -86,7 +42,7 @@ static void poll(struct vp *v, sim_ps expected)
     k->least = ps_later(v->clock, cost);
     sim_ps until = ps_later(v->clock, step);
     if (expected < until) until = expected > k->least ? expected : k->least;
-    set_timer(v, until);
+    timer_set(v, until);
     vp_block(v, WAITING_POLL, NULL);
     wait_of(v, k->until);
     k->poll_end = v->clock;
@@ -149,7 +105,7 @@ int vp_complete_any(struct comm *c, int n, struct comm_request *const *r, int bl
     if (s.active == 0) return -1;
     if (!block) {
         if (s.unknown > 0) {
-            catch_up(v);
+            timer_catch_up(v);
             s = survey(n, r);
         }
         if (s.time <= v->clock) return finish(v, r, s.best);
@@ -162,7 +118,7 @@ int vp_complete_any(struct comm *c, int n, struct comm_request *const *r, int bl
         const sim_ps now = sim_now(v->world->sim);
         sim_ps time = s.time > v->clock ? s.time : v->clock;
         k->timer++;
-        if (time != SIM_NEVER) set_timer(v, time > now ? time : now);
+        if (time != SIM_NEVER) timer_set(v, time > now ? time : now);
         vp_block(v, WAITING_ANY, NULL);
         s = survey(n, r);
     }
@@ -173,7 +129,7 @@ int vp_cancel(struct comm *c, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
     need_time(v, "a cancelled receive");
-    if (r->active == REQUEST_POSTED) catch_up(v);
+    if (r->active == REQUEST_POSTED) timer_catch_up(v);
     if (r->active == REQUEST_POSTED) {
         matching_withdraw(v, r);
     } else if (r->active == REQUEST_MATCHED) {
@@ -228,7 +184,7 @@ int vp_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
                                 .kind = RECEIVE_PROBE,
                                 .file = c->file,
                                 .line = c->line};
-    catch_up(v);
+    timer_catch_up(v);
     struct unmatched *u = matching_find(v, &look, v->clock);
     if (!u && !block) {
         u = matching_find(v, &look, SIM_NEVER);

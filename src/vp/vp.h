@@ -1,7 +1,7 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
  * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; clock.c its time; mailbox.c matches
- * messages, matching.c and poll.c where that depends on time; launch.c sends them off; rendezvous.c carries large ones;
+ * messages, matching.c, poll.c and timer.c where time decides; launch.c sends; rendezvous.c carries large ones;
  * server.c is the shared kernel server; background.c loads the links; deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
