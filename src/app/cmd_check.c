@@ -81,8 +81,8 @@ static void tell_steps_down(const char *file)
             !probe_measure(&m, PROBE_ONE_WAY, size, 0, &at, &e))
             break;
         if (at < below)
-            fprintf(stderr, "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is "
-                            "this "
+            fprintf(stderr,
+                    "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is this "
                             "intended?\n", file,
                     size - 1, below * 1e6, size, at * 1e6);
     }

@@ -1,5 +1,5 @@
-/* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will cost.
- */
+/* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will
+ * cost. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -57,8 +57,8 @@ static bool print_links(const struct common *c, struct store *s, struct err *e)
     bool ok = store_select(s, wanted ? any_sql : choose_sql, wanted != NULL, &wanted, take_text,
                            &found, e);
     if (ok && found.length == 0)
-        ok = err_set(e, ERR_NO_INPUT, "%s has no link loads%s%s; run a scenario with `record: "
-                                      "{links: true}`",
+        ok = err_set(e, ERR_NO_INPUT,
+                     "%s has no link loads%s%s; run a scenario with `record: {links: true}`",
                      c->arg[0], wanted ? " of run " : "", wanted ? wanted : "");
     const char *run = wanted ? wanted : found.s;
     ok = ok && report_query(s, links_sql, 1, &run, c->json, stdout, e);

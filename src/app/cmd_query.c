@@ -48,8 +48,8 @@ int cmd_query(int argc, char **argv)
                  schema ? 0 : 2);
     struct err e;
     err_clear(&e);
-    if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE, "--schema stands alone: it writes "
-                                                               "Markdown");
+    if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE,
+                                                "--schema stands alone: it writes Markdown");
     if (schema) return e.kind == ERR_NONE && store_document(stdout, &e) ? 0 : common_fail(&c, &e);
     bool ok = !upgrades || upgrade(&c, &e);
     struct store *s = ok && c.narg == 2 ? arguments_database(&c, "", &e) : NULL;

@@ -1,5 +1,5 @@
-/* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and HTML.
- */
+/* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and
+ * HTML. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -21,8 +21,7 @@ static const char doc[] =
     "\vText goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
     "timeline.json (Chrome trace "
     "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans and "
-    "pictures 20000, because viewers "
-    "fail on more; a remark says how many are omitted.";
+    "pictures 20000, because viewers fail on more; a remark says how many are omitted.";
 
 enum { PICTURE_SPANS = 20000 };
 

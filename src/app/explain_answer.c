@@ -15,8 +15,8 @@ struct confirmed {
     int nrun;
 };
 
-/* The study's own runs at the answer; where they say no, a little further from the nominal point.
- */
+/* The study's own runs at the answer; where they say no, a little further from the nominal
+ * point. */
 static bool confirm(struct explain_bench *b, struct explain_search *s, struct confirmed *c)
 {
     enum { MOVES = 6 };

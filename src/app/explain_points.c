@@ -62,8 +62,8 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     for (char *w = strtok_r(rest, " ", &save); w && nword < MOST_WORDS;
          w = strtok_r(NULL, " ", &save))
         word[nword++] = w;
-    if (nword == 0) return err_set(b->e, ERR_DATA, "a line -- explore: or -- study: of a claim "
-                                                   "names no scenario");
+    if (nword == 0) return err_set(b->e, ERR_DATA,
+                                   "a line -- explore: or -- study: of a claim names no scenario");
     struct plan plan = {0};
     struct plan_options o = {.nset = nword - 1, .set = word + 1};
     if (!plan_read(&plan, word[0], &o, b->e)) return false;

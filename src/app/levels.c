@@ -97,8 +97,8 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
     }
     int best = level_cheapest(k.level, k.n, tolerance);
     if (best < 0)
-        return err_set(e, ERR_CONFIG, "level 'auto-tolerance': no level of %s on %s is known to be "
-                                      "within %.3g %%",
+        return err_set(e, ERR_CONFIG,
+                       "level 'auto-tolerance': no level of %s on %s is known to be within %.3g %%",
                        run[which].kernel.name, run[which].machine.name, 100 * tolerance);
     x->taken = k.level[best];
     return true;
@@ -109,8 +109,8 @@ static void say(const struct run_spec *run, struct settled *x)
 {
     if (x->said) return;
     x->said = true;
-    fprintf(stderr, "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% "
-                    "permitted)\n",
+    fprintf(stderr,
+            "mimdsim: %s on %s: level %s, whose error at %s is %.2g %% (%s; %.3g %% permitted)\n",
             run->kernel.name, run->machine.name, x->taken.level, x->taken.at, 100 * x->taken.error,
             x->stored ? "stored" : "measured now", 100 * x->tolerance);
 }

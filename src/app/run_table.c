@@ -81,8 +81,8 @@ static void add_column(struct text *sql, const struct plan *p, int at)
     const char *key = p->swept[at].key, *name = short_name(p, at);
     if (strcmp(key, "n_over_p") == 0) text_add(sql, ", r.n / r.P AS n_over_p");
     else
-        text_add(sql, ", (SELECT %s FROM v_setting v WHERE v.run_id = r.id AND v.key = '%s')"
-                      " AS \"%s\"",
+        text_add(sql,
+                 ", (SELECT %s FROM v_setting v WHERE v.run_id = r.id AND v.key = '%s') AS \"%s\"",
                  p->swept[at].number ? "CAST(value AS NUMERIC)" : "value", key, name);
 }
 

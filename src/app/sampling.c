@@ -95,8 +95,8 @@ static bool find_scenes(struct sampler *p)
         plan_free(&plan);
         if (!add_machine(p, scene->machine)) return false;
     }
-    return p->nscene > 0 || err_set(p->e, ERR_NO_INPUT, "there is no scenario sample-*.yaml to "
-                                                        "sample with");
+    return p->nscene > 0 || err_set(p->e, ERR_NO_INPUT,
+                                    "there is no scenario sample-*.yaml to sample with");
 }
 
 /* Log-uniform; uniform from a range that begins at 0. Every parameter has a stream of its own, so a

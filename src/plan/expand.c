@@ -36,8 +36,8 @@ struct expansion {
     struct machine_changes changes;
 };
 
-/* The settings of the present point in the order in which they act; `list` needs naxis + 2 entries.
- */
+/* The settings of the present point in the order in which they act; `list` needs naxis + 2
+ * entries. */
 static int lists_of(const struct expansion *x, const struct setting_list **list)
 {
     const struct scenario *s = x->scenario;
@@ -103,8 +103,8 @@ static struct start *start_of(struct expansion *x)
 {
     const struct setting *machine = last_of(x, is_machine);
     if (machine == NULL) {
-        err_set_at(x->err, ERR_DATA, x->scenario->path, 1, "machine is missing; expected one of "
-                                                           "`mimdsim machines`");
+        err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
+                   "machine is missing; expected one of `mimdsim machines`");
         return NULL;
     }
     for (struct start *s = x->starts; s != NULL; s = s->next)
@@ -126,8 +126,8 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
                           "n_over_p determines n already; remove '%s' (line %d)", bodies->key,
                           bodies->line);
     if (ratio != NULL && ranks->kind == SETTING_RANKS_ARE_N)
-        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line, "n_over_p needs ranks as "
-                                                                      "numbers, not 'n'");
+        return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line,
+                          "n_over_p needs ranks as numbers, not 'n'");
     if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
     if (ratio == NULL) return true;
     int64_t n = (int64_t)ratio->number * run->nrank;
@@ -182,8 +182,8 @@ static bool resolve_path(struct expansion *x, struct run_spec *run)
     bool from_file = m->generator == MODEL_URDF || m->generator == MODEL_VECTOR;
     if (!from_file) return true;
     if (m->path[0] == '\0')
-        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0, "model.path is missing: the file "
-                                                                  "of the model");
+        return err_set_at(x->err, ERR_DATA, x->scenario->path, 0,
+                          "model.path is missing: the file of the model");
     snprintf(path, sizeof path, "%s/%s", x->scenario->dir[0] != '\0' ? x->scenario->dir : ".",
              m->path);
     struct err ignored;

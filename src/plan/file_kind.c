@@ -93,8 +93,8 @@ bool file_kind_refuse(const char *name, enum file_kind wanted, struct err *e)
                  "`mimdsim machines %s` shows it, `mimdsim run SCENARIO --machine %s` uses it",
                  name, name);
     if (kind == FILE_DATABASE)
-        text_add(&use, "`mimdsim plot %s` lists the figures that can be drawn from it, `mimdsim "
-                       "run "
+        text_add(&use,
+                 "`mimdsim plot %s` lists the figures that can be drawn from it, `mimdsim run "
                        "SCENARIO -o %s` adds to it", name,
                  name);
     if (kind == FILE_ROBOT)

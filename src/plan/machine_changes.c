@@ -1,5 +1,5 @@
-/* machine_changes.c - how the machine of a run differs from the shipped one; see machine_changes.h.
- */
+/* machine_changes.c - how the machine of a run differs from the shipped one; see
+ * machine_changes.h. */
 #include "plan/machine_changes.h"
 
 #include <string.h>

@@ -42,8 +42,7 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
             is_known = is_known || strcmp(n->key, known[i]) == 0;
         if (!is_known)
             return err_set_at(e, ERR_DATA, v->file, n->line,
-                              "%s: unknown key '%.80s'; expected "
-                              "value, min, max, %s",
+                              "%s: unknown key '%.80s'; expected value, min, max, %s",
                               key, n->key,
                               published ? "class, source or validate" : "class or source");
         if (strcmp(n->key, "value") == 0) continue;
@@ -91,8 +90,8 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     return true;
 }
 
-/* What one segment says of its evidence, added to *class and *source; *class names each class once.
- */
+/* What one segment says of its evidence, added to *class and *source; *class names each class
+ * once. */
 static bool add_evidence(const struct yaml_node *n, const char *key, const char *file,
                          struct text *class, struct text *source, struct err *e)
 {
@@ -176,8 +175,8 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
                            struct arena *a, struct err *e)
 {
     if (list->kind != YAML_MAPPING)
-        return err_set_at(e, ERR_DATA, file, list->line, "published: expected 'name: {value, "
-                                                         "class, source}' lines");
+        return err_set_at(e, ERR_DATA, file, list->line,
+                          "published: expected 'name: {value, class, source}' lines");
     for (const struct yaml_node *n = list->child; n != NULL; n = n->next) {
         int i = 0;
         while (i < m->npublished && strcmp(m->published[i].name, n->key) != 0) i++;
@@ -197,11 +196,11 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
 static bool check_version(const struct yaml_node *root, const char *file, struct err *e)
 {
     const struct yaml_node *n = yaml_node_child(root, "schema_version");
-    if (n == NULL) return err_set_at(e, ERR_DATA, file, 1, "schema_version is missing; expected "
-                                                           "'schema_version: 1'");
+    if (n == NULL) return err_set_at(e, ERR_DATA, file, 1,
+                                     "schema_version is missing; expected 'schema_version: 1'");
     if (n->text != NULL && strcmp(n->text, "1") == 0) return true;
-    return err_set_at(e, ERR_DATA, file, n->line, "schema_version: '%.20s'; this program reads "
-                                                  "version 1",
+    return err_set_at(e, ERR_DATA, file, n->line,
+                      "schema_version: '%.20s'; this program reads version 1",
                       n->text != NULL ? n->text : "");
 }
 
@@ -301,8 +300,8 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
     const struct topology_spec *t = &m->topology;
     const int expected = topology_family_dims(t->family);
     if (expected != 0 && t->ndim != expected)
-        return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.dims has %d numbers; "
-                                                     "its family takes %d",
+        return err_set_at(e, ERR_CONFIG, file, line,
+                          "machine %s: topology.dims has %d numbers; its family takes %d",
                           m->name, t->ndim, expected);
     int64_t n = machine_spec_processors(m);
     if (n < 1 || n > 1 << 24)
@@ -311,8 +310,8 @@ bool machine_file_check(const struct machine_spec *m, const char *file, int line
                           n < 1 ? "less" : "more", n < 1 ? 1 : 1 << 24);
     for (int i = 0; i < t->nlink; i++)
         if (t->link[i][0] >= t->dims[0] || t->link[i][1] >= t->dims[0])
-            return err_set_at(e, ERR_CONFIG, file, line, "machine %s: topology.links names router "
-                                                         "%d; there are %d",
+            return err_set_at(e, ERR_CONFIG, file, line,
+                              "machine %s: topology.links names router %d; there are %d",
                               m->name, t->link[i][t->link[i][0] < t->dims[0]], t->dims[0]);
     if (topology_has(t->family, TOPOLOGY_LISTED) && t->nlink == 0 && t->dims[0] > 1)
         return err_set_at(e, ERR_CONFIG, file, line,

@@ -374,8 +374,8 @@ bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *
     s->stem = data_dir_stem(path, a);
     s->dir = data_dir_of(path, a);
     if (yaml_node_child(root, "schema_version") == NULL)
-        return err_set_at(e, ERR_DATA, path, 1, "schema_version is missing; expected "
-                                                "'schema_version: 1'");
+        return err_set_at(e, ERR_DATA, path, 1,
+                          "schema_version is missing; expected 'schema_version: 1'");
     /* What programs declare are keys, too. */
     if (!program_file_collect(s, root, o, a, e)) return false;
     program_file_rename(s, root, a);

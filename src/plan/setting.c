@@ -1,5 +1,5 @@
-/* setting.c - keys of files and of --set find their field; values are tried before they are kept.
- */
+/* setting.c - keys of files and of --set find their field; values are tried before they are
+ * kept. */
 #include "plan/setting.h"
 
 #include <string.h>

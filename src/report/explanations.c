@@ -31,8 +31,7 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name,
 
 static const char sentences[] =
     "SELECT a.subject, group_concat(a.sentence, ' '),"
-    " (SELECT statement FROM claim WHERE id = a.subject"
-    " AND variant = ''),"
+    " (SELECT statement FROM claim WHERE id = a.subject AND variant = ''),"
     " (SELECT 1 FROM explain_map m WHERE m.subject = a.subject LIMIT 1)"
     " FROM (SELECT * FROM explain_answer" IN_ORDER ") a GROUP BY a.subject"
     " ORDER BY a.subject = 'together', length(a.subject), a.subject";

@@ -115,8 +115,7 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
                " iif(cost_ratio IS NULL, '', format('%.3g', cost_ratio))"
                " AS \"cost of the most accurate, relative\""
                " FROM ladder_choice ORDER BY scenario, CASE ladder WHEN 'network' THEN 1"
-               " WHEN 'arithmetic' THEN 2"
-               " ELSE 3 END, tolerance",
+               " WHEN 'arithmetic' THEN 2 ELSE 3 END, tolerance",
                NULL, "No choice was made."))
         return false;
     if (!table(&c,
@@ -224,8 +223,7 @@ static bool tell_suite(void *context, int ncolumn, const char *const *name,
               table(c, by_algorithm, value[0], "No row.") &&
               table(c, worst_cases, value[0], "No result failed or degraded.") &&
               table(c, stiff_motions, value[0],
-                    "No motion of a scene with springs or dampers was "
-                    "simulated.");
+                    "No motion of a scene with springs or dampers was simulated.");
     text_free(&figure);
     return ok;
 }

@@ -60,8 +60,8 @@ bool gnuplot_run(const char *dir, const char *file, struct err *e)
     close(ends[1]);
     if (code != 0) {
         close(ends[0]);
-        return err_set(e, ERR_UNAVAILABLE, "%s: %s; the data and the script are in %s: install "
-                                           "gnuplot (Debian: "
+        return err_set(e, ERR_UNAVAILABLE,
+                       "%s: %s; the data and the script are in %s: install gnuplot (Debian: "
                        "gnuplot-nox) and run it there on %s", program(), strerror(code), dir, file);
     }
     struct text complaints = {0};

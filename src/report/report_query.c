@@ -197,7 +197,7 @@ bool report_query(struct store *s, const char *sql, int nparam, const char *cons
         free(g.cell);
         arena_destroy(g.a);
     }
-    if (ok && (fflush(out) != 0 || ferror(out))) return err_set(e, ERR_IO, "the output cannot be "
-                                                                           "written");
+    if (ok && (fflush(out) != 0 || ferror(out))) return err_set(e, ERR_IO,
+                                                                "the output cannot be written");
     return ok;
 }

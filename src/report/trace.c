@@ -84,8 +84,8 @@ bool trace_write(const struct run_result *r, enum trace_format format,
                          .end_ps = o->end_ps > 0 ? o->end_ps : r->makespan_ps + 1,
                          .columns = o->columns > 0 ? o->columns : TRACE_COLUMNS};
     if (r->span == NULL || r->nspan == 0)
-        return err_set(e, ERR_NO_INPUT, "this run has no timeline; record it with `record: {spans: "
-                                        "true}`");
+        return err_set(e, ERR_NO_INPUT,
+                       "this run has no timeline; record it with `record: {spans: true}`");
     *left_out = pick(&t, o->max_spans > 0 ? o->max_spans : TRACE_MAX_SPANS);
     bool ok = t.nspan > 0 || err_set(e, ERR_CONFIG,
                                      "nothing was recorded on ranks %d to %d "
@@ -94,7 +94,7 @@ bool trace_write(const struct run_result *r, enum trace_format format,
                                      (double)t.end_ps * 1e-6);
     if (ok) write[format](&t, out);
     free(t.span);
-    if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO, "the timeline cannot be "
-                                                                         "written");
+    if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO,
+                                                              "the timeline cannot be written");
     return ok;
 }

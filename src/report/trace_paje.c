@@ -28,16 +28,14 @@ static void put_definitions(FILE *out)
     static const char *const definition[] = {
         "PajeDefineContainerType 0\n% Alias string\n% Type string\n% Name string",
         "PajeDefineStateType 1\n% Alias string\n% Type string\n% Name string",
-        "PajeDefineLinkType 2\n"
-        "% Alias string\n"
+        "PajeDefineLinkType 2\n% Alias string\n"
         "% Type string\n% StartContainerType string\n% EndContainerType string\n% Name string",
         "PajeDefineEntityValue 3\n% Alias string\n% Type string\n% Name string\n% Color color",
         "PajeCreateContainer 4\n"
         "% Time date\n% Alias string\n% Type string\n% Container string\n% Name string",
         "PajeDestroyContainer 5\n% Time date\n% Type string\n% Name string",
         "PajeSetState 6\n% Time date\n% Type string\n% Container string\n% Value string",
-        "PajeStartLink 7\n"
-        "% Time date\n"
+        "PajeStartLink 7\n% Time date\n"
         "% Type string\n% Container string\n% StartContainer string\n% Value string\n% Key string",
         "PajeEndLink 8\n"
         "% Time date\n% Type string\n% Container string\n% EndContainer string\n% Value string\n"

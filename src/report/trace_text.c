@@ -14,8 +14,8 @@ static int64_t overlap(const struct span *p, int64_t begin, int64_t end)
     return to > from ? to - from : 0;
 }
 
-/* One rank's spans are span[first..next). Two lines: its stages (a letter each), and what it does.
- */
+/* One rank's spans are span[first..next). Two lines: its stages (a letter each), and what it
+ * does. */
 static void put_rank(const struct timeline *t, int64_t first, int64_t next, int64_t begin,
                      int64_t end, FILE *out)
 {

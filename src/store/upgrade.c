@@ -50,8 +50,8 @@ static bool has_column(struct store *s, const char *table, const char *column)
                                          NULL) == SQLITE_OK;
 }
 
-/* Views and indices are made anew; those of the user's own, which the schema does not name, stay.
- */
+/* Views and indices are made anew; those of the user's own, which the schema does not name,
+ * stay. */
 static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
 {
     const bool view = strcmp((const char *)sqlite3_column_text(row, 1), "view") == 0;
@@ -265,8 +265,8 @@ bool upgrade_copy(struct store *s, int version, struct text *told, struct err *e
 {
     sqlite3 *copy = NULL;
     int64_t kept = 0;
-    /* An empty name: a private file in the folder for temporary files, removed when it is closed.
-     */
+    /* An empty name: a private file in the folder for temporary files, removed when it is
+     * closed. */
     bool ok = sqlite3_open("", &copy) == SQLITE_OK && copy_pages(s, copy, e);
     if (!ok) {
         if (e->kind == ERR_NONE)

@@ -35,8 +35,7 @@ static bool open_work(struct work *w, struct err *e)
            prepare(w->s, &w->older, "INSERT INTO run_older VALUES (?, ?, ?)", e) &&
            prepare(w->s, &w->forget,
                    "DELETE FROM run_setting WHERE run_id = ?1"
-                   " AND setting_id IN (SELECT id FROM setting "
-                   "WHERE key = ?2)",
+                   " AND setting_id IN (SELECT id FROM setting WHERE key = ?2)",
                    e) &&
            prepare(w->s, &w->setting, "INSERT OR IGNORE INTO setting (key, value) VALUES (?1, ?2)",
                    e) &&

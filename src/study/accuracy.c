@@ -45,8 +45,8 @@ struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const ch
 
 /* --- points ----------------------------------------------------------------------------------- */
 
-/* Limits that keep each ladder to seconds: messages of one evaluation, bodies, degrees of freedom.
- */
+/* Limits that keep each ladder to seconds: messages of one evaluation, bodies, degrees of
+ * freedom. */
 enum { MOST_MESSAGES = 20000, MOST_BODIES = 256, MOST_MOVING = 40 };
 
 enum { NETWORK, ARITHMETIC, INTEGRATION, LADDERS };

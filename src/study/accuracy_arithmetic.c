@@ -54,8 +54,8 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
     struct accuracy_rung *r = ladder_add(l, name, precision_name[precision], "qdd", reference_name);
     bool dense = method == FORWARD_CRBA || method == FORWARD_CRBA_SPARSE;
     if (dense && precision == PRECISION_QUAD && l->model->nu > MOST_DENSE) {
-        text_copy(r->text, sizeof r->text, "left out: more than 300 degrees of freedom in quad "
-                                           "precision");
+        text_copy(r->text, sizeof r->text,
+                  "left out: more than 300 degrees of freedom in quad precision");
         return;
     }
     struct work w = {0};
@@ -64,8 +64,8 @@ static void serial_rung(struct ladder *l, enum forward_method method, enum preci
         text_copy(r->text, sizeof r->text, "a pivot was not positive");
         return;
     }
-    if (report.fell_back) text_copy(r->text, sizeof r->text, "solved by articulated bodies "
-                                                             "instead");
+    if (report.fell_back) text_copy(r->text, sizeof r->text,
+                                    "solved by articulated bodies instead");
     grade(r, trial_error(qdd, reference, l->model->nu));
     struct node_cost cost = node_cost_make(&l->spec.machine.node);
     if (precision != PRECISION_QUAD) r->machine_ps = node_cost_ps(&cost, &w);
@@ -138,8 +138,7 @@ static void parallel_rung(struct ladder *l, const struct kernel_spec *kernel, co
         grade(r, trial_error(t.qdd, reference, l->model->nu));
         int length = isnan(t.residual)
                          ? snprintf(r->text, sizeof r->text,
-                                    "the residual is no "
-                                    "number")
+                                    "the residual is no number")
                          : snprintf(r->text, sizeof r->text, "residual %.1e", t.residual);
         if (t.condition > 0)
             snprintf(r->text + length, sizeof r->text - (size_t)length, ", condition %.1e",

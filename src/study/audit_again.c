@@ -84,8 +84,8 @@ static bool take_spec(void *context, int ncolumn, const char *const *name,
         return true;
     }
     spec->rep = (int)v[2].integer;
-    /* Stored under what the row says it is: other rules have held that against the configuration.
-     */
+    /* Stored under what the row says it is: other rules have held that against the
+     * configuration. */
     text_copy(spec->config_hash, sizeof spec->config_hash, v[3].text);
     spec->config_text = arena_text(g->arena, v[0].text);
     spec->machine_changes = v[4].kind == STORE_TEXT ? arena_text(g->arena, v[4].text) : NULL;

@@ -1,5 +1,5 @@
-/* audit_find.c - the list of the contradictions that the parts of the audit find (audit_rules.h).
- */
+/* audit_find.c - the list of the contradictions that the parts of the audit find
+ * (audit_rules.h). */
 #include <stdarg.h>
 #include <stdio.h>
 

@@ -49,8 +49,7 @@ static bool compare_object(void *context, int ncolumn, const char *const *name,
     err_clear(&e);
     static const char find[] =
         "SELECT 1 FROM (SELECT 'view ' || name AS n, sql AS t FROM sqlite_schema WHERE type = "
-        "'view'"
-        " UNION ALL SELECT 'meta ' || key, value FROM meta) WHERE n = ?1 AND t = ?2";
+        "'view' UNION ALL SELECT 'meta ' || key, value FROM meta) WHERE n = ?1 AND t = ?2";
     if (value[1] && store_select(l->other, find, 2, value, is_there, &same, &e) && !same)
         audit_find(l->report, 0, "schema", "%s is not as this program makes it", value[0]);
     return true;
@@ -67,8 +66,8 @@ static bool compare_schema(struct store *s, struct audit_report *r, struct err *
     return ok;
 }
 
-/* The rules of audit.sql, each a line "-- rule: NAME" and the query below it, up to the next one.
- */
+/* The rules of audit.sql, each a line "-- rule: NAME" and the query below it, up to the next
+ * one. */
 bool audit_rows(struct store *s, struct audit_report *r, struct err *e)
 {
     static const char mark[] = "-- rule: ";

@@ -13,8 +13,8 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
     bool referred = false;
     if (!netcheck_form_of(r, c, &form, &referred)) return false;
     if (r->ncase++ > 0 && r->referred != referred)
-        return err_set_at(r->e, ERR_DATA, r->path, c->line, "the case has %s results, but earlier "
-                                                            "cases have %s",
+        return err_set_at(r->e, ERR_DATA, r->path, c->line,
+                          "the case has %s results, but earlier cases have %s",
                           referred ? "reference" : "no", referred ? "none" : "some");
     r->referred = referred;
     switch (form) {
@@ -48,8 +48,8 @@ static bool nothing_answered(const struct netcheck *n, struct err *e)
     for (int i = 0; i < n->nrow; i++)
         for (int l = 0; l < LEVELS; l++)
             if (n->level[l] && n->row[i].answer[l].why[0])
-                return err_set_at(e, ERR_DATA, n->path, n->row[i].line, "none of its cases (%d) "
-                                                                        "can be run; %s: %s",
+                return err_set_at(e, ERR_DATA, n->path, n->row[i].line,
+                                  "none of its cases (%d) can be run; %s: %s",
                                   n->nrow, n->row[i].name, n->row[i].answer[l].why);
     return err_set_at(e, ERR_DATA, n->path, 1, "no case could be run");
 }

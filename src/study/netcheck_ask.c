@@ -1,5 +1,5 @@
-/* netcheck_ask.c - plays a case's messages on each level and compares times with the reference's.
- */
+/* netcheck_ask.c - plays a case's messages on each level and compares times with the
+ * reference's. */
 #include "study/netcheck_ask.h"
 
 #include <math.h>
@@ -229,8 +229,8 @@ void netcheck_ask_saturation(struct netcheck_question *k, const char *pattern, i
 {
     for (int l = 0; l < LEVELS; l++) {
         if (l == LEVEL_LOGGP)
-            text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why, "without contention "
-                                                                           "nothing saturates");
+            text_copy(k->row->answer[l].why, sizeof k->row->answer[l].why,
+                      "without contention nothing saturates");
         else if (k->n->level[l]) ask_one_saturation(k, (enum network_level)l, pattern, flits);
     }
 }

@@ -1,5 +1,5 @@
-/* netcheck_case.c - topologies by name, one-step patterns and random loads of the reference data.
- */
+/* netcheck_case.c - topologies by name, one-step patterns and random loads of the reference
+ * data. */
 #include "study/netcheck_case.h"
 
 #include <ctype.h>
@@ -33,8 +33,8 @@ static const struct family_name families[] = {
     {"ring", TOPOLOGY_TORUS},          {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
 };
 
-/* the number that begins at `text`; one beyond INT_MAX is INT_MAX, which no network is as large as
- */
+/* the number that begins at `text`; one beyond INT_MAX is INT_MAX, which no network is as large
+ * as */
 static int number_at(const char *text, char **end)
 {
     errno = 0;

@@ -1,5 +1,5 @@
-/* netcheck_form.c - the keys of each form of reference case, and how a case is held against them.
- */
+/* netcheck_form.c - the keys of each form of reference case, and how a case is held against
+ * them. */
 #include "study/netcheck_form.h"
 
 #include <math.h>

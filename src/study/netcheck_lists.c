@@ -102,8 +102,8 @@ static bool band_read(struct netcheck_reader *r, const struct node *band,
     double *x = TAKE(r->arena, band->count + 1, double);
     int n = 0;
     if (band->kind != NODE_MAP || band->count == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, band->line, "'makespan_by_variant' must hold "
-                                                               "numbers by name");
+        return err_set_at(r->e, ERR_DATA, r->path, band->line,
+                          "'makespan_by_variant' must hold numbers by name");
     for (const struct node *v = band->child; v; v = v->next)
         if (!document_flat(v, v->key, r->path, &x[n++], 1, r->e)) return false;
     k->row->low = INFINITY;
@@ -257,8 +257,8 @@ static bool trace_read(struct netcheck_reader *r, const struct node *trace, stru
     const struct node *src = document_find(trace, "src");
     int n = src->count;
     if (src->kind != NODE_LIST || n == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, src->line, "'src' must be a list of at least "
-                                                              "one node");
+        return err_set_at(r->e, ERR_DATA, r->path, src->line,
+                          "'src' must be a list of at least one node");
     for (int i = 0; i < 5; i++)
         if (!column_read(r, trace, key[i], n, most[i], &column[i])) return false;
     *q = traffic_take(n, r->arena);
@@ -373,8 +373,8 @@ static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buff
     long b = strtol(x->key, &end, 10);
     *buffer = (int)b;
     return (end != x->key && !*end && b >= 1 && b <= 1 << 20) ||
-           err_set_at(r->e, ERR_DATA, r->path, x->line, "'%.64s' is not a buffer size; expected "
-                                                        "flits, 1 to %d",
+           err_set_at(r->e, ERR_DATA, r->path, x->line,
+                      "'%.64s' is not a buffer size; expected flits, 1 to %d",
                       x->key, 1 << 20);
 }
 
@@ -446,8 +446,8 @@ bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool re
     if (!hand_variant(r, c, &(struct variant){"cut-through", 64, cut_through})) return false;
     if (!booksim) return document_need(c, "booksim", r->path, r->e) != NULL;
     if (booksim->kind != NODE_MAP)
-        return err_set_at(r->e, ERR_DATA, r->path, booksim->line, "'booksim' must hold lists of "
-                                                                  "arrivals by buffer");
+        return err_set_at(r->e, ERR_DATA, r->path, booksim->line,
+                          "'booksim' must hold lists of arrivals by buffer");
     return wormhole_variants(r, c, booksim) &&
            (first == r->n->nrow || check_agreement(r, c, &r->n->row[first]));
 }

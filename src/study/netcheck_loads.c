@@ -114,8 +114,8 @@ bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c)
 {
     const struct node *points = document_find(c, "points");
     if (points->kind != NODE_LIST || points->count == 0)
-        return err_set_at(r->e, ERR_DATA, r->path, points->line, "'points' must be a list of "
-                                                                 "loads; it is empty");
+        return err_set_at(r->e, ERR_DATA, r->path, points->line,
+                          "'points' must be a list of loads; it is empty");
     for (const struct node *p = points->child; p; p = p->next) {
         struct arena_mark mark = arena_mark(r->arena);
         if (!ask_point(r, c, p)) return false;

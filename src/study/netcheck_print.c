@@ -176,8 +176,8 @@ void netcheck_print(const struct netcheck *n, double within, bool brief, FILE *o
 
 /* --- JSON ------------------------------------------------------------------------------------- */
 
-/* What the columns are of: a case, its answer at a level, or the statistics of a group at a level.
- */
+/* What the columns are of: a case, its answer at a level, or the statistics of a group at a
+ * level. */
 struct shown {
     const struct netcheck *all;
     const struct netcheck_row *row;

@@ -1,5 +1,5 @@
-/* netcheck_rows.c - what the readers of all forms share: rows, settings, networks, contradictions.
- */
+/* netcheck_rows.c - what the readers of all forms share: rows, settings, networks,
+ * contradictions. */
 #include "study/netcheck_rows.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* netcheck_verdict.c - answers held against the stated accuracy, case by case and group by group.
- */
+/* netcheck_verdict.c - answers held against the stated accuracy, case by case and group by
+ * group. */
 #include "study/netcheck_verdict.h"
 
 #include <math.h>

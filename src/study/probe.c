@@ -74,8 +74,8 @@ static bool asymptotic_rate(const struct machine_spec *m, double *rate, struct e
     return true;
 }
 
-/* Doubling, then halving the interval: the rate rises with the size but for steps of the protocol.
- */
+/* Doubling, then halving the interval: the rate rises with the size but for steps of the
+ * protocol. */
 static bool half_rate_size(const struct machine_spec *m, double *size, struct err *e)
 {
     double rate, t;

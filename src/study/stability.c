@@ -50,8 +50,8 @@ static bool measure_suite(struct stability_report *r, int most_bodies, bool quie
     return true;
 }
 
-/* The points of a scenario that are different scenes: kernels, levels and processors make no other.
- */
+/* The points of a scenario that are different scenes: kernels, levels and processors make no
+ * other. */
 static bool measure_points(struct stability_report *r, const struct run_spec *spec, int nspec,
                            int most_bodies, bool quiet, struct err *e)
 {

@@ -1,5 +1,5 @@
-/* stability_forward.c - accelerations of one scene by every algorithm, held against quad precision.
- */
+/* stability_forward.c - accelerations of one scene by every algorithm, held against quad
+ * precision. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

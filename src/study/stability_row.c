@@ -32,6 +32,6 @@ void row_grade(struct stability_row *row, double error, bool single)
     row->status = error <= fine   ? STABILITY_OK
                   : error <= poor ? STABILITY_DEGRADED
                                   : STABILITY_FAILED;
-    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason, "the result is not a finite "
-                                                                     "number");
+    if (!isfinite(error)) text_copy(row->reason, sizeof row->reason,
+                                    "the result is not a finite number");
 }

@@ -17,8 +17,8 @@
 
 /* --- the verdict ------------------------------------------------------------------------------ */
 
-/* Does some row of this row's quantity pass? Only asked of quantities that have an applicable row.
- */
+/* Does some row of this row's quantity pass? Only asked of quantities that have an applicable
+ * row. */
 static bool quantity_passes(const struct verify_report *r, const char *quantity)
 {
     for (int i = 0; i < r->nrow; i++)

@@ -62,8 +62,8 @@ static void parts_find(struct verify_answers *x, const struct vector_case *c)
     }
 }
 
-/* The mass matrix: what one joint's linear or angular part has to do with another's is one block.
- */
+/* The mass matrix: what one joint's linear or angular part has to do with another's is one
+ * block. */
 static void append_matrix(struct verify_answers *x, const struct vector_case *c)
 {
     int nv = c->nv, start = x->n;

@@ -7,8 +7,8 @@
 #include "study/trial.h"
 #include "study/verify_rows.h"
 
-/* Constraint forces need every body's inertia: bodies on fixed joints are lumped when that helps.
- */
+/* Constraint forces need every body's inertia: bodies on fixed joints are lumped when that
+ * helps. */
 bool verify_lump(struct verify_case *v, struct err *e)
 {
     v->lumped = v->model;

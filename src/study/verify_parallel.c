@@ -168,8 +168,8 @@ static bool is_sane(struct verify_case *v, const struct kernel_spec *quad, int n
     return true;
 }
 
-/* A row above its tolerance by the same variant in quad precision, on as many ranks as were worst.
- */
+/* A row above its tolerance by the same variant in quad precision, on as many ranks as were
+ * worst. */
 static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enum verify_quantity k,
                     struct verify_row *row, struct err *e)
 {

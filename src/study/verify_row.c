@@ -1,5 +1,5 @@
-/* verify_row.c - one row of a comparison: how it is judged, explained or skipped (verify_rows.h).
- */
+/* verify_row.c - one row of a comparison: how it is judged, explained or skipped
+ * (verify_rows.h). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

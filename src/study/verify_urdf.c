@@ -117,8 +117,8 @@ bool verify_urdf(struct verify_case *v, struct err *e)
         urdf_read(path, &robot, v->arena, e) ? urdf_model(&robot, &o, v->arena, e) : NULL;
     if (!m) return false;
     if (m->nbody != c->nbody || m->nu != c->nv)
-        return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "'%.200s' has %d bodies and %d "
-                                                              "degrees of freedom, this "
+        return err_set_at(e, ERR_DATA, c->path, c->urdf_line,
+                          "'%.200s' has %d bodies and %d degrees of freedom, this "
                           "file %d and %d", c->urdf, m->nbody, m->nu, c->nbody, c->nv);
     for (int i = 0; i < m->nbody; i++) m->body[i].damping = 0;
     system_prepare(m);
