@@ -1,5 +1,5 @@
-/* accuracy_network.c - the network ladder: the same program on every level, times held against the
- * finest. */
+/* accuracy_network.c - the network ladder: the same program on every level, simulated times
+ * compared with the finest level's. */
 #include <math.h>
 #include <stdio.h>
 
@@ -12,7 +12,9 @@
 
 enum { REPEATS = 3 };
 
-/* The fastest of a few runs: the others were disturbed. */
+/* One level. The least host time of a few runs: the others were disturbed. The simulated times
+ * of all are the same, so the first one's are kept; what takes over half a second is not
+ * repeated. */
 static struct trial run_level(struct ladder *l, enum network_level level)
 {
     struct run_spec spec = l->spec;
@@ -27,6 +29,7 @@ static struct trial run_level(struct ladder *l, enum network_level level)
     return t;
 }
 
+/* Relative error of the simulated run time; NAN when the reference has none. */
 static double makespan_error(int64_t ps, const struct trial *finest)
 {
     double reference = (double)finest->makespan_ps;
@@ -35,6 +38,7 @@ static double makespan_error(int64_t ps, const struct trial *finest)
 
 /* Largest difference of a rank's finishing time over the makespan; `finish` NULL: all end at
  * `end_ps`. */
+/* A makespan may agree by chance while ranks finish at other times: this error would show it. */
 static double finish_error(const int64_t *finish, int64_t end_ps, const struct trial *finest,
                            int nrank)
 {
@@ -45,6 +49,8 @@ static double finish_error(const int64_t *finish, int64_t end_ps, const struct t
     return finest->makespan_ps > 0 ? largest / (double)finest->makespan_ps : NAN;
 }
 
+/* Two rows of one level: makespan and finish times. makespan_ps < 0: the level gave no answer,
+ * for the reason `why`. */
 static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, const int64_t *finish,
                      double host_s, const char *why, const struct trial *finest,
                      const char *finest_name)
@@ -56,13 +62,17 @@ static void add_rows(struct ladder *l, const char *name, int64_t makespan_ps, co
         if (makespan_ps < 0) continue;
         r->host_s = host_s;
         r->machine_ps = makespan_ps;
+        /* Half of the reference is still a figure to plan with; ten times as much is none. */
         ladder_grade(r, k == 0 ? makespan_error(makespan_ps, finest)
                                : finish_error(finish, makespan_ps, finest, l->spec.nrank), 0.5, 10);
     }
 }
 
-/* Mean work of a rank, and each of its messages paid in full over the mean distance: nothing
- * overlaps, nobody waits. */
+/* The formula of a textbook: mean work of a rank, plus its messages, each paid in full over the
+ * mean distance. Nothing overlaps and nobody waits, so it is an upper bound in that respect and
+ * a lower one where ranks wait.
+ *     t = (flops c_flop + messages t_m) / P
+ *     t_m = o_s + o_r + bytes (copies + max(gap, 1 / bandwidth)) + (hops + 1) t_hop + t_end */
 static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 {
     const struct machine_spec *m = &l->spec.machine;
@@ -71,18 +81,23 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
     err_clear(&e);
     struct program_run r;
     double begin = host_seconds();
+    /* The counts are the program's own estimate (program.h), without a simulation. */
     struct topology *t = topology_create(&m->topology, l->arena, &e);
     if (!t || !trial_open(&r, &l->spec, l->model, l->state, l->arena, &e)) return false;
     r.type->estimate(&r, &x);
     int P = l->spec.nrank;
     double hops = 0, bytes = x.messages > 0 ? x.bytes / x.messages : 0;
+    /* Mean distance from node 0 to the other nodes that hold a rank: topologies are symmetric
+     * enough. */
     for (int i = 1; i < P && i < t->nnode; i++) hops += topology_distance(t, 0, i);
     hops /= P > 1 ? P - 1 : 1;
+    /* The software's parameters depend on the message size: those of the mean size. */
     const struct network_spec *n = &m->network;
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
     const int nlist = software_segments(&m->software, list);
     const struct software_segment *s = software_segment_of(list, nlist, (int64_t)bytes);
     double per_byte = fmax(s->gap_per_byte, n->link_bandwidth > 0 ? 1 / n->link_bandwidth : 0);
+    /* A head passes a router more than it passes links. */
     double message = s->send_overhead + s->recv_overhead +
                      bytes * (s->send_copy + s->recv_copy + per_byte) +
                      (hops + 1) * n->hop_latency + n->end_latency;
@@ -94,6 +109,7 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
 
 void ladder_network(struct ladder *l)
 {
+    /* All levels first: which one is the finest that answers is known only then. */
     struct trial t[LEVELS];
     enum network_level fine[LEVELS];
     int finest = -1;
@@ -104,6 +120,7 @@ void ladder_network(struct ladder *l)
         if (t[fine[i]].answered) finest = (int)fine[i];
     const char *reference = finest >= 0 ? network_level_name((enum network_level)finest) : "none";
     double seconds, host_s;
+    /* The closed form is a rung like the others: the cheapest of all, and how wrong it is. */
     if (finest >= 0 && closed_form(l, &seconds, &host_s))
         add_rows(l, "closed form", (int64_t)(seconds * 1e12), NULL, host_s,
                  "mean work and messages of a rank, no overlap", &t[finest], reference);

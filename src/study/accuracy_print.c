@@ -9,7 +9,7 @@
 
 static const char *const status_word[] = {"ok", "degraded", "failed"};
 
-/* The name of the rung, but not a second time where it is that of its method. */
+/* A network level is method and rung at once: its name is not printed a second time. */
 static void read_rung(const struct column *c, const void *row, struct column_value *v)
 {
     const struct accuracy_rung *x = row;
@@ -18,6 +18,8 @@ static void read_rung(const struct column *c, const void *row, struct column_val
     v->text = strcmp(x->method, x->rung) == 0 ? "" : x->rung;
 }
 
+/* Columns of a rung: the table of the database, the list in JSON, and the terminal's columns
+ * (those with a title). */
 static const struct column rung_column[] = {
     {"ladder", COLUMN_CHARS, RUNG(ladder), .doc = "network, arithmetic or integration"},
     {"at", COLUMN_CHARS, RUNG(at), .doc = "point of the scenario: \"n=P=128\""},
@@ -47,15 +49,19 @@ static const struct column rung_column[] = {
 const struct column_table accuracy_rung_columns = COLUMNS(rung_column);
 
 #define CHOICE(member) .offset = offsetof(struct accuracy_choice, member)
+/* A column that lies in the chosen rung; absent where none is within the tolerance. */
 #define CHOSEN(member)                                                                             \
     .part = PART(struct accuracy_choice, rung), .offset = offsetof(struct accuracy_rung, member),  \
     .known = has_rung
 
+/* Whether any rung is within the tolerance. */
 static bool has_rung(const void *row)
 {
     return ((const struct accuracy_choice *)row)->rung != NULL;
 }
 
+/* Columns of a choice: what was asked, the cheapest rung within the tolerance, and what the most
+ * accurate one would cost. */
 static const struct column choice_column[] = {
     {"ladder", COLUMN_STRING, CHOICE(ladder), .doc = "network, arithmetic or integration"},
     {"at", COLUMN_STRING, CHOICE(at), .flags = COLUMN_NO_JSON, .doc = "point of the scenario"},
@@ -69,16 +75,19 @@ static const struct column choice_column[] = {
 };
 const struct column_table accuracy_choice_columns = COLUMNS(choice_column);
 
-/* One rung, whose first quantity is x[0] and whose others follow. */
+/* One line of a rung: columns for its first quantity x[0], the errors of the other quantities
+ * (x[1] to x[n - 1]) behind them. */
 static void print_rung(FILE *out, const struct accuracy_rung *x, int n)
 {
     columns_cells(&accuracy_rung_columns, x, out);
+    /* A failed rung has no errors, but the reason instead. */
     for (int i = 1; i < n && isfinite(x->error); i++)
         fprintf(out, "%s%s %.1e", i > 1 || x->text[0] ? ", " : "", x[i].quantity, x[i].error);
     fprintf(out, "\n");
 }
 
 /* How many rows from i on are of the same rung. */
+/* The rows of a rung follow each other in the report, one per quantity. */
 static int rung_length(const struct accuracy_report *r, int i)
 {
     int n = 1;
@@ -89,6 +98,8 @@ static int rung_length(const struct accuracy_report *r, int i)
     return n;
 }
 
+/* The choice as one sentence; there are three: no result at all, none within the tolerance, or
+ * the cheapest with what the most accurate would cost. */
 static void print_choice(FILE *out, const struct accuracy_choice *c)
 {
     fprintf(out, "%s (%s%s%s within %.2g): ", c->ladder, c->at, c->at[0] ? ", " : "", c->quantity,
@@ -103,9 +114,12 @@ static void print_choice(FILE *out, const struct accuracy_choice *c)
                 c->finest->rung, c->finest->error);
         return;
     }
+    /* A network level has one name, a stepper two: "rk4" and "64 steps". */
+    /* "link" alone, but "rk4, 64 steps" */
     bool same = strcmp(c->rung->method, c->rung->rung) == 0;
     fprintf(out, "%s%s%s, error %.1e", c->rung->method, same ? "" : ", ", same ? "" : c->rung->rung,
             c->rung->error);
+    /* For network levels the host's time was compared; the machine's is the result itself. */
     if (c->rung->machine_ps >= 0 && strcmp(c->ladder, "network") != 0)
         fprintf(out, ", %.3f us on the machine", (double)c->rung->machine_ps * 1e-6);
     same = strcmp(c->finest->method, c->finest->rung) == 0;
@@ -118,9 +132,11 @@ static void print_choice(FILE *out, const struct accuracy_choice *c)
 void accuracy_print(FILE *out, const struct accuracy_report *r)
 {
     const char *ladder = "";
+    /* Rungs of all quantities lie behind each other: one line for each group of them. */
     for (int i = 0, n; i < r->nrung; i += n) {
         const struct accuracy_rung *x = &r->rung[i];
         n = rung_length(r, i);
+        /* The title again for every ladder, which differ in their references. */
         if (strcmp(ladder, x->ladder) != 0) {
             fprintf(out, "%s%s, %s: %s against %s\n", i > 0 ? "\n" : "", x->ladder, x->at,
                     x->quantity, x->reference);
@@ -133,6 +149,7 @@ void accuracy_print(FILE *out, const struct accuracy_report *r)
     for (int i = 0; i < r->nchoice; i++) print_choice(out, &r->choice[i]);
 }
 
+/* The same as one document; keys in the order of the alphabet. */
 void accuracy_print_json(FILE *out, const struct accuracy_report *r)
 {
     struct json j = json_make(out);

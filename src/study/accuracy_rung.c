@@ -8,6 +8,8 @@
 struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const char *rung,
                                  const char *quantity, const char *reference)
 {
+    /* The list doubles when it is full: memory of an arena is not given back, so the copies left
+     * behind add up to at most the size of the last. */
     struct accuracy_report *r = l->report;
     if (r->nrung == r->room) {
         int room = r->room > 0 ? 2 * r->room : 64;
@@ -24,6 +26,8 @@ struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const cha
     text_copy(x->rung, sizeof x->rung, rung);
     text_copy(x->quantity, sizeof x->quantity, quantity);
     text_copy(x->reference, sizeof x->reference, reference);
+    /* Failed with everything unknown, until the maker of the rung grades it: one that returns
+     * early is told as failed. */
     x->error = x->host_s = NAN;
     x->machine_ps = -1;
     x->status = RUNG_FAILED;
@@ -32,6 +36,8 @@ struct accuracy_rung *ladder_add(struct ladder *l, const char *method, const cha
 
 void ladder_grade(struct accuracy_rung *r, double error, double fine, double poor)
 {
+    /* An infinite error is stored as NAN, which the database knows as NULL; comparisons with NAN
+     * fail, so both are RUNG_FAILED. */
     r->error = isfinite(error) ? error : NAN;
     r->status = error <= fine ? RUNG_OK : error <= poor ? RUNG_DEGRADED : RUNG_FAILED;
 }

@@ -1,5 +1,5 @@
-/* audit.c - a database held against itself: the order of the parts, and the list of what they find
- * (audit.h). */
+/* audit.c - a database compared with itself: the order of the parts, and the list of what they
+ * find (audit.h). */
 #include "study/audit.h"
 
 #include <string.h>
@@ -21,6 +21,8 @@ bool audit_database(struct store *s, const struct audit_options *o, struct arena
     r->arena = a;
     if (!store_query(s, "SELECT count(*) FROM run", 0, NULL, NULL, take_count, &r->nrun, e))
         return false;
+    /* Cheap rules first: rows of one run with each other, then each run with its configuration.
+     * To make runs again takes as long as the campaign did. */
     return audit_rows(s, r, e) && audit_configurations(s, r, e) &&
            (o->again == 0 || audit_again(s, o, r, e));
 }

@@ -9,11 +9,14 @@
 #include "run/run.h"
 #include "study/audit_rules.h"
 
-/* What the host, the clock and the order of runs decide is another every time. */
+/* Columns that depend on the host, the clock or the order of runs: they differ every time and
+ * are not compared. machine_hash is checked with the configuration (audit_config.c). */
 static const char *const host_column[] = {
     "id",           "run_id",          "build_id",         "created_utc", "host_s",
     "host_total_s", "host_peak_bytes", "stack_peak_bytes", "scenario",    "machine_hash"};
 
+/* The tables that hold rows of a run, with the column of its id and the order that makes two
+ * reads comparable. */
 static const struct {
     const char *name, *key, *order;
 } table[] = {{"run", "id", "id"},
@@ -28,6 +31,8 @@ enum { TABLES = sizeof table / sizeof *table };
 
 /* --- which runs ------------------------------------------------------------------------------- */
 
+/* The state of the comparison: runs of `store` that were chosen, and a scratch database in
+ * memory for the runs made now. */
 struct again {
     struct store *store, *scratch;
     struct audit_report *report;
@@ -43,7 +48,8 @@ struct again {
     struct err *err;
 };
 
-/* A reservoir: each run is as likely as any other. */
+/* Reservoir sampling (Knuth, The Art of Computer Programming, vol. 2, section 3.4.2, algorithm
+ * R): each run is as likely as any other, in one pass and without knowing how many there are. */
 static bool choose(void *context, int ncolumn, const char *const *name, const struct store_value *v)
 {
     (void)ncolumn, (void)name;
@@ -59,6 +65,7 @@ static bool choose(void *context, int ncolumn, const char *const *name, const st
 static void take_choice(struct run_spec *spec, struct level_choice *choice,
                         const struct store_value *v)
 {
+    /* level_asked ends in the tolerance, "... 2 %": the word before the last one. */
     const char *percent = strrchr(v[5].text, ' ');
     while (percent && percent > v[5].text && percent[-1] != ' ') percent--;
     *choice = (struct level_choice){.made = true,
@@ -70,6 +77,8 @@ static void take_choice(struct run_spec *spec, struct level_choice *choice,
             spec->machine.network.level = (enum network_level)i;
 }
 
+/* One chosen row as a run; columns as in read_specs. Failed runs have nothing to compare, and
+ * models from files may have changed since. */
 static bool take_spec(void *context, int ncolumn, const char *const *name,
                       const struct store_value *v)
 {
@@ -87,10 +96,14 @@ static bool take_spec(void *context, int ncolumn, const char *const *name,
     /* Stored under what the row says it is: other rules have held that against the
      * configuration. */
     text_copy(spec->config_hash, sizeof spec->config_hash, v[3].text);
+    /* The row is compared as it was stored: with its text, changes and hash, not with those that
+     * this program would write. */
     spec->config_text = arena_text(g->arena, v[0].text);
     spec->machine_changes = v[4].kind == STORE_TEXT ? arena_text(g->arena, v[4].text) : NULL;
     spec->machine_hash = spec->machine_changes ? "" : NULL;
     if (v[5].kind == STORE_TEXT) take_choice(spec, &g->order[g->n].level_choice, v);
+    /* The ids of the runs kept move up; g->n <= g->seen, so none is overwritten before it is
+     * read. */
     g->id[g->n++] = g->id[g->seen];
     return true;
 }
@@ -128,6 +141,7 @@ struct lines {
     struct text names; /* of the columns that are compared */
 };
 
+/* Names of columns, not their places: a newer schema may have more. */
 static bool is_host_column(const char *name)
 {
     for (size_t i = 0; i < sizeof host_column / sizeof *host_column; i++)
@@ -144,6 +158,7 @@ static void add_value(struct text *t, const struct store_value *v)
     case STORE_INT:
         text_add(t, "%lld", (long long)v->integer);
         break;
+    /* 17 digits tell every double from every other: equal texts are equal bits. */
     case STORE_REAL:
         text_add(t, "%.17g", v->real);
         break;
@@ -153,6 +168,7 @@ static void add_value(struct text *t, const struct store_value *v)
     }
 }
 
+/* The columns of the scratch database decide: what an older database lacks fails as a query. */
 static bool take_names(void *context, int ncolumn, const char *const *name,
                        const struct store_value *v)
 {
@@ -177,6 +193,7 @@ static bool take_line(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* A query for names alone has no rows. */
 static bool nothing(void *context, int ncolumn, const char *const *name,
                     const struct store_value *v)
 {
@@ -188,6 +205,7 @@ static bool nothing(void *context, int ncolumn, const char *const *name,
 static void tell_difference(struct audit_report *r, int64_t run, const char *name,
                             const struct lines *x, const struct lines *y)
 {
+    /* The first byte that differs, then back to the beginning of its line: "name = value". */
     const char *p = x->text.s ? x->text.s : "", *q = y->text.s ? y->text.s : "";
     if (x->n != y->n) {
         audit_find(r, run, "again", "table %s has %lld rows of it, made again %lld", name,
@@ -214,10 +232,13 @@ static bool read_lines(struct store *s, int t, const char *names, int64_t id, st
     return ok;
 }
 
+/* One table of one run. *same becomes false when rows differ; false is returned only when a
+ * database cannot be read. */
 static bool compare_table(struct again *g, int t, int64_t id, int64_t fresh, bool tell, bool *same)
 {
     struct lines ours = {0}, theirs = {0};
     struct text sql = {0};
+    /* No row, but the names of the columns. */
     text_add(&sql, "SELECT * FROM %s WHERE 0", table[t].name);
     bool ok = store_query(g->scratch, sql.s, 0, NULL, take_names, nothing, &ours, g->err) &&
               read_lines(g->store, t, ours.names.s, id, &ours, g->err) &&
@@ -245,6 +266,7 @@ static bool compare_run(struct again *g, int i, bool tell, bool *same)
 
 /* --- all of it -------------------------------------------------------------------------------- */
 
+/* run_campaign hands results over with the run they belong to: its place tells its order. */
 static bool keep(void *context, const struct run_spec *spec, const struct run_result *result)
 {
     struct again *g = context;
@@ -261,8 +283,9 @@ static bool make(struct again *g, const struct run_spec *spec, const struct run_
                         g->err);
 }
 
-/* Of what a run left out, or kept (run's --keep-all), only its rows know: where they differ, all of
- * it is kept. */
+/* Make all runs at once, in parallel. Of a run whose rows differ, the rows alone know whether it
+ * was made with --keep-all: it is made again with everything kept, and only if that differs too,
+ * once more as it was, to tell the difference. */
 static bool make_again(struct again *g, const struct audit_options *o)
 {
     if (g->n == 0) return true;
@@ -282,6 +305,7 @@ static bool make_again(struct again *g, const struct audit_options *o)
     return true;
 }
 
+/* Memory: one scratch database with the rows of all chosen runs, released at the end. */
 bool audit_again(struct store *s, const struct audit_options *o, struct audit_report *r,
                  struct err *e)
 {
@@ -290,6 +314,7 @@ bool audit_again(struct store *s, const struct audit_options *o, struct audit_re
                       .arena = arena_create(),
                       .random = random_make(o->seed, 0, 0),
                       .err = e};
+    /* The reservoir is as large as the number of runs wanted. */
     g.wanted = o->again == AUDIT_ALL || o->again > r->nrun ? r->nrun : o->again;
     g.id = TAKE(g.arena, g.wanted + 1, int64_t);
     g.scratch = store_open("made again", STORE_SCRATCH, e);

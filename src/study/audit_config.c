@@ -19,8 +19,8 @@ bool audit_spec(struct run_spec *spec, const char *config_text, struct arena *a,
     return true;
 }
 
-/* The first line of `text` that `all` lacks; NULL: it has all. Settings that are newer than the row
- * stay out of it. */
+/* The first line of `text` that `all` lacks; NULL: it has all. Settings that are newer than the
+ * row are in `all` only, and so pass. */
 static const char *line_without(const char *text, const char *all, struct arena *a)
 {
     const char *padded = all;
@@ -30,6 +30,7 @@ static const char *line_without(const char *text, const char *all, struct arena 
         char *own = arena_take(a, n + 2);
         memcpy(own, line, n);
         own[n] = '\n';
+        /* A whole line, not the end of a longer one: it begins the text or follows a line break. */
         const char *found = strstr(padded, own);
         while (found && found != all && found[-1] != '\n') found = strstr(found + 1, own);
         own[n] = '\0';
@@ -40,6 +41,8 @@ static const char *line_without(const char *text, const char *all, struct arena 
 
 /* SHA-256 of the machine that a text describes, as plan/machine_changes.c takes it of a shipped
  * one. */
+/* The same sum as plan/machine_changes.c makes: the lines of the machine without the two
+ * settings that say how accurately it is simulated, not what it is. */
 static void machine_hash(const char *config_text, char hex[65])
 {
     static const char *const question[] = {"machine.network.level = ",
@@ -58,12 +61,15 @@ static void machine_hash(const char *config_text, char hex[65])
     text_free(&machine);
 }
 
+/* The columns of a row that its configuration repeats. */
 struct row {
     int64_t id;
     const char *hash, *text, *changes, *machine_hash;
     bool ours; /* made by this very program */
 };
 
+/* Two statements of a row are checked: that the machine is the shipped one (no changes), and
+ * which changes it has. */
 static void check_machine(const struct row *row, struct run_spec *spec,
                           struct machine_changes *known, struct audit_report *r)
 {
@@ -76,6 +82,8 @@ static void check_machine(const struct row *row, struct run_spec *spec,
     machine_changes_note(known, spec);
     /* Of a machine file that is another one by now, nobody can tell what was changed. */
     if (!spec->machine_changes) return;
+    /* The shipped machine itself is another one by now. That is an error only if this very
+     * program made the row; an older one read an older file. */
     if (strcmp(spec->machine_hash, row->machine_hash) != 0) {
         if (row->ours && strcmp(row->changes, "{}") != 0)
             audit_find(r, row->id, "machine",
@@ -88,6 +96,7 @@ static void check_machine(const struct row *row, struct run_spec *spec,
                    row->changes, spec->machine_changes);
 }
 
+/* The serial codes of one run, priced on its node. */
 struct pricing {
     struct audit_report *report;
     int64_t run;
@@ -99,6 +108,7 @@ static bool price_row(void *context, int ncolumn, const char *const *name,
 {
     (void)ncolumn, (void)name;
     const struct pricing *p = context;
+    /* The columns of the query in check_prices, in its order. */
     const struct work w = {.flop = (uint64_t)v[2].integer,
                            .div = (uint64_t)v[3].integer,
                            .sqrt = (uint64_t)v[4].integer,
@@ -113,7 +123,7 @@ static bool price_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
-/* The time of a serial code is what its operations cost. */
+/* The time of a serial code is what its counted operations cost on the node, to the picosecond. */
 static bool check_prices(struct store *s, int64_t run, const struct run_spec *spec,
                          struct audit_report *r, struct err *e)
 {
@@ -130,6 +140,7 @@ static bool check_prices(struct store *s, int64_t run, const struct run_spec *sp
                        1, param, NULL, price_row, &p, e);
 }
 
+/* The walk over all runs. `known` remembers the shipped machine that was looked up last. */
 struct audit_walk {
     struct store *store;
     struct audit_report *report;
@@ -143,6 +154,7 @@ static bool take_row(void *context, int ncolumn, const char *const *name,
 {
     (void)ncolumn, (void)name;
     struct audit_walk *w = context;
+    /* The order of the columns is that of the query in audit_configurations. */
     const struct build build = store_build();
     const struct row row = {
         v[0].integer, v[1].text,
@@ -154,10 +166,13 @@ static bool take_row(void *context, int ncolumn, const char *const *name,
     bool ok = true;
     if (audit_spec(&spec, row.text, w->arena, why, sizeof why)) {
         const char *line = line_without(row.text, spec.config_text, w->arena);
+        /* The hash is of the whole text: it finds any change of a setting, but not which one. */
         if (strcmp(spec.config_hash, row.hash) != 0)
             audit_find(w->report, row.id, "identity",
                        "config_hash is %.12s..., that of the configuration %.12s...", row.hash,
                        spec.config_hash);
+        /* A text whose settings are the same may still be written otherwise: then some line is
+         * not there. */
         if (line)
             audit_find(w->report, row.id, "identity", "'%s' is not how the setting is written",
                        line);
@@ -172,6 +187,8 @@ static bool take_row(void *context, int ncolumn, const char *const *name,
     return ok;
 }
 
+/* Runs in the order of their ids: the findings come in the same order every time. Two arenas:
+ * the machine's description outlives the memory of one row. */
 bool audit_configurations(struct store *s, struct audit_report *r, struct err *e)
 {
     struct audit_walk w = {

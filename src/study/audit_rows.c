@@ -5,11 +5,14 @@
 #include "base/text.h"
 #include "study/audit_rules.h"
 
+/* What a query of a rule needs to report its rows. */
 struct asking {
     struct audit_report *report;
     const char *rule;
 };
 
+/* A rule gives (run, text): one row is one contradiction. A text of NULL comes from a missing
+ * number in the expression that makes it, which is a contradiction as well. */
 static bool take_finding(void *context, int ncolumn, const char *const *name,
                          const struct store_value *value)
 {
@@ -22,6 +25,7 @@ static bool take_finding(void *context, int ncolumn, const char *const *name,
 
 /* --- views and limits are the program's ------------------------------------------------------- */
 
+/* Views and limits as one list of (name, text); both databases are asked with the same query. */
 static const char schema[] =
     "SELECT 'view ' || name, sql FROM sqlite_schema WHERE type = 'view' UNION ALL SELECT "
     "'meta ' || key, value FROM meta";
@@ -50,12 +54,15 @@ static bool compare_object(void *context, int ncolumn, const char *const *name,
     static const char find[] =
         "SELECT 1 FROM (SELECT 'view ' || name AS n, sql AS t FROM sqlite_schema WHERE type = "
         "'view' UNION ALL SELECT 'meta ' || key, value FROM meta) WHERE n = ?1 AND t = ?2";
+    /* The other database must have an object of this name with this text: one statement finds
+     * both a changed and a missing one. */
     if (value[1] && store_select(l->other, find, 2, value, is_there, &same, &e) && !same)
         audit_find(l->report, 0, "schema", "%s is not as this program makes it", value[0]);
     return true;
 }
 
-/* Whoever changes a view changes every figure. */
+/* A changed view would change every figure and every claim, without any row being wrong. A new
+ * database in memory has what this program makes. */
 static bool compare_schema(struct store *s, struct audit_report *r, struct err *e)
 {
     struct store *fresh = store_open("in memory", STORE_MEMORY, e);
@@ -74,6 +81,7 @@ bool audit_rows(struct store *s, struct audit_report *r, struct err *e)
     if (!compare_schema(s, r, e)) return false;
     bool ok = true;
     for (const char *at = strstr(audit_sql(), mark), *next; at && ok; at = next) {
+        /* The name ends with its line; the query ends where the next rule begins. */
         const char *name = at + strlen(mark), *sql = strchr(name, '\n');
         next = strstr(sql, mark);
         struct text rule = {0}, query = {0};

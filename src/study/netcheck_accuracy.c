@@ -15,6 +15,7 @@
 #define FAMILY(f) (1 << TOPOLOGY_##f)
 #define LEVEL(l) (1 << LEVEL_##l)
 
+/* Bit sets of forms, families and levels; EVERY has all bits. */
 enum {
     EVERY = -1,
     MESSAGES = FORM(STEP) | FORM(LIST) | FORM(HAND),
@@ -29,6 +30,9 @@ enum {
 };
 enum channels { ANY_CHANNELS, ONE_CHANNEL, MORE_CHANNELS };
 
+/* The conditions of one class, and what is stated of it. The first entry whose conditions all
+ * hold is taken, so the order is from special to general; the last two have no conditions on
+ * network or level. */
 struct entry {
     int levels, forms, families;
     enum channels channels;
@@ -117,6 +121,8 @@ const struct netcheck_accuracy *netcheck_accuracies(int i)
     return i >= 0 && i < ENTRIES ? &table[i].stated : NULL;
 }
 
+/* Whether an entry's conditions hold for a row at a level; `level` and the row's enums count
+ * bits. */
 static bool fits(const struct entry *t, const struct netcheck_row *row, enum network_level level)
 {
     bool channels =

@@ -33,8 +33,7 @@ static const struct family_name families[] = {
     {"ring", TOPOLOGY_TORUS},          {"mesh", TOPOLOGY_MESH},           {"bus", TOPOLOGY_BUS},
 };
 
-/* the number that begins at `text`; one beyond INT_MAX is INT_MAX, which no network is as large
- * as */
+/* The number that begins at `text`. One beyond INT_MAX becomes INT_MAX, which size_fits refuses. */
 static int number_at(const char *text, char **end)
 {
     errno = 0;
@@ -75,7 +74,13 @@ static int radices_in(const char *text, int *radix, int most)
     return n;
 }
 
-/* Nodes and links as real numbers, so that no product of strangers' numbers overflows. */
+/* Nodes and links as real numbers: an int product of a stranger's numbers could overflow, a real
+ * one only becomes large.
+ *     torus, mesh   n = prod d_i             links <= 2 ndim n
+ *     hypercube     n = 2^x                  links = x n
+ *     fat tree      n = k^l                  links = 2 l n
+ *     full mesh     n = x                    links = x^2
+ *     dragonfly     groups g = a h + 1       n = p a g, links = a g (a + h) */
 static void size_of(const struct topology_spec *s, double *node, double *link)
 {
     double x = s->dims[0], y = s->ndim > 1 ? s->dims[1] : 1, z = s->ndim > 2 ? s->dims[2] : 1;
@@ -98,6 +103,8 @@ static void size_of(const struct topology_spec *s, double *node, double *link)
     }
 }
 
+/* Refuse before anything is allocated. The fourth number of a dragonfly is set by this program
+ * and may be 0. */
 static bool size_fits(const char *name, const struct topology_spec *s, struct err *e)
 {
     double node, link;
@@ -112,12 +119,14 @@ static bool size_fits(const char *name, const struct topology_spec *s, struct er
                    node, link, NETCHECK_MOST_NODES, NETCHECK_MOST_LINKS);
 }
 
-/* A name that is almost one of ours is a misspelt one, and no network that we lack. */
+/* A name almost like one of ours is a spelling mistake (ERR_DATA); any other is a network that
+ * this program does not have (ERR_UNAVAILABLE), and only that case is left out. */
 static bool unknown_family(const char *name, struct err *e)
 {
     const char *word[sizeof families / sizeof *families];
     char start[64];
     for (size_t i = 0; i < sizeof families / sizeof *families; i++) word[i] = families[i].word;
+    /* The family's name ends where the numbers begin. */
     snprintf(start, sizeof start, "%.*s", (int)strcspn(name, "0123456789_"), name);
     const char *near = text_nearest(start, word, sizeof families / sizeof *families);
     if (near)
@@ -125,7 +134,7 @@ static bool unknown_family(const char *name, struct err *e)
     return err_set(e, ERR_UNAVAILABLE, "topology '%.64s' is not supported", name);
 }
 
-/* words in the names of networks whose routes depend on the load */
+/* Words in the names of networks whose routes depend on the load. Routes of this program do not. */
 static const char *adaptive_word(const char *name)
 {
     static const char *const word[] = {"ugal", "adaptive", "adapt", "anca"};
@@ -136,9 +145,12 @@ static const char *adaptive_word(const char *name)
 
 bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struct err *e)
 {
+    /* Ties of the shortest way around a ring: as asked, and random on the reference's own torus. */
     *s = (struct topology_spec){.nodes_per_router = 1, .processors_per_node = 1};
     bool random = tie == 1 || (tie < 0 && strstr(name, "native"));
     s->tie = random ? TIE_RANDOM : tie == 2 ? TIE_PARITY : TIE_POSITIVE;
+    /* families[] has the longer words first: "fullmesh" before "mesh", "hypercube" before
+     * "hcube". */
     const char *found = NULL;
     for (size_t i = 0; !found && i < sizeof families / sizeof *families; i++) {
         found = strstr(name, families[i].word);
@@ -149,8 +161,10 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
         return err_set(e, ERR_UNAVAILABLE, "adaptive routing ('%s') is not supported",
                        adaptive_word(name));
     bool grid = s->family == TOPOLOGY_TORUS || s->family == TOPOLOGY_MESH;
+    /* Grids are "8x8" or "k8n2"; the other families are numbers with letters between them. */
     s->ndim = (grid ? radices_in : numbers_in)(found, s->dims, MACHINE_MAX_DIMS);
     if (s->ndim == 0)
+        /* The numbers may stand before the family, "8x8 torus": then look from the beginning. */
         s->ndim =
             (grid ? radices_in : numbers_in)(name, s->dims, MACHINE_MAX_DIMS); /* "8x8 torus" */
     int needed = s->family == TOPOLOGY_FAT_TREE ? 2 : s->family == TOPOLOGY_DRAGONFLY ? 3 : 1;
@@ -165,6 +179,8 @@ bool netcheck_topology(const char *name, int tie, struct topology_spec *s, struc
     return true;
 }
 
+/* The reference's router. Its pipeline takes 3 cycles (switch allocation, traversal, link) or 5
+ * with routing and allocation of channels in front, each one cycle. */
 struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int buffer,
                                      int packet_flits, int head_cycles)
 {
@@ -183,12 +199,14 @@ struct machine_spec netcheck_machine(const struct topology_spec *s, int vcs, int
         .buffer_flits = buffer,
         .arbitration = ARBITRATION_ROUND_ROBIN,
     };
+    /* Every message is eager: the reference knows no rendezvous. */
     m.software.eager_bytes = -1;
     return m;
 }
 
 /* ---- lists ---- */
 
+/* The arrays of a list of n messages, by their own arena. */
 static void traffic_take(struct traffic *q, int n, struct arena *a)
 {
     *q = (struct traffic){.nmessage = n};
@@ -198,6 +216,7 @@ static void traffic_take(struct traffic *q, int n, struct arena *a)
     q->time = TAKE(a, n + 1, sim_ps);
 }
 
+/* Each node sends to i + d (mod n), to i + d where that is a node, or to i xor d. */
 bool netcheck_step(const char *pattern, int distance, int nnode, int flits, struct arena *a,
                    struct traffic *q, struct err *e)
 {
@@ -208,6 +227,7 @@ bool netcheck_step(const char *pattern, int distance, int nnode, int flits, stru
     traffic_take(q, nnode, a);
     q->nmessage = 0;
     for (int i = 0; i < nnode; i++) {
+        /* 64 bits: i + distance may pass INT_MAX. */
         int64_t far = (int64_t)i + distance, to = shift ? far % nnode : trunc ? far : i ^ distance;
         if (to >= nnode) continue;
         q->src[q->nmessage] = i;
@@ -240,6 +260,7 @@ struct pattern {
     int group;       /* nodes per group of a dragonfly */
 };
 
+/* Names of the reference's patterns, and which of them permute bits of the node's number. */
 static const struct {
     const char *word;
     enum rule rule;
@@ -252,8 +273,8 @@ static const struct {
 };
 enum { RULES = sizeof rules / sizeof *rules };
 
-/* The word before the bracket or the numbers must be one of ours. A misspelt one is refused;
- * another pattern of the reference's is one that we lack. */
+/* The word before the bracket or the numbers is the pattern's name. One almost like it is a
+ * mistake (ERR_DATA), another is a pattern that this program does not have (ERR_UNAVAILABLE). */
 static int rule_of(const char *text, struct err *e)
 {
     const char *word[RULES];
@@ -289,12 +310,14 @@ static bool digits_read(const char *text, const struct topology *t, const int *n
                    text, p->ndim, p->radix, t->nnode);
 }
 
+/* A pattern with its numbers, checked against the network before anything is sent. */
 static bool pattern_read(const char *text, const struct topology *t, struct pattern *p,
                          struct err *e)
 {
     int number[2] = {0, 0}, n = numbers_in(text, number, 2), found = rule_of(text, e);
     if (found < 0) return false;
     *p = (struct pattern){.rule = rules[found].rule, .nnode = t->nnode, .distance = number[0]};
+    /* bits = ceil(log2 nnode); a pattern of bits needs it exact. */
     while (p->bits < 30 && 1 << p->bits < t->nnode) p->bits++;
     if (rules[found].power_of_two && 1 << p->bits != t->nnode)
         return err_set(e, ERR_DATA, "pattern '%.64s' needs 2^n nodes, not %d", text, t->nnode);
@@ -304,13 +327,14 @@ static bool pattern_read(const char *text, const struct topology *t, struct patt
     if (far && p->distance >= t->nnode)
         return err_set(e, ERR_DATA, "pattern '%.64s': expected a distance below the %d nodes", text,
                        t->nnode);
+    /* A dragonfly's group has a routers with p nodes each. */
     if (p->rule == BAD_DRAGONFLY) p->group = t->spec->dims[0] * t->spec->dims[1];
     if (p->rule == BAD_DRAGONFLY && t->spec->family != TOPOLOGY_DRAGONFLY)
         return err_set(e, ERR_DATA, "pattern '%.64s' needs a dragonfly", text);
     return true;
 }
 
-/* every coordinate of i moved up by `step` around its ring */
+/* Every coordinate of i moved up by `step` around its ring; i is written to the base `radix`. */
 static int digits_moved(const struct pattern *p, int i, int step)
 {
     int to = 0, stride = 1;
@@ -326,6 +350,8 @@ static int bits_reversed(int i, int bits)
     return to;
 }
 
+/* Where node i sends to; definitions of Dally and Towles, Principles and Practices of
+ * Interconnection Networks, section 3.2. */
 static int destination(const struct pattern *p, int i, struct random *r)
 {
     int mask = p->nnode - 1, half = p->bits / 2;
@@ -341,6 +367,7 @@ static int destination(const struct pattern *p, int i, struct random *r)
     case SHUFFLE:
         return (i << 1 & mask) | i >> (p->bits - 1);
     case TORNADO:
+        /* Half way around, less one: the worst case of minimal routing on a ring. */
         return digits_moved(p, i, (p->radix + 1) / 2 - 1);
     case NEIGHBOUR:
         return digits_moved(p, i, 1);
@@ -349,6 +376,7 @@ static int destination(const struct pattern *p, int i, struct random *r)
     case XOR:
         return i ^ p->distance;
     case BAD_DRAGONFLY:
+        /* A random node of the next group: all of a group's messages share its one link there. */
         return ((i / p->group + 1) * p->group) % p->nnode +
                (int)random_below(r, (uint64_t)p->group);
     }
@@ -356,7 +384,8 @@ static int destination(const struct pattern *p, int i, struct random *r)
     return 0;
 }
 
-/* cycles until the next arrival, >= 1, when each cycle has one with probability prob */
+/* Cycles until the next arrival (>= 1), when each cycle has one with probability prob:
+ * geometric, by inversion of u uniform in [0, 1). log1p keeps small probabilities exact. */
 static double geometric(struct random *r, double prob)
 {
     if (prob >= 1) return 1;
@@ -375,14 +404,19 @@ bool netcheck_load(const char *pattern, const struct topology *t, int flits, dou
             "load %g with packets of %d flits for %d cycles; expected a load above 0 and up to 1, "
             "packets of at least 1 flit and at least 1 cycle",
             load, flits, cycles);
+    /* A load counts flits, an arrival is a packet. */
     double prob = load / flits;
     double expected = prob * cycles * t->nnode;
     if (expected > NETCHECK_MOST_MESSAGES)
         return err_set(e, ERR_DATA,
                        "load %g for %d cycles on %d nodes is %.3g messages; expected at most %d",
                        load, cycles, t->nnode, expected, NETCHECK_MOST_MESSAGES);
+    /* Room for the mean and eight standard deviations (n p (1 - p) < expected): a list that
+     * needs more would be cut, which no seed is likely to show. */
     int most = (int)(expected + 8 * sqrt(expected) + 64), n = 0;
     traffic_take(q, most, a);
+    /* Each node has a random stream of its own, so that its messages do not depend on the other
+     * nodes. */
     for (int i = 0; i < t->nnode; i++) {
         struct random r = random_make(seed, 0x6c6f6164, (uint64_t)i); /* "load" */
         for (double at = geometric(&r, prob) - 1; at < cycles && n < most;
@@ -402,12 +436,15 @@ double netcheck_channel_load(const char *pattern, const struct topology *t, stru
 {
     struct pattern p;
     if (!pattern_read(pattern, t, &p, e)) return -1;
+    /* All routes of all pairs are followed: only where they are few and do not depend on the
+     * load or on chance. */
     if (t->nnode > MOST_ROUTED_NODES || !t->fixed_routes || p.rule == BAD_DRAGONFLY) return 0;
     struct arena_mark mark = arena_mark(a);
     double *load = TAKE(a, t->nlink + 1, double), most = 0;
     struct hop *route = TAKE(a, t->max_hops + 2, struct hop);
     struct random r = random_make(0, 0, 0);
     int per_source = p.rule == UNIFORM ? t->nnode : 1;
+    /* Each source sends one flit per cycle, spread over its destinations. */
     for (int i = 0; i < t->nnode; i++)
         for (int k = 0; k < per_source; k++) {
             int to = p.rule == UNIFORM ? k : destination(&p, i, &r),
@@ -430,10 +467,13 @@ double netcheck_channel_cycles(const struct topology *t, const struct traffic *q
     int n = 0, from, to, port;
     for (int m = 0; m < q->nmessage; m++) {
         if (q->time[m] < first) continue;
+        /* The same random number as in the run: the message's number chooses among routes. */
         int hops = topology_route(t, q->src[m], q->dst[m], (uint64_t)m, route);
         n++;
         for (int h = 0; h < hops; h++) {
             topology_link_ends(t, route[h].link, &from, &to, &port);
+            /* A group has `routers` routers, numbered group by group: the same quotient is the
+             * same group. One cycle of the channel is in the level's latency already. */
             sum += from / routers == to / routers ? LOCAL_CHANNEL - 1 : GLOBAL_CHANNEL - 1;
         }
     }

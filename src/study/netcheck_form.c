@@ -1,5 +1,8 @@
-/* netcheck_form.c - the keys of each form of reference case, and how a case is held against
- * them. */
+/* netcheck_form.c - the keys of each form of reference case, and how a case is compared with
+ * them.
+ *
+ * A file of answers that is read loosely proves nothing: a misspelt `makespan` would be a case
+ * without an answer, which passes. So every key is known, needed, or told. */
 #include "study/netcheck_form.h"
 
 #include <math.h>
@@ -7,8 +10,14 @@
 
 #include "base/text.h"
 
-/* NEEDED always; CONDITION and ANSWER where the case has answers; CHECKED is compared where it
- * stands; READ is used where it stands; IGNORED is compared with nothing. */
+/* How a key is used:
+ *     NEEDED     always there
+ *     CONDITION  needed where the case has answers: with other values they would be others
+ *     ANSWER     needed where the case has answers
+ *     ALIKE      in all cases of a form or in none; compared where it is there
+ *     CHECKED    compared where it is there
+ *     READ       used where it is there
+ *     IGNORED    compared with nothing, and noted */
 enum use { NEEDED, CONDITION, ANSWER, ALIKE, CHECKED, READ, IGNORED };
 
 struct key {
@@ -16,6 +25,7 @@ struct key {
     enum use use;
 };
 
+/* One message from every node at time 0; makespan and arrivals. */
 static const struct key step_keys[] = {
     {"topology", NEEDED},
     {"pattern", NEEDED},
@@ -38,6 +48,7 @@ static const struct key step_keys[] = {
     {NULL, IGNORED},
 };
 
+/* A step whose answer is a band: the makespans of several variants of the router. */
 static const struct key band_keys[] = {
     {"topology", NEEDED},
     {"pattern", NEEDED},
@@ -53,6 +64,8 @@ static const struct key band_keys[] = {
     {NULL, IGNORED},
 };
 
+/* A collective: messages with times, delays and dependencies, as lists of one number per
+ * message. */
 static const struct key list_keys[] = {
     {"topology", NEEDED},
     {"trace", NEEDED},
@@ -77,6 +90,8 @@ static const struct key list_keys[] = {
     {NULL, IGNORED},
 };
 
+/* A few messages, with times derived by hand for cut-through and wormhole routers and measured
+ * with the reference. */
 static const struct key hand_keys[] = {
     {"topology", NEEDED},
     {"messages", NEEDED},
@@ -97,6 +112,7 @@ static const struct key hand_keys[] = {
     {NULL, IGNORED},
 };
 
+/* Mean latencies under a random load; the points have keys of their own. */
 static const struct key load_keys[] = {
     {"topology", NEEDED},
     {"pattern", NEEDED},
@@ -113,12 +129,15 @@ static const struct key load_keys[] = {
     {NULL, IGNORED},
 };
 
+/* One point of a load: what the reference measured at the load `offered`. */
 static const struct key point_keys[] = {
     {"offered", NEEDED}, {"plat", ANSWER},    {"cycles", ANSWER}, {"unstable", ALIKE},
     {"nlat", ALIKE},     {"accepted", ALIKE}, {"hops", ALIKE},    {"flat", IGNORED},
     {"run_s", IGNORED},  {"cpu", IGNORED},    {NULL, IGNORED},
 };
 
+/* The load at which the mean latency is three times that of the empty network, between two
+ * bounds. */
 static const struct key saturation_keys[] = {
     {"topology", NEEDED},
     {"pattern", NEEDED},
@@ -137,11 +156,13 @@ static const struct key saturation_keys[] = {
     {NULL, IGNORED},
 };
 
+/* Inside `trace` and `messages` an unknown key is an error: nothing else belongs there. */
 static const struct key trace_keys[] = {
     {"src", NEEDED},      {"dst", NEEDED},     {"flits", NEEDED}, {"time", CONDITION},
     {"delay", CONDITION}, {"deps", CONDITION}, {NULL, IGNORED},
 };
 
+/* One message of a case by hand; `t` is its start [cycles]. */
 static const struct key message_keys[] = {
     {"src", NEEDED}, {"dst", NEEDED}, {"flits", NEEDED}, {"t", CONDITION}, {NULL, IGNORED},
 };
@@ -154,7 +175,8 @@ static const struct key remark_keys[] = {
 
 /* ---- looking at keys ---- */
 
-/* what tells a form */
+/* The key that tells a form, with its kind: a case by hand and a list both have `messages`, but
+ * one as a list and one as a count. The order counts: `distance` occurs in lists, too. */
 static const struct {
     const char *sign;
     enum node_kind kind;
@@ -165,6 +187,7 @@ static const struct {
     {"distance", NODE_NUMBER, NETCHECK_STEP},
 };
 
+/* The table of a form; a step without arrivals but with makespans by variant is a band. */
 static const struct key *keys_of(const struct node *c, enum netcheck_form form)
 {
     static const struct key *const table[] = {[NETCHECK_STEP] = step_keys,
@@ -177,6 +200,7 @@ static const struct key *keys_of(const struct node *c, enum netcheck_form form)
     return band && document_find(c, "makespan_by_variant") ? band_keys : table[form];
 }
 
+/* Tables are short: a linear search is enough. */
 static const struct key *find_key(const struct key *table, const char *name)
 {
     for (const struct key *k = table; k->name; k++)
@@ -184,7 +208,7 @@ static const struct key *find_key(const struct key *table, const char *name)
     return NULL;
 }
 
-/* Two keys of the file are noted once. */
+/* The same key in two cases is noted once; names live as long as the rows. */
 static void note_ignored(struct netcheck_reader *r, const char *name)
 {
     struct netcheck *n = r->n;
@@ -197,6 +221,7 @@ static void note_ignored(struct netcheck_reader *r, const char *name)
 static bool unknown_key(struct netcheck_reader *r, const struct node *map, const struct node *child,
                         const struct key *table, bool strict)
 {
+    /* Only keys that the case does not have: one that is there twice is not a spelling mistake. */
     const char *lacking[32];
     int n = 0;
     for (const struct key *k = table; k->name; k++)
@@ -205,6 +230,7 @@ static bool unknown_key(struct netcheck_reader *r, const struct node *map, const
     if (near)
         return err_set_at(r->e, ERR_DATA, r->path, child->line,
                           "unknown key '%.64s'; did you mean '%s'?", child->key, near);
+    /* Inside a trace nothing is ignored: a misspelt dependency would change the answer. */
     if (strict)
         return err_set_at(r->e, ERR_DATA, r->path, child->line, "unknown key '%.64s' of a message",
                           child->key);
@@ -217,23 +243,28 @@ static bool complete(struct netcheck_reader *r, const struct node *map, const st
                      bool answers)
 {
     for (const struct key *k = table; k->name; k++) {
+        /* A case that is played needs no conditions: it takes the defaults. */
         bool needed = k->use == NEEDED || (answers && (k->use == CONDITION || k->use == ANSWER));
         if (needed && !document_need(map, k->name, r->path, r->e)) return false;
     }
     return true;
 }
 
-/* A key that other cases of the form have was dropped here, or the other way round. The first case
- * with answers, or the first point that has values, sets what is to stand. */
+/* Whether the case has the same ALIKE keys as the first case of its form: a key that was dropped
+ * in one case, or added in one, is a damaged file. `first` is set by the first case with
+ * answers, or the first point that has values. */
 static bool alike(struct netcheck_reader *r, const struct node *map, const struct key *table)
 {
     struct netcheck_alike *first = r->alike;
+    /* A bit per key of the table; 32 are enough. */
     unsigned has = 0;
+    /* At most one entry per table, in the order of appearance. */
     while (first->table && first->table != table) first++;
     for (int i = 0; table[i].name; i++)
         if (table[i].use == ALIKE && document_find(map, table[i].name)) has |= 1u << i;
     if (!first->table) *first = (struct netcheck_alike){table, has};
     for (int i = 0; table[i].name; i++) {
+        /* A bit that differs is a key that one of the two cases does not have. */
         if (!((has ^ first->has) >> i & 1)) continue;
         return err_set_at(r->e, ERR_DATA, r->path, map->line,
                           has >> i & 1 ? "'%s' is given here, but is missing in earlier cases"
@@ -243,8 +274,9 @@ static bool alike(struct netcheck_reader *r, const struct node *map, const struc
     return true;
 }
 
-/* answers: also the keys of a case with answers are needed; strict: a key that is not in the table
- * is an error */
+/* All keys of one map.
+ *     answers  also the keys of a case with answers are needed
+ *     strict   a key that is not in the table is an error, and remarks are not permitted */
 static bool look_at(struct netcheck_reader *r, const struct node *map, const struct key *table,
                     bool answers, bool strict)
 {
@@ -259,6 +291,8 @@ static bool look_at(struct netcheck_reader *r, const struct node *map, const str
     return complete(r, map, table, answers);
 }
 
+/* Loads and saturations without answers make no sense; the others are played without them. */
+/* Any of these keys is an answer; which of them are needed, the table says. */
 static bool has_answer(const struct node *c, enum netcheck_form form)
 {
     if (form == NETCHECK_LOAD || form == NETCHECK_SATURATION) return true;
@@ -270,7 +304,8 @@ static bool has_answer(const struct node *c, enum netcheck_form form)
     return false;
 }
 
-/* how many keys of c the form has, less those that it does not have: the form whose sign is lost */
+/* Keys of c that the form has, less those that it does not have: for a case whose sign is
+ * missing or misspelt, to name the form it was meant to be. */
 static int likeness(const struct node *c, enum netcheck_form form)
 {
     int n = 0;
@@ -281,6 +316,8 @@ static int likeness(const struct node *c, enum netcheck_form form)
 
 static bool guess_form(struct netcheck_reader *r, const struct node *c, enum netcheck_form *form)
 {
+    /* At least three keys in its favour: fewer would be guesswork. */
+    /* the likeness that must be exceeded */
     int best = 2;
     bool found = false;
     for (int f = 0; f < NETCHECK_FORMS; f++) {
@@ -300,6 +337,7 @@ bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netc
                       bool *referred)
 {
     bool told = false;
+    /* A case that is no map has no keys: it gets the message of no known form. */
     if (c->kind != NODE_MAP) return guess_form(r, c, form);
     for (size_t i = 0; !told && i < sizeof signs / sizeof *signs; i++) {
         const struct node *sign = document_find(c, signs[i].sign);
@@ -314,6 +352,8 @@ bool netcheck_form_of(struct netcheck_reader *r, const struct node *c, enum netc
 bool netcheck_keys_complete(struct netcheck_reader *r, const struct node *c,
                             enum netcheck_form form, bool referred)
 {
+    /* Asked when the values have been checked: a wrong value is the worse mistake and is told
+     * first. */
     const struct key *table = keys_of(c, form);
     return complete(r, c, table, referred) && (!referred || alike(r, c, table));
 }
@@ -342,7 +382,9 @@ bool netcheck_keys_of_message(struct netcheck_reader *r, const struct node *mess
 bool netcheck_integer(struct netcheck_reader *r, const struct node *c, const char *key, int lo,
                       int hi, int otherwise, int *i)
 {
+    /* JSON null is a value that is not there, as in the reference's files. */
     const struct node *x = document_find(c, key);
+    /* set even where the value is refused */
     *i = otherwise;
     if (!x || x->kind == NODE_NULL) return true;
     return document_integer(c, key, r->path, lo, hi, i, r->e);

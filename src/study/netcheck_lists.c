@@ -8,6 +8,8 @@
 
 /* ---- what the reference says of itself ---- */
 
+/* What a step says of itself, recomputed: the makespan of an empty network, hops and mean
+ * arrival. A case whose own numbers disagree is told as a flaw; it cannot judge a level. */
 static void check_step(struct netcheck_question *k, const struct node *c, int distance)
 {
     double sum = 0, hops = 0, most = 0, empty = 0;
@@ -23,17 +25,21 @@ static void check_step(struct netcheck_question *k, const struct node *c, int di
     netcheck_flaw_of_key(k->row, c, "max_hops", most);
     netcheck_flaw_of_key(k->row, c, "mean_hops", hops / fmax(n, 1));
     if (k->arrival) netcheck_flaw_of_key(k->row, c, "mean_completion", sum / fmax(n, 1));
+    /* log2_distance is compared for powers of two only: for another distance the file may have
+     * rounded. */
     if (distance > 0 && (distance & (distance - 1)) == 0)
         netcheck_flaw_of_key(k->row, c, "log2_distance", log2(distance));
 }
 
-/* counts of a list: messages, packets, flits, and flits times resources */
+/* The counts of a list: messages, packets, flits, and flits times what they pass (links and both
+ * ends of the route). */
 static void check_list(struct netcheck_question *k, const struct node *c)
 {
     double packets = 0, flits = 0, passed = 0, longest = 0;
     int64_t most = k->machine.network.packet_bytes / NETCHECK_FLIT_BYTES;
     for (int m = 0; m < k->q.nmessage; m++) {
         int64_t s = k->q.bytes[m] / NETCHECK_FLIT_BYTES;
+        /* ceil(s / most) packets of one message; most = 0: a message is one packet. */
         packets += most > 0 ? (double)((s + most - 1) / most) : 1;
         flits += (double)s;
         passed += (double)s * (topology_distance(k->topology, k->q.src[m], k->q.dst[m]) + 2);
@@ -45,6 +51,7 @@ static void check_list(struct netcheck_question *k, const struct node *c)
     netcheck_flaw_of_key(k->row, c, "flits", flits);
     netcheck_flaw_of_key(k->row, c, "flit_hops", passed);
     netcheck_flaw_of_key(k->row, c, "S", longest);
+    /* smax is an upper bound, not the largest size itself. */
     if (at_most && at_most->kind == NODE_NUMBER && at_most->number < longest)
         netcheck_flaw(k->row, "smax", at_most->number, longest);
 }
@@ -59,7 +66,8 @@ static double *numbers(const struct netcheck_reader *r, const struct node *map, 
     return document_numbers(map, key, r->path, x, n, r->e) ? x : NULL;
 }
 
-/* the arrivals and the makespan of a case, and whether they agree */
+/* Arrivals and makespan of a case. Returns false with r->e set when one is missing; that they
+ * disagree is a flaw of the row. */
 static bool arrivals_read(struct netcheck_reader *r, const struct node *c,
                           struct netcheck_question *k)
 {
@@ -73,6 +81,7 @@ static bool arrivals_read(struct netcheck_reader *r, const struct node *c,
     return true;
 }
 
+/* For qsort. */
 static int by_number(const void *a, const void *b)
 {
     double p = *(const double *)a, q = *(const double *)b;
@@ -96,6 +105,8 @@ static void check_variants(struct netcheck_row *row, const struct node *band, co
     }
 }
 
+/* A band: the shortest and the longest makespan of the variants, widened by 15 %. A level's
+ * answer is right anywhere in it. */
 static bool band_read(struct netcheck_reader *r, const struct node *band,
                       struct netcheck_question *k)
 {
@@ -112,6 +123,7 @@ static bool band_read(struct netcheck_reader *r, const struct node *band,
         k->row->high = fmax(k->row->high, 1.15 * x[i]);
     }
     check_variants(k->row, band, x, n, r->arena);
+    /* No router is faster than an empty network. */
     double empty = 0;
     for (int m = 0; m < k->q.nmessage; m++) empty = fmax(empty, netcheck_empty(k, m));
     if (k->row->low < 0.85 * empty - 1e-3)
@@ -119,6 +131,8 @@ static bool band_read(struct netcheck_reader *r, const struct node *band,
     return true;
 }
 
+/* One row. Reading the values comes before asking for missing keys: a wrong value is the worse
+ * mistake and is told first. */
 bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool referred)
 {
     struct netcheck_question k = netcheck_begin(r, c, NETCHECK_STEP);
@@ -133,10 +147,12 @@ bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool re
         return false;
     snprintf(k.row->name, sizeof k.row->name, "%.24s %.16s(%d) S=%d vc=%d B=%d tie=%d", s.topology,
              pattern, distance, flits, s.channels, s.buffer, s.tie < 0 ? 0 : s.tie);
+    /* A file without answers is played. */
     k.row->played = !referred;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
     err_clear(&why);
+    /* The pattern's error has no place in the file yet. */
     if (!netcheck_step(pattern, distance, k.topology->nnode, flits, r->arena, &k.q, &why))
         return err_set_at(r->e, ERR_DATA, r->path, c->line, "%s", why.text);
     if (!netcheck_keys_complete(r, c, NETCHECK_STEP, referred)) return false;
@@ -148,7 +164,8 @@ bool netcheck_step_rows(struct netcheck_reader *r, const struct node *c, bool re
 
 /* ---- lists ---- */
 
-/* what is played keeps its messages for the table of times */
+/* What is played keeps its messages beside the row, for the table of times: they must outlive
+ * the case's arena. */
 static void keep_messages(struct netcheck_reader *r, struct netcheck_question *k)
 {
     int n = k->q.nmessage;
@@ -163,7 +180,9 @@ static void keep_messages(struct netcheck_reader *r, struct netcheck_question *k
     }
 }
 
-/* Nodes that there are, and times whose sum stays far from the end of simulated time. */
+/* Whether all nodes exist, and whether the sum of all times stays far from the end of simulated
+ * time (2^63 ps = 9.2e18 ps). The sum bounds every arrival, as if all messages waited for each
+ * other; 16 cycles a flit are more than any route of these networks takes. */
 static bool list_is_sound(struct netcheck_reader *r, const struct node *at,
                           const struct netcheck_question *k)
 {
@@ -185,7 +204,8 @@ static bool list_is_sound(struct netcheck_reader *r, const struct node *at,
                                     sum / NETCHECK_CYCLE_PS);
 }
 
-/* the list of n whole numbers `key` in 0 .. most; where it is missing: all 0 */
+/* The list of n whole numbers `key` in 0 .. most into *x; all 0 where it is missing. Numbers in
+ * JSON are real: whole ones are checked, not assumed. */
 static bool column_read(struct netcheck_reader *r, const struct node *trace, const char *key, int n,
                         double most, double **x)
 {
@@ -214,8 +234,11 @@ static bool dependency_read(struct netcheck_reader *r, const struct node *x, int
                       x->kind == NODE_NUMBER ? x->number : NAN, n - 1);
 }
 
+/* Dependencies as in compressed rows: those of message m are dep[dep_first[m] .. dep_first[m +
+ * 1] - 1]. Two passes: count, then fill. */
 static bool deps_read(struct netcheck_reader *r, const struct node *deps, struct traffic *q)
 {
+    /* Without the key all rows are empty. */
     int ndep = 0, m = 0;
     q->dep_first = TAKE(r->arena, q->nmessage + 1, int);
     if (!deps) return true;
@@ -247,7 +270,8 @@ static struct traffic traffic_take(int n, struct arena *a)
                             .delay = TAKE(a, n + 1, sim_ps)};
 }
 
-/* lists of one number per message */
+/* A list as columns, one number per message and key. `src` is needed (trace_keys) and sets the
+ * number of messages. */
 static bool trace_read(struct netcheck_reader *r, const struct node *trace, struct traffic *q)
 {
     static const char *const key[] = {"src", "dst", "flits", "time", "delay"};
@@ -268,6 +292,7 @@ static bool trace_read(struct netcheck_reader *r, const struct node *trace, stru
         q->bytes[m] = (int64_t)column[2][m] * NETCHECK_FLIT_BYTES;
         q->time[m] = (sim_ps)column[3][m] * NETCHECK_CYCLE_PS;
         q->delay[m] = (sim_ps)column[4][m] * NETCHECK_CYCLE_PS;
+        /* The lower bound of column_read is 0; of flits it is 1. */
         if (column[2][m] < 1)
             return err_set_at(r->e, ERR_DATA, r->path, trace->line,
                               "message %d has 0 flits; expected at least 1", m);
@@ -275,6 +300,8 @@ static bool trace_read(struct netcheck_reader *r, const struct node *trace, stru
     return deps_read(r, document_find(trace, "deps"), q);
 }
 
+/* One row of a list with dependencies. "S" is the size of a collective's message, "smax" the
+ * largest one of a list with several sizes. */
 bool netcheck_list_rows(struct netcheck_reader *r, const struct node *c, bool referred)
 {
     struct netcheck_question k = netcheck_begin(r, c, NETCHECK_LIST);
@@ -305,6 +332,7 @@ bool netcheck_list_rows(struct netcheck_reader *r, const struct node *c, bool re
 
 /* ---- by hand ---- */
 
+/* The messages of a case by hand: each is an object, as a person writes them. */
 static bool hand_messages(struct netcheck_reader *r, const struct node *list, bool referred,
                           struct traffic *q)
 {
@@ -333,6 +361,7 @@ struct variant {
     const struct node *list; /* arrivals; NULL: a deadlock, or nothing when played */
 };
 
+/* One row: the same messages with one size of buffers. */
 static bool hand_variant(struct netcheck_reader *r, const struct node *c, const struct variant *v)
 {
     struct netcheck_question k = netcheck_begin(r, c, NETCHECK_HAND);
@@ -345,6 +374,7 @@ static bool hand_variant(struct netcheck_reader *r, const struct node *c, const 
     s.buffer = v->buffer;
     snprintf(k.row->name, sizeof k.row->name, "%.64s %s B=%d", *name ? name : s.topology, v->kind,
              v->buffer);
+    /* Played cases compare with nothing; others without a list expect a deadlock. */
     k.row->played = strcmp(v->kind, "played") == 0;
     if (!netcheck_wanted(r, &k)) return true;
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
@@ -356,6 +386,7 @@ static bool hand_variant(struct netcheck_reader *r, const struct node *c, const 
     if (v->list) {
         double *x = TAKE(r->arena, k.q.nmessage + 1, double);
         if (!document_flat(v->list, v->kind, r->path, x, k.q.nmessage, r->e)) return false;
+        /* The makespan of a list of arrivals is its largest. */
         for (int m = 0; m < k.q.nmessage; m++) k.row->low = k.row->high = fmax(k.row->high, x[m]);
         k.arrival = x;
         k.row->compared = true;
@@ -366,7 +397,7 @@ static bool hand_variant(struct netcheck_reader *r, const struct node *c, const 
     return true;
 }
 
-/* the number of flits that a key of `booksim`, `expected_wormhole` or `agree` stands for */
+/* The buffer size [flits] that a key of `booksim`, `expected_wormhole` or `agree` stands for. */
 static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buffer)
 {
     char *end;
@@ -378,7 +409,8 @@ static bool buffer_of(struct netcheck_reader *r, const struct node *x, int *buff
                       x->key, 1 << 20);
 }
 
-/* `agree` says for which buffers the times by hand are the reference's. */
+/* `agree` says for which buffers the times by hand equal those of the reference: recomputed
+ * here, as what a person wrote may be wrong. A contradiction is a flaw of `row`. */
 static bool check_agreement(struct netcheck_reader *r, const struct node *c,
                             struct netcheck_row *row)
 {
@@ -391,12 +423,14 @@ static bool check_agreement(struct netcheck_reader *r, const struct node *c,
         const struct node *reference = document_find(booksim, x->key);
         double *p = TAKE(r->arena, n + 1, double), *q = TAKE(r->arena, n + 1, double);
         bool said;
+        /* Without a derivation for wormhole routers the times for cut-through are meant. */
         if (!hand || hand->count == 0) hand = document_find(c, "expected_vct");
         if (!netcheck_truth(r, agree, x->key, &said)) return false;
         if (!hand || !reference || hand->count != n || reference->count != n) continue;
         if (!document_flat(hand, "expected", r->path, p, n, r->e) ||
             !document_flat(reference, x->key, r->path, q, n, r->e))
             return false;
+        /* Equal as sets where the order is free. */
         if (any_order) qsort(p, (size_t)n, sizeof *p, by_number);
         if (any_order) qsort(q, (size_t)n, sizeof *q, by_number);
         if (said != (memcmp(p, q, (size_t)n * sizeof *p) == 0) && !row->flaw[0])
@@ -407,8 +441,8 @@ static bool check_agreement(struct netcheck_reader *r, const struct node *c,
     return true;
 }
 
-/* the reference's answer for each buffer; where a time by hand was derived for wormhole routers,
- * that one */
+/* The reference's answer for each buffer size; where a time was derived by hand for wormhole
+ * routers, that one, since it is the better founded. */
 static bool wormhole_variants(struct netcheck_reader *r, const struct node *c,
                               const struct node *booksim)
 {
@@ -426,6 +460,9 @@ static bool wormhole_variants(struct netcheck_reader *r, const struct node *c,
     return true;
 }
 
+/* A case by hand becomes several rows: cut-through with buffers that hold any packet, and one
+ * per buffer size of the reference. `expected: deadlock` and a case without answers make one
+ * row. */
 bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool referred)
 {
     const struct node *cut_through = document_find(c, "expected_vct"),
@@ -443,6 +480,7 @@ bool netcheck_hand_rows(struct netcheck_reader *r, const struct node *c, bool re
                           expected);
     if (stuck) return hand_variant(r, c, &(struct variant){"wormhole", buffer, NULL});
     if (!cut_through) return document_need(c, "expected_vct", r->path, r->e) != NULL;
+    /* 64 flits: more than the messages of any case by hand have. */
     if (!hand_variant(r, c, &(struct variant){"cut-through", 64, cut_through})) return false;
     if (!booksim) return document_need(c, "booksim", r->path, r->e) != NULL;
     if (booksim->kind != NODE_MAP)

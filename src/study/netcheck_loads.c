@@ -7,6 +7,7 @@
 #include "study/netcheck_case.h"
 #include "study/netcheck_rows.h"
 
+/* Any seed: the reference's own random numbers are not known, so only means can agree. */
 enum { LOAD_SEED = 1 };
 
 /* ---- latency against load ---- */
@@ -18,6 +19,7 @@ struct point {
     bool unstable;
 };
 
+/* One point. Of an unstable one only its load is read: it has no other values. */
 static bool point_read(struct netcheck_reader *r, const struct node *point, struct point *p)
 {
     *p = (struct point){.cycles = 8000};
@@ -33,10 +35,11 @@ static bool point_read(struct netcheck_reader *r, const struct node *point, stru
            document_integer(point, "cycles", r->path, 1, NETCHECK_MOST_CYCLES, &p->cycles, r->e);
 }
 
-/* What the reference says beside the latency: below it without the source's queue, above that of an
- * empty network; accepted not more than offered and not half of it, routers as many as on the
- * routes, within six standard deviations.
- */
+/* What the reference says beside the latency must be possible: the latency at least that of an
+ * empty network, and without the source's queue at most the whole; accepted at most what was
+ * offered, and at least half of it; as many routers as there are on the routes. Means of n
+ * messages scatter: six standard deviations, 6 / sqrt(n), are permitted, and some per cent for
+ * the other random numbers. */
 static void check_point(struct netcheck_question *k, const struct node *point,
                         const struct point *p, double empty)
 {
@@ -44,8 +47,10 @@ static void check_point(struct netcheck_question *k, const struct node *point,
                       *hops = netcheck_given(k->row, point, "hops");
     const struct node *accepted = netcheck_given(k->row, point, "accepted");
     double routers = 0, scatter = 6 / sqrt(fmax(k->q.nmessage, 1));
+    /* Mean number of routers on the routes of the list: one more than links. */
     for (int m = 0; m < k->q.nmessage; m++)
         routers += (topology_distance(k->topology, k->q.src[m], k->q.dst[m]) + 1.0) / k->q.nmessage;
+    /* A pattern of chance may have shorter routes than the reference's: some per cent. */
     if (p->latency < empty * (0.98 - scatter)) netcheck_flaw(k->row, "plat", p->latency, empty);
     if (nlat) {
         if (nlat->number > p->latency + 1e-3)
@@ -55,14 +60,16 @@ static void check_point(struct netcheck_question *k, const struct node *point,
     }
     if (hops && fabs(hops->number / routers - 1) > 0.02 + scatter)
         netcheck_flaw(k->row, "hops", hops->number, routers);
+    /* throughput over load: 1 below saturation */
     double rate = accepted ? accepted->number / p->offered : 1;
     if (rate > 1.1 + scatter || rate < 0.5 - scatter)
         netcheck_flaw(k->row, "accepted", accepted->number, p->offered);
+    /* Above saturation the latency depends on how long it was run: such a point is not counted. */
     else k->row->counted = rate > 0.93 - scatter;
 }
 
-/* the messages of a load; false with an error, or with none where the pattern is not one of ours:
- * told by the row */
+/* The messages of a load. Returns false with r->e set, or without when the pattern is one that
+ * this program does not have: then the row says so (netcheck_told). */
 static bool messages_make(struct netcheck_reader *r, const struct node *c, const char *pattern,
                           int flits, const struct point *p, struct netcheck_question *k)
 {
@@ -76,6 +83,8 @@ static bool messages_make(struct netcheck_reader *r, const struct node *c, const
     return false;
 }
 
+/* One point of a series is one row. Mean latencies are compared, of messages after the first
+ * quarter. */
 static bool ask_point(struct netcheck_reader *r, const struct node *c, const struct node *point)
 {
     struct netcheck_question k = netcheck_begin(r, point, NETCHECK_LOAD);
@@ -100,9 +109,11 @@ static bool ask_point(struct netcheck_reader *r, const struct node *c, const str
     }
     if (!messages_make(r, c, pattern, flits, &p, &k)) return netcheck_told(r);
     if (!netcheck_keys_complete(r, c, NETCHECK_LOAD, true)) return false;
+    /* The same warm-up as in saturated(). */
     k.warm = (sim_ps)(p.cycles / 4) * NETCHECK_CYCLE_PS;
     k.channel = netcheck_channel_cycles(k.topology, &k.q, k.warm, r->arena);
     double empty = netcheck_empty_latency(&k);
+    /* Crowding chooses the accuracy that is stated for the point: queues are harder to predict. */
     k.row->crowding = empty > 0 ? p.latency / empty : 1;
     check_point(&k, point, &p, empty);
     if (k.row->counted) netcheck_ask(&k);
@@ -116,6 +127,7 @@ bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c)
     if (points->kind != NODE_LIST || points->count == 0)
         return err_set_at(r->e, ERR_DATA, r->path, points->line,
                           "'points' must be a list of loads; it is empty");
+    /* Each point has its own messages: the arena is released after it. */
     for (const struct node *p = points->child; p; p = p->next) {
         struct arena_mark mark = arena_mark(r->arena);
         if (!ask_point(r, c, p)) return false;
@@ -126,14 +138,15 @@ bool netcheck_load_rows(struct netcheck_reader *r, const struct node *c)
 
 /* ---- saturation ---- */
 
-/* [[load, latency, accepted, held], ...]: the bracket is the highest load that held and the lowest
- * that did not */
+/* Probes are [[load, latency, accepted, held], ...]: the bracket must be the highest load that
+ * held and the lowest that did not. */
 static bool probes_read(struct netcheck_reader *r, const struct node *c, struct netcheck_row *row)
 {
     const struct node *probes = document_find(c, "probes");
     double held = 0, failed = INFINITY;
     for (const struct node *p = probes ? probes->child : NULL; p; p = p->next) {
         const struct node *load = p->child, *last = load;
+        /* The last element of four, in a list that knows its first. */
         while (last && last->next) last = last->next;
         bool yes = last && last->kind == NODE_TEXT && strcmp(last->text, "true") == 0;
         if (p->kind != NODE_LIST || p->count != 4 || load->kind != NODE_NUMBER)
@@ -147,11 +160,13 @@ static bool probes_read(struct netcheck_reader *r, const struct node *c, struct 
     return true;
 }
 
-/* the mean latency of an empty network under the pattern, and the bound that the routes set to the
- * load */
+/* The bounds of a series: the mean latency of an empty network under the pattern, and the load
+ * that the most loaded link can carry. */
 static bool check_bounds(struct netcheck_reader *r, const struct node *c,
                          struct netcheck_question *k, const char *pattern, int flits)
 {
+    /* A load of 2 % meets an almost empty network; 20,000 cycles give enough messages for its
+     * mean. */
     const struct point low = {.offered = 0.02, .cycles = 20000};
     const struct node *zero = netcheck_given(k->row, c, "zero_load_latency");
     const struct node *bound = netcheck_given(k->row, c, "channel_bound");
@@ -168,6 +183,8 @@ static bool check_bounds(struct netcheck_reader *r, const struct node *c,
     return true;
 }
 
+/* The load at saturation, which is between low and high. A level's answer inside the bracket has
+ * no error. */
 bool netcheck_saturation_rows(struct netcheck_reader *r, const struct node *c)
 {
     struct netcheck_question k = netcheck_begin(r, c, NETCHECK_SATURATION);
@@ -183,6 +200,7 @@ bool netcheck_saturation_rows(struct netcheck_reader *r, const struct node *c)
     snprintf(row->name, sizeof row->name, "%.24s %.24s S=%d vc=%d B=%d saturation", s.topology,
              pattern, flits, s.channels, s.buffer);
     if (!netcheck_wanted(r, &k)) return true;
+    /* A bracket that is none cannot be searched from. */
     if (!(row->low > 0) || row->high <= row->low || row->high > 1)
         return err_set_at(
             r->e, ERR_DATA, r->path, c->line,
@@ -191,6 +209,7 @@ bool netcheck_saturation_rows(struct netcheck_reader *r, const struct node *c)
     if (!netcheck_network(r, c, &s, &k)) return netcheck_told(r);
     if (!netcheck_keys_complete(r, c, NETCHECK_SATURATION, true) || !probes_read(r, c, row))
         return false;
+    /* The reference against itself first: a case with a flaw judges no level. */
     if (!check_bounds(r, c, &k, pattern, flits)) return netcheck_told(r);
     netcheck_ask_saturation(&k, pattern, flits);
     return true;

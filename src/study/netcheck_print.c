@@ -9,6 +9,7 @@
 
 const char *netcheck_level_name(enum network_level level) { return network_level_name(level); }
 
+/* One pass over the rows. Errors are averaged over cases, messages over all cases together. */
 struct netcheck_total netcheck_total(const struct netcheck *n, const char *group,
                                      enum network_level level)
 {
@@ -19,11 +20,14 @@ struct netcheck_total netcheck_total(const struct netcheck *n, const char *group
         const struct netcheck_answer *a = &row->answer[level];
         if (!netcheck_in_group(row, group) || row->played) continue;
         t.skipped += !a->ran;
+        /* What a level cannot run counts as skipped, not as wrong. */
         if (!a->ran) continue;
         t.cases++;
+        /* Exact: within a thousandth of a cycle. */
         t.exact_cases += fabs(a->error) * row->high < 1e-3;
         t.mean += fabs(a->error);
         if (fabs(a->error) > fabs(t.worst)) t.worst = a->error;
+        /* After a deadlock some messages have no arrival. */
         if (!row->compared || a->deadlock) continue;
         compared++;
         t.messages += row->nmessage;
@@ -35,6 +39,7 @@ struct netcheck_total netcheck_total(const struct netcheck *n, const char *group
     return t;
 }
 
+/* The head of both tables of cases: two columns, then one for each level that was asked for. */
 static void print_heads(const struct netcheck *n, const char *first, const char *second, FILE *out)
 {
     fprintf(out, "%-66s %9s", first, second);
@@ -43,7 +48,7 @@ static void print_heads(const struct netcheck *n, const char *first, const char 
     fprintf(out, "\n");
 }
 
-/* one row: errors in percent, a ! behind those that break the stated accuracy */
+/* One line per case: errors in per cent, with a ! where the stated accuracy is broken. */
 static void print_cases(const struct netcheck *n, double within, FILE *out)
 {
     print_heads(n, "case (errors in % of the reference, ! not as stated)", "reference", out);
@@ -63,6 +68,7 @@ static void print_cases(const struct netcheck *n, double within, FILE *out)
     }
 }
 
+/* A message that never arrived has an infinite time. */
 static void print_time(const struct netcheck_answer *a, double time, FILE *out)
 {
     if (!a->ran) fprintf(out, " %10s", "-");
@@ -70,7 +76,7 @@ static void print_time(const struct netcheck_answer *a, double time, FILE *out)
     else fprintf(out, " %10.10g", time);
 }
 
-/* cases without reference answers: makespans, and the arrival of each message */
+/* Cases without reference answers: makespans and, unless brief, the arrival of each message. */
 static void print_played(const struct netcheck *n, bool brief, FILE *out)
 {
     char name[80];
@@ -78,10 +84,12 @@ static void print_played(const struct netcheck *n, bool brief, FILE *out)
     for (int i = 0; i < n->nrow; i++) {
         const struct netcheck_row *row = &n->row[i];
         if (!row->played) continue;
+        /* the makespan at each level */
         fprintf(out, "%-66s %9d", row->name, row->nmessage);
         for (int l = 0; l < LEVELS; l++)
             if (n->level[l]) print_time(&row->answer[l], row->answer[l].found, out);
         fprintf(out, "\n");
+        /* and when each message arrives */
         for (int m = 0; !brief && row->src && m < row->nmessage; m++) {
             snprintf(name, sizeof name, "  message %d: %d -> %d, %d flits", m, row->src[m],
                      row->dst[m], row->flits[m]);
@@ -95,15 +103,19 @@ static void print_played(const struct netcheck *n, bool brief, FILE *out)
     }
 }
 
+/* The lines of one group, one per level that answered any of its cases: statistics of the
+ * errors, then what is stated of them. group NULL: all cases, for which nothing is stated. */
 static void print_total(const struct netcheck *n, const char *group, double within, FILE *out)
 {
     for (int l = 0; l < LEVELS; l++) {
         struct netcheck_total t = netcheck_total(n, group, (enum network_level)l);
+        /* both are made of the rows each time: a file has hundreds, not millions */
         struct netcheck_verdict v = netcheck_verdict(n, group, (enum network_level)l, within);
         if (!n->level[l] || t.cases == 0) continue;
         fprintf(out, "%-30s %-7s %6d %7d %7d %9.3f %+9.2f %9.3f ", group ? group : "all",
                 network_level_name((enum network_level)l), t.cases, t.skipped, t.exact_cases,
                 100 * t.mean, 100 * t.worst, 100 * t.message_error);
+        /* the share of messages with the reference's arrival */
         if (t.messages > 0) fprintf(out, "%9.3f ", 100.0 * (double)t.exact / (double)t.messages);
         else fprintf(out, "%9s ", "-");
         if (!group) fprintf(out, "\n");
@@ -113,7 +125,8 @@ static void print_total(const struct netcheck *n, const char *group, double with
     }
 }
 
-/* why cases could not be answered, each reason once per level */
+/* Why cases could not be answered, level by level; of equal reasons in a row only the first is
+ * printed. */
 static void print_reasons(const struct netcheck *n, FILE *out)
 {
     for (int l = 0; l < LEVELS; l++) {
@@ -128,8 +141,9 @@ static void print_reasons(const struct netcheck *n, FILE *out)
     }
 }
 
-/* the first reason of each verdict that is FAIL, contradictions of the file, and what was compared
- * with nothing */
+/* What a reader must know of a file that fails: the first reason of each verdict, contradictions
+ * of the file in itself, how many cases no level could run, and keys that nothing was compared
+ * with. */
 static void print_findings(const struct netcheck *n, double within, FILE *out)
 {
     int silent = 0;
@@ -148,6 +162,7 @@ static void print_findings(const struct netcheck *n, double within, FILE *out)
                         network_level_name((enum network_level)l), v.failed, v.cases, v.why);
         }
     }
+    /* A file whose cases no level can run would otherwise look like one that passed. */
     if (silent > 0)
         fprintf(out, "not judged: %d of %d cases, which no level can run\n", silent, n->nrow);
     for (int i = 0; i < n->nignored; i++)
@@ -155,6 +170,7 @@ static void print_findings(const struct netcheck *n, double within, FILE *out)
     if (n->nignored > 0) fprintf(out, "\n");
 }
 
+/* Tables only of what is there: a file has cases with answers or cases to play, never both. */
 void netcheck_print(const struct netcheck *n, double within, bool brief, FILE *out)
 {
     int played = 0;
@@ -189,8 +205,10 @@ struct shown {
     struct netcheck_verdict verdict;
 };
 
+/* Names for the conditions of the columns below: `known` gets a row of any type. */
 static const struct shown *shown(const void *row) { return row; }
 
+/* An answer that exists; the conditions below build on each other. */
 static bool ran(const void *x) { return shown(x)->answer->ran; }
 
 static bool was_played(const void *x) { return shown(x)->answer->arrival != NULL; }
@@ -208,6 +226,7 @@ static bool is_compared(const void *x)
 
 static bool says_why(const void *x) { return shown(x)->answer->why[0]; }
 
+/* The arrivals of a played list; null for a message that never arrived. */
 static void write_arrivals(const struct column *c, const void *x, struct json *j)
 {
     const double *arrival = shown(x)->answer->arrival;
@@ -219,12 +238,14 @@ static void write_arrivals(const struct column *c, const void *x, struct json *j
     json_end(j);
 }
 
+/* A constant text as the value of a column. */
 static void set_word(struct column_value *v, const char *s)
 {
     v->kind = VALUE_TEXT;
     v->text = s;
 }
 
+/* pass or FAIL of one case at one level. */
 static void read_row_verdict(const struct column *c, const void *x, struct column_value *v)
 {
     (void)c;
@@ -238,6 +259,8 @@ static void read_row_verdict(const struct column *c, const void *x, struct colum
 #define ANSWER(member)                                                                             \
     .part = PART(struct shown, answer), .offset = offsetof(struct netcheck_answer, member)
 
+/* What one level says of one case. Keys are there only when they mean something: a level that
+ * cannot run the case has `why` and no error. */
 static const struct column answer_column[] = {
     {"arrival", COLUMN_STRING, .json = write_arrivals, .known = was_played, .doc = "of each message [cycles]"},
     {"deadlock", COLUMN_BOOL, ANSWER(deadlock), WHEN(ran), .doc = "the network was stuck"},
@@ -253,6 +276,7 @@ static const struct column answer_column[] = {
 };
 static const struct column_table answer_columns = COLUMNS(answer_column);
 
+/* An object of levels: its keys in the order of the alphabet, as in all JSON of this program. */
 static void write_levels(const struct column *c, const void *x, struct json *j)
 {
     enum network_level by_name[LEVELS];
@@ -270,6 +294,7 @@ static void write_levels(const struct column *c, const void *x, struct json *j)
     json_end(j);
 }
 
+/* A played case has no reference: it is never counted. */
 static void read_counted(const struct column *c, const void *x, struct column_value *v)
 {
     (void)c;
@@ -282,6 +307,7 @@ static bool has_flaw(const void *x) { return shown(x)->row->flaw[0]; }
 #define CASE(member)                                                                               \
     .part = PART(struct shown, row), .offset = offsetof(struct netcheck_row, member)
 
+/* One case: its name and reference, and under `levels` an object of answers. */
 static const struct column case_column[] = {
     {"case", COLUMN_CHARS, CASE(name), .doc = "its name"},
     {"counted", COLUMN_BOOL, .value = read_counted, .doc = "whether there is something to compare with"},
@@ -295,6 +321,7 @@ static const struct column case_column[] = {
 };
 static const struct column_table case_columns = COLUMNS(case_column);
 
+/* The totals of all cases together have no limits: groups differ in what is stated of them. */
 static bool is_group(const void *x) { return shown(x)->group != NULL; }
 
 static bool group_judged(const void *x) { return is_group(x) && shown(x)->verdict.cases > 0; }
@@ -322,6 +349,7 @@ static void read_group_verdict(const struct column *c, const void *x, struct col
 #define TOTAL(member) .offset = offsetof(struct shown, total.member)
 #define VERDICT(member) .offset = offsetof(struct shown, verdict.member)
 
+/* The statistics of a group at a level, and its verdict where there is one. */
 static const struct column total_column[] = {
     {"cases", COLUMN_INT, TOTAL(cases), .doc = "answered"},
     {"exact_cases", COLUMN_INT, TOTAL(exact_cases), .doc = "with the reference's time"},
@@ -342,6 +370,7 @@ static const struct column total_column[] = {
 };
 static const struct column_table total_columns = COLUMNS(total_column);
 
+/* The statistics of one group at each level asked for; group NULL: of all cases. */
 static void json_totals(const struct netcheck *n, const char *group, double within, struct json *j)
 {
     for (int l = 0; l < LEVELS; l++) {
@@ -354,6 +383,7 @@ static void json_totals(const struct netcheck *n, const char *group, double with
     }
 }
 
+/* One document: cases, what was compared with nothing, totals, verdict. Keys by alphabet. */
 void netcheck_json_object(const struct netcheck *n, double within, struct json *j)
 {
     json_object(j);
@@ -363,6 +393,7 @@ void netcheck_json_object(const struct netcheck *n, double within, struct json *
         columns_json(&case_columns, &(struct shown){.all = n, .row = &n->row[i], .within = within},
                      j);
     json_end(j);
+    /* keys of the file that this program does not know */
     json_key(j, "compared_with_nothing");
     json_array(j);
     for (int i = 0; i < n->nignored; i++) json_text(j, n->ignored[i]);
@@ -375,18 +406,21 @@ void netcheck_json_object(const struct netcheck *n, double within, struct json *
             json_totals(n, n->row[i].group, within, j);
     json_totals(n, NULL, within, j);
     json_end(j);
+    /* A file without anything to compare neither passes nor fails. */
     bool any = false;
     for (int i = 0; i < n->nrow; i++) any = any || (n->row[i].counted && !n->row[i].played);
     json_key_text(j, "verdict", !any ? "not judged" : netcheck_pass(n, within) ? "pass" : "FAIL");
     json_end(j);
 }
 
+/* A limit in per cent with its sign; 0 stands for equality. */
 static void print_percent(double x, FILE *out)
 {
     if (x == 0) fprintf(out, " 0 |");
     else fprintf(out, " %+.3g |", 100 * x);
 }
 
+/* The same table as in docs/network.md, written from the figures that judge. */
 void netcheck_print_stated(FILE *out)
 {
     fprintf(out, "| level | cases | mean of absolute errors, %% | a case from, %% | to, %% | a "
@@ -396,6 +430,7 @@ void netcheck_print_stated(FILE *out)
         fprintf(out, "| %s | %s | %.3g |", s->levels, s->cases, 100 * s->mean);
         print_percent(s->low, out);
         print_percent(s->high, out);
+        /* -1: the messages of such cases have no reference. */
         if (s->message < 0) fprintf(out, " - |\n");
         else fprintf(out, " %.3g |\n", 100 * s->message);
     }
@@ -408,6 +443,7 @@ static bool has_message(const void *row)
 
 #define STATED(member) .offset = offsetof(struct netcheck_accuracy, member)
 
+/* An entry of the table of stated accuracies: fractions of the reference, not per cent. */
 static const struct column stated_column[] = {
     {"cases", COLUMN_STRING, STATED(cases), .doc = "the class of cases in words"},
     {"levels", COLUMN_STRING, STATED(levels), .doc = "for which it holds"},
@@ -418,6 +454,7 @@ static const struct column stated_column[] = {
 };
 static const struct column_table stated_columns = COLUMNS(stated_column);
 
+/* The same table for programs: a list of objects. */
 void netcheck_json_stated(FILE *out)
 {
     struct json j = json_make(out);

@@ -13,6 +13,8 @@ enum { MOST_CHANNELS = 256, MOST_BUFFER = 1 << 20 };
 
 /* ---- rows ---- */
 
+/* A row of the table. It doubles when full; rows move then, so a pointer to one holds until the
+ * next is added. */
 static struct netcheck_row *row_add(struct netcheck_reader *r, const struct node *c,
                                     enum netcheck_form form)
 {
@@ -29,6 +31,8 @@ static struct netcheck_row *row_add(struct netcheck_reader *r, const struct node
     return row;
 }
 
+/* The question is filled bit by bit while the case is read; the row exists from the start, so
+ * that a case that cannot be answered has one, too. */
 struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct node *c,
                                         enum netcheck_form form)
 {
@@ -39,12 +43,15 @@ struct netcheck_question netcheck_begin(struct netcheck_reader *r, const struct 
 bool netcheck_wanted(const struct netcheck_reader *r, const struct netcheck_question *k)
 {
     if (!r->filter || strstr(k->row->name, r->filter)) return true;
+    /* The row is the last one: taking it back is forgetting it. */
     r->n->nrow--;
     return false;
 }
 
 void netcheck_flaw(struct netcheck_row *row, const char *what, double found, double expected)
 {
+    /* A thousandth is equality: files have rounded numbers. Only the first contradiction is
+     * told. */
     if (row->flaw[0] || fabs(found - expected) <= 1e-3 * fmax(1, fabs(expected))) return;
     snprintf(row->flaw, sizeof row->flaw, "%s is %.10g; the case makes it %.10g", what, found,
              expected);
@@ -53,12 +60,14 @@ void netcheck_flaw(struct netcheck_row *row, const char *what, double found, dou
 const struct node *netcheck_given(struct netcheck_row *row, const struct node *c, const char *key)
 {
     const struct node *x = document_find(c, key);
+    /* A number that is null was not measured. */
     if (!x || x->kind == NODE_NUMBER || x->kind == NODE_NULL)
         return x && x->kind == NODE_NUMBER ? x : NULL;
     if (!row->flaw[0]) snprintf(row->flaw, sizeof row->flaw, "%s is no number", key);
     return NULL;
 }
 
+/* A key that is missing contradicts nothing. */
 void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const char *key,
                           double expected)
 {
@@ -68,6 +77,8 @@ void netcheck_flaw_of_key(struct netcheck_row *row, const struct node *c, const 
 
 /* ---- the network ---- */
 
+/* The settings of a case, with this program's defaults where it does not say them: as many
+ * channels as the routes need, buffers of 16 flits. */
 bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c,
                            struct netcheck_setting *s)
 {
@@ -78,7 +89,8 @@ bool netcheck_setting_read(struct netcheck_reader *r, const struct node *c,
            netcheck_integer(r, c, "max_packet_flits", 1, NETCHECK_MOST_FLITS, 0, &s->packet_flits);
 }
 
-/* cycles that a head takes over a router; 0 with ERR_DATA */
+/* Cycles that a head takes over a router, by the name of its pipeline. Returns 0 with ERR_DATA
+ * for an unknown name. */
 static int head_cycles(struct netcheck_reader *r, const struct node *c)
 {
     const char *pipeline;
@@ -91,8 +103,9 @@ static int head_cycles(struct netcheck_reader *r, const struct node *c)
     return 0;
 }
 
-/* Routes that depend on the load, or on chance in another way than ours, are told from the
- * routing's name. The reference's own dimension order on a torus breaks ties by chance. */
+/* Whether the routes are the same as here: routes that depend on the load, or on chance in
+ * another way, are told by the routing's name. The reference's own dimension order on a torus
+ * breaks ties by chance. */
 static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, const char *topology,
                             int *tie, struct err *why)
 {
@@ -111,6 +124,8 @@ static bool routing_is_ours(struct netcheck_reader *r, const struct node *c, con
                    topology);
 }
 
+/* Machine and topology of a case. Two kinds of failure: what this program does not have is a row
+ * without answers, what makes no sense is an error of the file. */
 bool netcheck_network(struct netcheck_reader *r, const struct node *c,
                       const struct netcheck_setting *s, struct netcheck_question *k)
 {
@@ -120,6 +135,7 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c,
     int head = head_cycles(r, c), nodes, channels = s->channels, tie = s->tie;
     err_clear(&why);
     if (head == 0) return false;
+    /* The group in which the row is counted: family, channels, buffers and pipeline. */
     snprintf(row->group, sizeof row->group, "%.*s vc=%d B=%d%s",
              (int)strcspn(s->topology, "0123456789_"), s->topology, channels, s->buffer,
              head == 3   ? ""
@@ -132,8 +148,10 @@ bool netcheck_network(struct netcheck_reader *r, const struct node *c,
     else if (why.kind != ERR_NONE) err_set_at(r->e, ERR_DATA, r->path, c->line, "%s", why.text);
     if (!k->topology) return false;
     row->family = t->family;
+    /* nclass: the channels that the routes need to be free of deadlock. */
     row->channels = channels = channels > 0 ? channels : k->topology->nclass;
     k->machine = netcheck_machine(t, channels, s->buffer, s->packet_flits, head);
+    /* The case may say how many nodes it has; then it must be right. */
     if (!netcheck_integer(r, c, "nodes", 1, NETCHECK_MOST_NODES, k->topology->nnode, &nodes))
         return false;
     if (nodes == k->topology->nnode) return true;
@@ -145,6 +163,8 @@ bool netcheck_told(const struct netcheck_reader *r) { return r->e->kind == ERR_N
 
 /* ---- what the reference says of itself ---- */
 
+/* Each arrival against an empty network, in which no message is slower; the last one is the
+ * makespan. Without an order of arrivals, a single one cannot be judged. */
 void netcheck_check_arrivals(struct netcheck_question *k, double makespan)
 {
     double last = 0;

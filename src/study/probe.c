@@ -1,4 +1,8 @@
-/* probe.c - published quantities measured on a simulated machine (probe.h). */
+/* probe.c - published quantities measured on a simulated machine (probe.h).
+ *
+ * A machine file has parameters, and papers publish measurements. Here the measurement is
+ * repeated on the simulated machine, by the benchmark that the paper used: a ping-pong, a flood,
+ * an exchange. So a parameter that is right by itself, but has the wrong effect, shows up. */
 #include "study/probe.h"
 
 #include <math.h>
@@ -10,6 +14,9 @@
 #include "study/probe_collective.h"
 #include "study/rates.h"
 
+/* Sizes and repetitions of the benchmarks: a small message [B], the length of a flood
+ * [messages], the largest size tried for n-half [B], elements of a vector, bytes that a rank
+ * exchanges in all. */
 enum { SMALL_BYTES = 8, MEBIBYTE = 1 << 20, FLOOD = 64, LARGEST_SIZE = 1 << 22, VECTOR = 10000,
        EXCHANGE_BYTES = 1 << 17, SERVED_BYTES = 1 << 20 };
 
@@ -24,15 +31,16 @@ enum { FEW_RANKS = 64 };
 
 static bool is_collective(enum probe_quantity q) { return q >= PROBE_BROADCAST && q < PROBE_B_EFF; }
 
+/* Whether the network level matters for a quantity: only where more than two ranks talk. */
 bool probe_contends(enum probe_quantity q, double at, int ranks)
 {
     if (is_collective(q)) return ranks > 2 && ranks <= FEW_RANKS;
     return (q == PROBE_BARRIER || q == PROBE_EXCHANGE || q == PROBE_HALVES) && at > 2;
 }
 
-/* `kernel` with messages of `bytes` on `nrank` ranks. Nobody else is on the machine's wires where
- * two ranks talk, so all network levels agree there and level link is the cheapest that knows of
- * others. */
+/* `kernel` with messages of `bytes` on `nrank` ranks. Two ranks are alone on the machine's
+ * wires, so that all network levels agree there, and the cheapest one that knows of contention
+ * is taken. */
 static bool bench(const struct machine_spec *m, const char *kernel, int nrank, int64_t bytes,
                   int repeat, struct measured *out, struct err *e)
 {
@@ -43,10 +51,13 @@ static bool bench(const struct machine_spec *m, const char *kernel, int nrank, i
     spec.kernel.message_bytes = bytes;
     spec.kernel.repeat = repeat;
     if (nrank <= 2) spec.machine.network.level = LEVEL_LINK;
+    /* Noise belongs to a program's run, not to what a machine can do. */
     spec.machine.noise = (struct noise_spec){0};
     bool ok = run_one(&spec, a, &r, e);
     if (ok && r.status != RUN_OK) ok = err_set(e, ERR_CONFIG, "%s: %s", m->name, r.text);
     if (ok) {
+        /* Rank 0 and the last rank: in "hot-spot" one receives and the other sends. A stage
+         * without messages has no overhead per message. */
         const struct stage_time *s = &r.stage[0], *last = &r.stage[(nrank - 1) * r.nstage];
         double messages = s->messages > 0 ? (double)s->messages : 1;
         double of_last = last->messages > 0 ? (double)last->messages : 1;
@@ -58,6 +69,7 @@ static bool bench(const struct machine_spec *m, const char *kernel, int nrank, i
     return ok;
 }
 
+/* One-way time [s] of a message: half of a ping-pong's round trip. */
 static bool one_way(const struct machine_spec *m, int64_t bytes, double *t, struct err *e)
 {
     struct measured x;
@@ -66,6 +78,7 @@ static bool one_way(const struct machine_spec *m, int64_t bytes, double *t, stru
     return true;
 }
 
+/* r_inf (Hockney): the slope of the time between 4 and 8 MiB, where the start-up cancels. */
 static bool asymptotic_rate(const struct machine_spec *m, double *rate, struct err *e)
 {
     double t4, t8;
@@ -74,8 +87,8 @@ static bool asymptotic_rate(const struct machine_spec *m, double *rate, struct e
     return true;
 }
 
-/* Doubling, then halving the interval: the rate rises with the size but for steps of the
- * protocol. */
+/* n_half (Hockney): the size that reaches half of r_inf. Doubling finds an interval, halving the
+ * size in it; the rate rises with the size, but for steps of the protocol. */
 static bool half_rate_size(const struct machine_spec *m, double *size, struct err *e)
 {
     double rate, t;
@@ -85,6 +98,7 @@ static bool half_rate_size(const struct machine_spec *m, double *size, struct er
         if (!one_way(m, high, &t, e)) return false;
         if ((double)high / t >= rate / 2 || high >= LARGEST_SIZE) break;
     }
+    /* Invariant: `high` reaches half the rate, `low` does not. */
     while (high - low > 1) {
         int64_t middle = (low + high) / 2;
         if (!one_way(m, middle, &t, e)) return false;
@@ -95,13 +109,15 @@ static bool half_rate_size(const struct machine_spec *m, double *size, struct er
     return true;
 }
 
-/* Rank 1 sends to rank 0 without pause; the start-up goes away between two lengths. */
+/* The gap between messages. Rank 1 sends FLOOD messages to rank 0 without pause, then twice as
+ * many: n messages take a + n g, which is a / n + g each; twice that of 2 n less that of n is g. */
 static bool flood_gap(const struct machine_spec *m, double *gap, struct err *e)
 {
     struct measured a, b;
     if (!bench(m, "hot-spot", 2, SMALL_BYTES, FLOOD, &a, e) ||
         !bench(m, "hot-spot", 2, SMALL_BYTES, 2 * FLOOD, &b, e))
         return false;
+    /* `time` is per message: 2 b - a is the gap. */
     *gap = 2 * b.time - a.time;
     return true;
 }
@@ -116,10 +132,12 @@ static bool send_overhead(const struct machine_spec *m, int64_t bytes, double *v
     return true;
 }
 
+/* LogP's latency is what remains of the one-way time after both overheads. */
 static bool overheads(const struct machine_spec *m, enum probe_quantity q, double at, double *value,
                       struct err *e)
 {
     struct measured x;
+    /* 0: the published overhead is of a short message */
     const int64_t bytes = at > 0 ? (int64_t)at : SMALL_BYTES;
     if (q == PROBE_SEND_OVERHEAD) return send_overhead(m, bytes, value, e);
     if (!bench(m, "pingpong", 2, bytes, 1, &x, e)) return false;
@@ -127,7 +145,7 @@ static bool overheads(const struct machine_spec *m, enum probe_quantity q, doubl
     return true;
 }
 
-/* The first node that is `links` links away from node 0, -1: none. */
+/* The first node that is `links` links away from node 0; -1 with *e set: none. */
 static int node_at(const struct machine_spec *m, int links, struct err *e)
 {
     struct arena *a = arena_create();
@@ -141,12 +159,14 @@ static int node_at(const struct machine_spec *m, int links, struct err *e)
     return found;
 }
 
-/* The wire alone: ranks on two nodes `links` apart, software that takes no time. */
+/* The time of the wire alone: two ranks `links` links apart and software that takes no time. */
 static bool wire(const struct machine_spec *m, int links, double *t, struct err *e)
 {
     struct machine_spec bare = *m;
+    /* By placement, since ranks 0 and 1 would lie on one node or on neighbours. */
     int list[2] = {0, node_at(m, links, e)};
     if (list[1] < 0) return false;
+    /* Ranks are placed on processors: the first one of each node. */
     list[0] *= m->topology.processors_per_node;
     list[1] *= m->topology.processors_per_node;
     bare.software = (struct software_spec){.eager_bytes = -1};
@@ -154,7 +174,8 @@ static bool wire(const struct machine_spec *m, int links, double *t, struct err 
     return one_way(&bare, 0, t, e);
 }
 
-/* Nobody's processor but the caller's takes part; interface and wire are those of messages. */
+/* One-sided transfer: only the caller's processor takes part, while interface and wire are those
+ * of messages. A get needs a request of its own in the other direction. */
 static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64_t bytes, double *t,
                       struct err *e)
 {
@@ -162,9 +183,11 @@ static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64
     const double overhead = q == PROBE_GET ? s->get_overhead : s->put_overhead;
     struct machine_spec bare = *m;
     double request = 0;
+    /* A machine file without that overhead describes a machine without one-sided transfers. */
     if (!(overhead > 0))
         return err_set(e, ERR_CONFIG, "%s: software.%s.overhead is 0: no one-sided %s", m->name,
                        probe_name(q), probe_name(q));
+    /* No message software but its gap per byte, which is the interface's. */
     bare.software = (struct software_spec){.eager_bytes = -1, .gap_per_byte = s->gap_per_byte};
     if (q == PROBE_GET && !one_way(&bare, 0, &request, e)) return false;
     if (!one_way(&bare, bytes, t, e)) return false;
@@ -176,14 +199,17 @@ static bool one_sided(const struct machine_spec *m, enum probe_quantity q, int64
  * interface and no message software is in its way: the end's latency does not count. */
 static bool remote_read(const struct machine_spec *m, int routers, double *t, struct err *e)
 {
+    /* Memory accesses go by hardware: the network interface's latency is not theirs. */
     struct machine_spec coherent = *m;
     coherent.network.end_latency = 0;
     if (!wire(&coherent, routers - 1, t, e)) return false;
+    /* request and answer */
     *t *= 2;
     return true;
 }
 
-/* Which half of dimension d router r lies in. */
+/* In which half of dimension d router r lies. Routers are numbered with dimension 0 fastest; of
+ * a hypercube, dimension d is bit d. */
 static bool upper_half(const struct topology_spec *s, int d, int r)
 {
     if (s->family == TOPOLOGY_HYPERCUBE) return r >> d & 1;
@@ -191,7 +217,7 @@ static bool upper_half(const struct topology_spec *s, int d, int r)
     return r % s->dims[d] >= s->dims[d] / 2;
 }
 
-/* Rate of all links, both directions, that join the halves of dimension d. */
+/* Rate of all links, in both directions, that join the halves of dimension d [B/s]. */
 static double cut_rate(const struct machine_spec *m, const struct topology *t, int d)
 {
     double rate = 0;
@@ -205,6 +231,7 @@ static double cut_rate(const struct machine_spec *m, const struct topology *t, i
     return rate;
 }
 
+/* The bisection is the worst cut through the middle. An odd dimension has no two halves. */
 static bool bisection_rate(const struct machine_spec *m, const struct topology *t, double *rate,
                            struct err *e)
 {
@@ -221,6 +248,9 @@ static bool bisection_rate(const struct machine_spec *m, const struct topology *
     return isfinite(*rate) || err_set(e, ERR_CONFIG, "%s: no dimension can be halved", m->name);
 }
 
+/* Rate of a dragonfly's global links. topology_link_ends gives both directions; a published rate
+ * counts one. */
+/* A link is global when its routers are in different groups. */
 static bool global_rate(const struct machine_spec *m, const struct topology *t, double *rate,
                         struct err *e)
 {
@@ -247,6 +277,7 @@ static bool cut(const struct machine_spec *m, enum probe_quantity q, double *val
     return ok;
 }
 
+/* Four barriers in a row; the time of one. */
 static bool barrier(const struct machine_spec *m, int ranks, double *t, struct err *e)
 {
     struct measured x;
@@ -255,14 +286,16 @@ static bool barrier(const struct machine_spec *m, int ranks, double *t, struct e
     return true;
 }
 
-/* What each rank sends in a kernel where it has `partners`; the start-up goes away between two
- * lengths. Behind a kernel's server copies hide while messages wait for it, until they are long. */
+/* The rate at which each rank sends in a kernel where it has `partners`. The start-up cancels
+ * between a length and twice that length. Behind a kernel's server copies hide while messages
+ * wait for it, until they are long. */
 static bool rate_among(const struct machine_spec *m, const char *kernel, int ranks, int partners,
                        double *rate, struct err *e)
 {
     struct measured once, twice;
     if (ranks < 2) return err_set(e, ERR_CONFIG, "%s: an exchange of %d ranks", m->name, ranks);
     const int64_t all = m->software.kernel_server ? SERVED_BYTES : EXCHANGE_BYTES;
+    /* The messages to all partners are `all` bytes together, in whole doubles. */
     const int64_t bytes = all / partners / SMALL_BYTES * SMALL_BYTES;
     if (!bench(m, kernel, ranks, bytes, 1, &once, e) ||
         !bench(m, kernel, ranks, 2 * bytes, 1, &twice, e))
@@ -271,10 +304,11 @@ static bool rate_among(const struct machine_spec *m, const char *kernel, int ran
     return true;
 }
 
-/* Codes of computing have a size that is an order or a length. */
+/* Serial codes. Their size is the order of a system or the length of vectors. */
 static bool computing(const struct machine_spec *m, enum probe_quantity q, double at, double *rate,
                       struct err *e)
 {
+    /* `at` is the order or length where the published number has one. */
     int n = q == PROBE_LINPACK || q == PROBE_INNER_PRODUCT ? (int)at : VECTOR;
     struct rate_count c;
     if (n < 1 || n > MEBIBYTE)
@@ -288,6 +322,7 @@ static bool computing(const struct machine_spec *m, enum probe_quantity q, doubl
     return true;
 }
 
+/* One number per quantity; units: seconds, bytes, bytes or operations per second (probe.h). */
 bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double at, int ranks,
                    double *value, struct err *e)
 {
@@ -336,6 +371,7 @@ bool probe_measure(const struct machine_spec *m, enum probe_quantity q, double a
     case PROBE_PUT:
     case PROBE_GET:
         return one_sided(m, q, (int64_t)at, value, e);
+    /* the quantities of many ranks follow */
     default:
         break;
     }

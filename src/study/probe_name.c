@@ -3,6 +3,7 @@
 
 #include "study/probe.h"
 
+/* In the order of enum probe_quantity. */
 static const char *const names[PROBE_QUANTITIES] = {
     "one-way",      "round-trip",  "bandwidth",    "r-inf",         "n-half",      "o-send",
     "o-recv",       "latency",     "gap",          "wire",          "read",        "bisection",
@@ -14,6 +15,7 @@ static const char *const names[PROBE_QUANTITIES] = {
 
 const char *probe_name(enum probe_quantity q) { return names[q]; }
 
+/* A name of no quantity gives PROBE_QUANTITIES. */
 enum probe_quantity probe_find(const char *name)
 {
     int q = 0;

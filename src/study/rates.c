@@ -1,4 +1,8 @@
-/* rates.c - small serial benchmark codes executed with every operation counted (rates.h). */
+/* rates.c - small serial benchmark codes executed with every operation counted (rates.h).
+ *
+ * The codes are written as the benchmarks are: LINPACK by columns with daxpy, STREAM in one
+ * pass. Their counts are what a node's prices are multiplied with; a better algorithm would
+ * measure another code. */
 #include "study/rates.h"
 
 #include <math.h>
@@ -9,7 +13,7 @@
 
 /* ---- LINPACK ---- */
 
-/* y += s x */
+/* y += s x. As in the benchmark's library, a multiplier of zero ends the call at once. */
 static void daxpy(int n, double s, const double *x, double *y, struct work *w)
 {
     w->call++;
@@ -18,6 +22,7 @@ static void daxpy(int n, double s, const double *x, double *y, struct work *w)
     w->flop += 2 * (uint64_t)n;
 }
 
+/* x *= s */
 static void dscal(int n, double s, double *x, struct work *w)
 {
     w->call++;
@@ -25,6 +30,8 @@ static void dscal(int n, double s, double *x, struct work *w)
     w->flop += (uint64_t)n;
 }
 
+/* Comparisons are no floating-point operations by the benchmark's rule. */
+/* The index of the largest |x[i]|, the first of equals. */
 static int idamax(int n, const double *x, struct work *w)
 {
     int largest = 0;
@@ -34,6 +41,7 @@ static int idamax(int n, const double *x, struct work *w)
     return largest;
 }
 
+/* Moving numbers is not counted: the benchmark's rule counts arithmetic. */
 static void exchange(double *x, int i, int k)
 {
     double t = x[i];
@@ -41,15 +49,19 @@ static void exchange(double *x, int i, int k)
     x[k] = t;
 }
 
-/* a (n x n, by columns) becomes its factors. */
+/* LU factors of a (n x n, column-major) in place, with partial pivoting: LINPACK's dgefa. Work
+ * goes by columns (daxpy), as the benchmark does on every machine. */
 static void dgefa(double *a, int n, int *pivot, struct work *w)
 {
     for (int k = 0; k < n - 1; k++) {
         double *column = a + (size_t)k * (size_t)n;
+        /* Partial pivoting: the largest of the column below the diagonal. */
         int l = pivot[k] = k + idamax(n - k, column + k, w);
         exchange(column, l, k);
+        /* -1 / pivot, the multipliers' common factor. */
         w->div++;
         dscal(n - k - 1, -1 / column[k], column + k + 1, w);
+        /* Rank-1 update of all later columns, which exchange their rows first. */
         for (int j = k + 1; j < n; j++) {
             double *other = a + (size_t)j * (size_t)n;
             exchange(other, l, k);
@@ -59,7 +71,7 @@ static void dgefa(double *a, int n, int *pivot, struct work *w)
     pivot[n - 1] = n - 1;
 }
 
-/* b becomes the solution. */
+/* The solution in place of b, from the factors: first with L and the row exchanges, then with U. */
 static void dgesl(const double *a, int n, const int *pivot, double *b, struct work *w)
 {
     for (int k = 0; k < n - 1; k++) {
@@ -74,23 +86,28 @@ static void dgesl(const double *a, int n, const int *pivot, double *b, struct wo
     }
 }
 
-/* The benchmark's matrix, and the right-hand side whose solution is all ones. */
+/* The benchmark's matrix by its own random numbers, and the right-hand side whose solution is
+ * all ones: so that rate_linpack can check what it computed. */
 static void matgen(double *a, double *b, int n)
 {
     int seed = 1325;
     for (int i = 0; i < n; i++) b[i] = 0;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
+            /* Lehmer's generator; the product stays below 2^28. */
             seed = 3125 * seed % 65536;
+            /* numbers in -2 .. 2, as in the original */
             a[(size_t)j * (size_t)n + (size_t)i] = (seed - 32768.0) / 16384.0;
             b[i] += a[(size_t)j * (size_t)n + (size_t)i];
         }
 }
 
+/* What the benchmark divides by the time, whatever was executed: 2 n^3 / 3 + 2 n^2. */
 static double nominal_linpack(double n) { return 2 * n * n * n / 3 + 2 * n * n; }
 
-/* Calls: a pivot search, a scaling and an update of each later column a step; an update of b a step
- * and back. */
+/* Operations of dgefa, then of dgesl, without executing them. A step with m columns left has a
+ * pivot search, a scaling (m flops) and m updates of 2 m flops, and one update of b; each step
+ * back has one. */
 struct rate_count rate_linpack_summed(int n)
 {
     struct rate_count c = {.nominal = nominal_linpack(n)};
@@ -107,6 +124,8 @@ struct rate_count rate_linpack_summed(int n)
     return c;
 }
 
+/* Executed up to RATE_EXECUTED: the counts are then those of a program that gave the right
+ * answer. */
 struct rate_count rate_linpack(int n)
 {
     if (n > RATE_EXECUTED) return rate_linpack_summed(n);
@@ -117,12 +136,13 @@ struct rate_count rate_linpack(int n)
     matgen(a, b, n);
     dgefa(a, n, pivot, &c.work);
     dgesl(a, n, pivot, b, &c.work);
+    /* a wrong solution would mean counts of another algorithm */
     for (int i = 0; i < n; i++) CHECK(fabs(b[i] - 1) < 1e-6);
     arena_destroy(memory);
     return c;
 }
 
-/* ---- vectors ---- */
+/* One pass of STREAM: a = b, a = q b, a = b + s, a = b + q s, with q = 3. */
 
 /* a of n elements from b, or from b and s. */
 static void stream_pass(enum rate_stream kind, int n, double *a, const double *b, const double *s)
@@ -143,8 +163,11 @@ static void stream_pass(enum rate_stream kind, int n, double *a, const double *b
     }
 }
 
+/* The pass is executed and checked, its operations follow from the kind. */
 struct rate_count rate_stream(enum rate_stream kind, int n)
 {
+    /* Flops per element, vectors read or written, and the result for b = 2, s = 5: kept so that
+     * the pass cannot be wrong unnoticed. */
     static const int flops[] = {0, 1, 1, 2}, vectors[] = {2, 2, 3, 3}, result[] = {2, 6, 7, 17};
     struct arena *memory = arena_create();
     double *a = TAKE(memory, n, double), *b = TAKE(memory, n, double), *s = TAKE(memory, n, double);
@@ -155,12 +178,14 @@ struct rate_count rate_stream(enum rate_stream kind, int n)
     stream_pass(kind, n, a, b, s);
     for (int i = 0; i < n; i++) CHECK(a[i] == result[kind]);
     arena_destroy(memory);
+    /* A node's price is for a byte copied, which is read and written: half of STREAM's bytes. */
     uint64_t bytes = (uint64_t)n * (uint64_t)vectors[kind] * sizeof(double);
     return (struct rate_count){
         .nominal = (double)bytes,
         .work = {.call = 1, .flop = (uint64_t)(n * flops[kind]), .bytes = bytes / 2}};
 }
 
+/* Two flops per element; nothing is stored, so no bytes are copied. */
 struct rate_count rate_inner_product(int n)
 {
     struct arena *memory = arena_create();
@@ -170,11 +195,14 @@ struct rate_count rate_inner_product(int n)
         y[i] = 0.5;
     }
     for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    /* A sum of halves, exact in double for every n that is asked for (at most 2^20). */
     CHECK(sum == 0.25 * n * (n - 1.0));
     arena_destroy(memory);
     return (struct rate_count){.nominal = 2.0 * n, .work = {.call = 1, .flop = 2 * (uint64_t)n}};
 }
 
+/* The rate is nominal work over simulated time of the executed work. A node without costs has an
+ * infinite rate. */
 double rate_of(const struct node_spec *node, const struct rate_count *count)
 {
     struct node_cost cost = node_cost_make(node);

@@ -9,14 +9,18 @@
 #include "base/text.h"
 #include "measure/run_row.h"
 
+/* Rounds of runs, the time after which no more are begun, and the least that counts as noise: 1
+ * %. */
 enum { LEAST_ROUNDS = 5, MOST_ROUNDS = 200 };
 static const double longest_run_s = 0.25, round_budget_s = 1.0, least_noise = 0.01;
 
-/* The three shortest of some times, in order. */
+/* The three shortest of some times, in order. The shortest is what the run takes when nothing
+ * disturbs it; the third shows how well it is known. */
 struct shortest {
     double time[3];
 };
 
+/* Insertion into three places: the longer time moves on. */
 static void shortest_add(struct shortest *s, double x)
 {
     for (int i = 0; i < 3; i++)
@@ -27,13 +31,15 @@ static void shortest_add(struct shortest *s, double x)
         }
 }
 
-/* What chance does to the shortest. */
+/* What chance does to the shortest: how far apart three runs of the same kind are. */
 static double spread_of(const struct shortest *s) { return s->time[2] - s->time[0]; }
 
-/* A run as one of a campaign: its scene is there already. */
+/* One run as part of a campaign: what runs share is in the cache, and is not timed again.
+ * Processor time, not wall time: other programs of the computer do not count. */
 static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cache *cache,
                      struct shortest *host, int64_t *machine_ps, struct err *e)
 {
+    /* `keep` has a bit for each omission that is to be undone. */
     const struct run_order order = {.keep = keep};
     struct run_result result;
     struct arena *a = arena_create();
@@ -45,8 +51,8 @@ static bool time_run(const struct run_spec *spec, unsigned keep, struct run_cach
     return ok;
 }
 
-/* The omissions that stand at one point, and the point without any put back, twice a round: what
- * differs between its two halves is chance. */
+/* The omissions that are measured at one point, each undone alone, and in turn with them the
+ * point without any undone, twice a round: what differs between these two halves is chance. */
 static bool measure_point(const struct run_spec *spec, struct savings *all, const int *item, int n,
                           struct run_cache *cache, struct err *e)
 {
@@ -55,6 +61,7 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
     int64_t base_ps = 0, with_ps[MOST_SAVINGS] = {0};
     double begin = host_seconds();
     for (int i = 0; i < n; i++) with[i] = none;
+    /* Rounds interleave what is compared: a slow second slows all of it. */
     for (int round = 0; round < MOST_ROUNDS; round++) {
         if (round >= LEAST_ROUNDS && host_seconds() - begin > round_budget_s) break;
         if (!time_run(spec, 0, cache, &base[0], &base_ps, e)) return false;
@@ -63,6 +70,7 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
                 return false;
         if (!time_run(spec, 0, cache, &base[1], &base_ps, e)) return false;
     }
+    /* Noise: the difference of the two halves, their spreads, and at least 1 %. */
     double least = fmin(base[0].time[0], base[1].time[0]);
     double chance = fmax(fabs(base[0].time[0] - base[1].time[0]), least_noise * least);
     chance = fmax(chance, fmax(spread_of(&base[0]), spread_of(&base[1])));
@@ -70,6 +78,7 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
         struct saving *s = &all->item[item[i]];
         s->measured = true;
         s->host_s = least;
+        /* With the omission undone minus with it made. */
         s->host_saved_s = with[i].time[0] - least;
         s->noise_s = fmax(chance, spread_of(&with[i]));
         s->machine_ps = base_ps;
@@ -82,11 +91,13 @@ static bool measure_point(const struct run_spec *spec, struct savings *all, cons
  * shorter. */
 static bool tells_more(const struct run_estimate *a, const struct run_estimate *b)
 {
+    /* Estimates of host time: nothing is run to choose a point. */
     bool a_short = a->host_s <= longest_run_s, b_short = b->host_s <= longest_run_s;
     if (a_short != b_short) return a_short;
     return a_short ? a->messages > b->messages : a->host_s < b->host_s;
 }
 
+/* An omission is known by what it leaves out. */
 static int find(const struct savings *all, const char *what)
 {
     for (int i = 0; i < all->n; i++)
@@ -94,7 +105,8 @@ static int find(const struct savings *all, const char *what)
     return -1;
 }
 
-/* Each omission once, with the run where it is measured in point[]. */
+/* Each omission once, with the run that shows it best in point[]: the same one occurs at most
+ * points of a scenario. */
 static void collect(const struct plan *p, const struct run_estimate *r, struct savings *all,
                     int *point)
 {
@@ -102,7 +114,10 @@ static void collect(const struct plan *p, const struct run_estimate *r, struct s
         for (int k = 0; k < r[i].nomission; k++) {
             const struct omission *o = &r[i].omission[k];
             int at = find(all, o->what);
+            /* More kinds of omissions than the table holds would be a new program; the first
+             * ones stay. */
             if (at < 0 && all->n == MOST_SAVINGS) continue;
+            /* Seen before at a point that shows it better. */
             if (at >= 0 && !tells_more(&r[i], &r[point[at]])) continue;
             if (at < 0) at = all->n++;
             all->item[at] =
@@ -111,6 +126,7 @@ static void collect(const struct plan *p, const struct run_estimate *r, struct s
         }
 }
 
+/* The point as in all reports: bodies and processors, or one number when they are equal. */
 static void name_point(const struct run_spec *spec, int64_t nbody, struct saving *s)
 {
     if (nbody == spec->nrank) snprintf(s->at, sizeof s->at, "n=P=%d", spec->nrank);
@@ -128,11 +144,14 @@ bool savings_measure(const struct plan *p, const struct run_estimate *r, struct 
     collect(p, r, out, point);
     for (int i = 0; i < out->n; i++)
         name_point(&p->run[point[i]], r[point[i]].nbody, &out->item[i]);
+    /* All omissions of one point are measured together; `measured` keeps them from a second
+     * turn. What has no bit to undo it (keep == 0) is only listed. */
     for (int i = 0; i < out->n; i++) {
         int n = 0;
         for (int k = 0; k < out->n; k++)
             if (point[k] == point[i] && !out->item[k].measured && out->item[k].omission.keep)
                 item[n++] = k;
+        /* A cache per point: what its runs share stays for all rounds. */
         struct run_cache *cache = run_cache_create();
         bool ok = n == 0 || measure_point(&p->run[point[i]], out, item, n, cache, e);
         run_cache_destroy(cache);
@@ -143,9 +162,12 @@ bool savings_measure(const struct plan *p, const struct run_estimate *r, struct 
 
 /* --- telling ---------------------------------------------------------------------------------- */
 
+/* What the omission saves on this computer. A difference below the noise is told as such: either
+ * sign would be chance. */
 static void print_host(FILE *out, const struct saving *s)
 {
     char text[64];
+    /* The share of the run with the omission undone: that is the whole that it saves from. */
     double share = 100 * s->host_saved_s / (s->host_s + s->host_saved_s);
     if (fabs(s->host_saved_s) <= s->noise_s)
         snprintf(text, sizeof text, "less than the noise, %.3f ms", s->noise_s * 1e3);
@@ -156,6 +178,8 @@ static void print_host(FILE *out, const struct saving *s)
     fprintf(out, "%-38s", text);
 }
 
+/* Simulated times have no noise: any difference is real. */
+/* What it saves of the predicted time. */
 static void print_machine(FILE *out, const struct saving *s)
 {
     double with = (double)(s->machine_ps + s->machine_saved_ps);
@@ -186,8 +210,10 @@ void savings_print(FILE *out, const struct savings *all)
 
 #define SAVING(member) .offset = offsetof(struct saving, member)
 
+/* An omission that cannot be undone has no times. */
 static bool is_measured(const void *row) { return ((const struct saving *)row)->measured; }
 
+/* exact: no result changes; bounded: by at most `bound`, relative. */
 static void read_class(const struct column *c, const void *row, struct column_value *v)
 {
     (void)c;
@@ -195,6 +221,8 @@ static void read_class(const struct column *c, const void *row, struct column_va
     v->text = omission_class(&((const struct saving *)row)->omission);
 }
 
+/* Columns of one omission. Those of the class are not in the JSON of this list, where the list
+ * of omissions has them. */
 static const struct column saving_column[] = {
     {"at", COLUMN_CHARS, SAVING(at), .doc = "point of the scenario that was measured: \"n=P=128\""},
     {"host_s", COLUMN_REAL, SAVING(host_s), .flags = COLUMN_NULL,
@@ -225,9 +253,11 @@ void savings_json(struct json *j, const struct savings *all)
     columns_json_list(&saving_columns, all->item, all->n, sizeof *all->item, j);
 }
 
+/* The rows of a scenario replace its old ones, in one transaction. */
 bool savings_store(struct store *s, const struct savings *all, struct err *e)
 {
     static const char *const name[] = {"scenario", "ordinal"};
+    /* All or nothing: a list with some omissions missing would look complete. */
     if (!store_begin(s, e)) return false;
     bool ok = store_note_build(s, e) &&
               store_delete(s, "omission", "scenario", store_text(all->scenario), e);

@@ -1,4 +1,8 @@
-/* stability.c - walks through the scenes; see stability.h. */
+/* stability.c - walks through the scenes; see stability.h.
+ *
+ * Accelerations come first, by every algorithm; then motions, of stiff scenes by every stepper
+ * and of the others to see whether energy is kept. Nothing stops at a failure: failures are what
+ * the suite is for. */
 #include "study/stability.h"
 
 #include <math.h>
@@ -18,12 +22,15 @@ static void name_scene(const struct stability_scene *c, const struct model *m, c
     else snprintf(name, (size_t)size, "%.40s, n = %d%s", c->name, m->nbody, base[c->spec.base]);
 }
 
+/* One scene in an arena of its own; larger ones than most_bodies are left out without an error.
+ * Scenes that move are tried with all steppers, others with two of them for their energy. */
 static bool measure_scene(struct stability_report *r, const struct stability_scene *c,
                           int most_bodies, struct err *e)
 {
     struct arena *a = arena_create();
     struct model *m;
     struct state *s;
+    /* good: left out because of its size */
     bool good = (most_bodies > 0 && c->spec.nbody > most_bodies);
     if (!good) {
         good = scene_build(c, a, &m, &s, e);
@@ -37,6 +44,7 @@ static bool measure_scene(struct stability_report *r, const struct stability_sce
     return good;
 }
 
+/* The built-in suite, scene by scene. */
 static bool measure_suite(struct stability_report *r, int most_bodies, bool quiet, struct err *e)
 {
     int n;
@@ -56,16 +64,21 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
                            int most_bodies, bool quiet, struct err *e)
 {
     struct progress p = progress_make("scenes", nspec, quiet);
+    /* Points that differ in kernel, level or number of processors only are one scene. */
     for (int i = 0; i < nspec; i++) {
         bool seen = false;
         for (int k = 0; k < i && !seen; k++)
+            /* Structs are compared as bytes: specs are filled from zeros, so padding is equal. */
             seen = memcmp(&spec[k].model, &spec[i].model, sizeof spec[i].model) == 0;
         if (seen) continue;
+        /* A ping-pong computes nothing that could be stiff. */
         if (!kernel_spec_needs_model(&spec[i].kernel))
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
         char name[64];
         snprintf(name, sizeof name, "%.28s point %d", spec[i].scenario, i + 1);
+        /* A scenario's model says everything: nothing is filled in. */
         struct stability_scene c = {.name = name, .spec = spec[i].model, .complete = true};
+        /* Stiffness or damping makes steppers interesting. */
         c.moves = c.spec.stiffness > 0 || c.spec.damping > 0;
         if (!measure_scene(r, &c, most_bodies, e)) return false;
         progress_show(&p, i + 1);
@@ -74,9 +87,11 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
     return true;
 }
 
+/* Rows are added in the order of scenes and algorithms: the same on every computer. */
 bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, bool quiet,
                        struct arena *a, struct stability_report *r, struct err *e)
 {
+    /* a scenario's points, or the built-in suite */
     double begin = host_seconds();
     *r = (struct stability_report){.arena = a, .suite = "suite"};
     if (nspec > 0) text_copy(r->suite, sizeof r->suite, spec[0].scenario);
@@ -97,6 +112,8 @@ static const char *const cause_word[] = {"", "rounding", "algorithm-fails"};
     {name, COLUMN_REAL, ROW(member), .flags = COLUMN_NULL, .title = heading, .width = 9, .style = 'e', .digits = 1,    \
      __VA_ARGS__}
 
+/* One row, as the database, JSON and the terminal have it. `cause` is not in the database:
+ * `reason` says the same in words. */
 static const struct column stability_column[] = {
     {"subject", COLUMN_CHARS, ROW(subject), .key = "case", .title = "case", .width = -27,
      .doc = "the case"},
@@ -127,8 +144,11 @@ static const struct column stability_column[] = {
 };
 const struct column_table stability_columns = COLUMNS(stability_column);
 
+/* A line per row, then the counts. A failure of the algorithm is a finding, not an error of the
+ * program. */
 void stability_print(FILE *out, const struct stability_report *r)
 {
+    /* Counts by status, in the order of the enum. */
     int count[3] = {0}, by_algorithm = 0;
     columns_title(&stability_columns, out);
     for (int i = 0; i < r->nrow; i++) {

@@ -1,5 +1,9 @@
-/* stability_forward.c - accelerations of one scene by every algorithm, held against quad
- * precision. */
+/* stability_forward.c - accelerations of one scene by every algorithm, compared with quad
+ * precision.
+ *
+ * Two numbers make an error readable: the condition, what any algorithm must lose, and the
+ * residual, what this one lost in forces. A row that is not ok is run again in quad precision,
+ * to tell rounding from an algorithm that cannot do the scene. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,6 +23,7 @@ enum {
     FEW_BODIES = 1000 /* passes of refinement; fewer where many bodies make them long */
 };
 
+/* The scene that all rows are judged by, with its reference in quad precision. */
 struct judge {
     struct stability_report *report;
     const char *subject;
@@ -30,13 +35,16 @@ struct judge {
     double condition;
 };
 
+/* The reference: articulated bodies in quad precision. False: it broke down. */
 static bool quad_forward(const struct model *m, const struct state *s, struct arena *a, double *qdd)
 {
     struct work w = {0};
     return dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w);
 }
 
-/* How much the answer moves when coordinates, rates and forces move by 1e-10 of themselves. */
+/* Condition: how much the accelerations change, relative to a relative change of 1e-10 of
+ * coordinates, rates and forces. Signs alternate, so that changes do not cancel by symmetry.
+ * Quad precision sees a change of 1e-10 to 20 digits. One direction is tried: a lower bound. */
 static double condition_of(const struct judge *j)
 {
     const double change = 1e-10;
@@ -56,7 +64,8 @@ static double condition_of(const struct judge *j)
 }
 
 /* Joint forces that the error of qdd stands for, M (qdd - reference): the largest over j->force,
- * and their power. The answer's own rounding is part of it. */
+ * and in *power what they do on the motion, u . M (qdd - reference), over j->force sum |u|. The
+ * answer's own rounding is part of both. */
 static double residual_of(const struct judge *j, double *qdd, double *power)
 {
     const struct model *m = j->m;
@@ -64,6 +73,7 @@ static double residual_of(const struct judge *j, double *qdd, double *power)
     struct state s = *j->s;
     double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0,
            rates = 0;
+    /* Two inverse dynamics in quad precision: their difference has M alone, without bias forces. */
     struct work w = {0};
     s.qdd = qdd;
     dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
@@ -80,7 +90,8 @@ static double residual_of(const struct judge *j, double *qdd, double *power)
     return j->force > 0 ? largest / j->force : largest;
 }
 
-/* The largest of inertial and other forces that meet in a joint, each alone. */
+/* Scale of the residual: the largest joint force that rates and gravity need without any
+ * acceleration, or that a motor applies. Their sum may cancel; rounding goes by its terms. */
 static double force_of(const struct judge *j)
 {
     const struct model *m = j->m;
@@ -95,6 +106,8 @@ static double force_of(const struct judge *j)
     return largest;
 }
 
+/* Grades a row and fills in what is measured the same way for every algorithm. With loops,
+ * forces do not follow from accelerations alone: the algorithm's own residual stays. */
 static void finish_row(const struct judge *j, struct stability_row *x, double *qdd,
                        double own_residual, bool single)
 {
@@ -107,6 +120,7 @@ static void finish_row(const struct judge *j, struct stability_row *x, double *q
     x->condition = j->condition;
 }
 
+/* One serial algorithm in one precision; a broken pivot leaves the row failed. */
 static void serial_row(const struct judge *j, enum forward_method method, enum precision precision)
 {
     const struct dynamics_type *t = dynamics_type_of(precision);
@@ -152,11 +166,15 @@ static const struct variant {
     {"robust contraction", true, PRECISION_DOUBLE, FORMULATION_DIRECT, SOLVER_CR, 1, 1, false, false},
 };
 
+/* A variant as a run on a crossbar with a body, or several, per processor. Then as a run would
+ * do it: corrections are switched on while the residual asks for them (trust.h). */
 static struct trial variant_trial(const struct judge *j, const struct variant *v,
                                   enum precision precision)
 {
+    /* Enough ranks for every phase of the kernel; a block of bodies each in large scenes. */
     int P = j->m->nbody < MOST_RANKS ? j->m->nbody : MOST_RANKS;
     struct run_spec spec = {.machine = trial_machine(P), .nrank = P};
+    /* Quad precision has no type of twice its width. */
     bool twice = v->twice && precision != PRECISION_QUAD;
     spec.kernel = (struct kernel_spec){.name = "forward",
                                        .formulation = v->formulation,
@@ -168,6 +186,7 @@ static struct trial variant_trial(const struct judge *j, const struct variant *v
                                        .inner_refinements = v->inner,
                                        .outer_refinements = v->outer,
                                        .algebra = ALGEBRA_SPATIAL};
+    /* Passes cost time in proportion to the bodies. */
     if (v->twice && j->m->nbody > FEW_BODIES) spec.kernel.inner_refinements = FEW_INNER;
     spec.kernel.refinement = v->as_needed ? REFINEMENT_AS_NEEDED : REFINEMENT_AS_GIVEN;
     struct trial t = trial_run(&spec, j->m, j->s, j->a);
@@ -176,6 +195,8 @@ static struct trial variant_trial(const struct judge *j, const struct variant *v
     return t;
 }
 
+/* One row of a parallel variant. Its growth is the condition that the reduction reports of
+ * itself. */
 static void parallel_row(const struct judge *j, const struct variant *v)
 {
     struct stability_row *x =
@@ -192,7 +213,8 @@ static void parallel_row(const struct judge *j, const struct variant *v)
 
 /* --- why an answer is not good ---------------------------------------------------------------- */
 
-/* The error in quad precision of the algorithm of a row; INFINITY: it breaks down there too. */
+/* The error of a row's algorithm in quad precision; INFINITY: it breaks down there too. The row
+ * knows its algorithm by name only, so both lists are searched. */
 static double quad_error(const struct judge *j, const struct stability_row *x)
 {
     struct arena_mark mark = arena_mark(j->a);
@@ -222,8 +244,9 @@ static bool is_serial(const struct stability_row *x)
     return false;
 }
 
-/* What answers the scene well in double precision: the last of the same kind, else the last of all;
- * NULL: nothing. */
+/* What answers the scene well in double precision, as advice: the last of the same kind (serial
+ * or parallel), else the last of all, since algorithms are listed from simple to robust. NULL:
+ * nothing. */
 static const char *remedy_of(const struct stability_report *r, int first,
                              const struct stability_row *failed)
 {
@@ -237,7 +260,8 @@ static const char *remedy_of(const struct stability_report *r, int first,
     return same ? same : any;
 }
 
-/* Rounding, or the algorithm itself? Added to the row's reason. */
+/* Adds to the row's reason whether rounding or the algorithm is to blame: what is right in quad
+ * precision was rounding. */
 static void cause_tell(const struct judge *j, int first, struct stability_row *x)
 {
     char before[sizeof x->reason], cause[96];
@@ -253,7 +277,8 @@ static void cause_tell(const struct judge *j, int first, struct stability_row *x
     snprintf(x->reason, sizeof x->reason, "%.60s%s%s", before, before[0] ? "; " : "", cause);
 }
 
-/* Quad precision takes fifty times as long: rows of larger scenes say nothing of their cause. */
+/* Causes of the rows from `first` on that are not ok. Quad precision takes some fifty times as
+ * long: rows of larger scenes get none. */
 static void causes_tell(const struct judge *j, int first)
 {
     enum { MOST_CAUSED = 1100 };
@@ -273,8 +298,11 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
                   "the reference itself broke down");
         return;
     }
+    /* The yardsticks of all rows. */
     j.force = force_of(&j);
     if (m->nbody <= MOST_MEASURED) j.condition = condition_of(&j);
+    /* Rows of serial algorithms. The sparse factorisation solves the same system as the dense
+     * one, which large scenes cannot afford; single precision of two algorithms shows the rest. */
     for (int k = 0; k < FORWARD_METHODS; k++) {
         struct arena_mark mark = arena_mark(scratch);
         if (k == FORWARD_CRBA_SPARSE || (k == FORWARD_CRBA && m->nu > MOST_DENSE)) continue;
@@ -283,10 +311,12 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
             serial_row(&j, (enum forward_method)k, PRECISION_FLOAT);
         arena_release(scratch, mark);
     }
+    /* Trees and loops are contracted, open chains solved: the table has variants for both. */
     bool branched = !m->is_chain || m->nloop > 0;
     for (size_t k = 0; k < sizeof variant_table / sizeof *variant_table; k++) {
         struct arena_mark mark = arena_mark(scratch);
         if (variant_table[k].contraction == branched) parallel_row(&j, &variant_table[k]);
         arena_release(scratch, mark);
-    }    if (causes) causes_tell(&j, first);
+    }
+    if (causes) causes_tell(&j, first);
 }

@@ -1,5 +1,10 @@
-/* stability_motion.c - steppers: largest stable step and cost of each on stiff scenes; energy kept
- * by all others. */
+/* stability_motion.c - steppers: largest stable step and cost of each on stiff scenes; energy
+ * kept by all others.
+ *
+ * On a stiff scene an explicit stepper is limited by stability, not by accuracy: 2 / omega for a
+ * frequency omega, about 2.8 / omega for RK4. The suite measures this limit and what reaching 1
+ * % costs, so that explicit and implicit steppers can be compared in evaluations and in
+ * simulated time. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,6 +15,8 @@
 #include "study/stability_scene.h"
 #include "study/trial.h"
 
+/* Steps of one test for stability; evaluations that a stepper may take; steps of a short motion;
+ * bodies of the largest scene that is moved; evaluations spent on reaching an error of 1 %. */
 enum {
     STEPS = 400,
     MOST_EVALUATIONS = 300000,
@@ -21,6 +28,7 @@ enum {
 /* Steps [model's time] longer than this are not tried. */
 #define LONGEST 10.0
 
+/* A stepper moves a copy: the scene's state is the beginning of all. */
 static struct state copy_of(const struct model *m, const struct state *s, struct arena *a)
 {
     struct state c = *s;
@@ -31,6 +39,7 @@ static struct state copy_of(const struct model *m, const struct state *s, struct
     return c;
 }
 
+/* Total energy in double precision, in the model's units. */
 static double energy_of(const struct model *m, const struct state *s, struct arena *a)
 {
     struct dynamics_totals t;
@@ -38,14 +47,15 @@ static double energy_of(const struct model *m, const struct state *s, struct are
     return t.kinetic + t.potential;
 }
 
-/* Whether `steps` steps of h stay within bounds: energy may not rise by more than gravity and
- * motors can explain. */
+/* Whether `steps` steps of h stay within bounds. Springs and inertia keep energy; an unstable
+ * step makes it grow without limit, far beyond the room for what gravity and motors add. */
 static bool is_stable(const struct model *m, const struct state *s, enum step_rule rule, double h,
                       struct arena *a)
 {
     struct arena_mark mark = arena_mark(a);
     struct state x = copy_of(m, s, a);
     struct work w = {0};
+    /* Room for the work of gravity and motors: 100 units or three times the energy. */
     double before = energy_of(m, s, a), room = 100 + 3 * fabs(before);
     bool good = dynamics_type_of(PRECISION_DOUBLE)->advance(m, &x, rule, h, STEPS, a, &w);
     double after = good ? energy_of(m, &x, a) : NAN;
@@ -53,10 +63,12 @@ static bool is_stable(const struct model *m, const struct state *s, enum step_ru
     return isfinite(after) && after < before + room;
 }
 
-/* By bisection of the logarithm, to 2%. 0: none of 1e-12 .. LONGEST. */
+/* The largest stable step, by bisection of its logarithm to 2 %. 0: none of 1e-12 .. LONGEST.
+ * That stability ends once and for all at one step size is assumed. */
 static double largest_step(const struct model *m, const struct state *s, enum step_rule rule,
                            struct arena *a)
 {
+    /* Invariant: low is stable, high is not. */
     double low = 1e-12, high = LONGEST;
     if (!is_stable(m, s, rule, low, a)) return 0;
     if (is_stable(m, s, rule, high, a)) return high;
@@ -68,8 +80,8 @@ static double largest_step(const struct model *m, const struct state *s, enum st
     return low;
 }
 
-/* Simulated seconds of `steps` time steps of the parallel kernel, a body a processor. NaN: it
- * cannot. */
+/* Simulated seconds of `steps` time steps of the parallel kernel, a body per processor; steps =
+ * 0: of one evaluation. NaN: the kernel cannot run it. */
 static double machine_time(const struct model *m, const struct state *s, enum step_rule rule,
                            int steps, double h, struct arena *a)
 {
@@ -88,6 +100,7 @@ static double machine_time(const struct model *m, const struct state *s, enum st
     return t.answered ? (double)t.makespan_ps * 1e-12 : NAN;
 }
 
+/* The larger error of coordinates and of rates. */
 static double motion_error(const struct model *m, const struct state *begin,
                            const struct state *end, const struct state *reference)
 {
@@ -108,7 +121,8 @@ static double error_of(const struct model *m, const struct state *s, enum step_r
     return motion_error(m, s, end, reference);
 }
 
-/* The largest stable step, then as many steps, from half of that on, as an error of 1% takes. */
+/* One of the program's own steppers: its largest stable step, then how many steps, from half of
+ * that on, an error of 1 % takes. */
 static void own_row(struct stability_report *r, const char *subject, const struct model *m,
                     const struct state *s, enum step_rule rule, double duration,
                     const struct state *reference, struct arena *a)
@@ -122,6 +136,8 @@ static void own_row(struct stability_report *r, const char *subject, const struc
     }
     const int each = rule == STEP_RK4 ? 4 : 1;
     double steps = ceil(2 * duration / x->step_s), error = INFINITY;
+    /* A stiff scene makes explicit steppers hopeless: the number of evaluations says so without
+     * a run. */
     if (steps * each > MOST_EVALUATIONS) {
         snprintf(x->reason, sizeof x->reason, "%.1e evaluations at half that step: not run",
                  steps * each);
@@ -129,6 +145,7 @@ static void own_row(struct stability_report *r, const char *subject, const struc
         return;
     }
     struct state end = {0};
+    /* Double the steps until the error is small or the next doubling is too long. */
     for (;; steps *= 2) {
         error = error_of(m, s, rule, duration, steps, reference, &end, a);
         if (error <= 0.01 || 2 * steps * each > MOST_OWN) break;
@@ -138,13 +155,17 @@ static void own_row(struct stability_report *r, const char *subject, const struc
                 : isfinite(error) ? STABILITY_DEGRADED
                                   : STABILITY_FAILED;
     double E = energy_of(m, reference, a), h = duration / steps;
+    /* A reference at rest at energy 0 would divide by zero. */
     if (isfinite(error)) x->energy_drift = fabs(energy_of(m, &end, a) - E) / fmax(fabs(E), 1e-300);
+    /* One step is the difference of two runs: what happens once cancels. */
     double each_s = machine_time(m, s, rule, 2, h, a) - machine_time(m, s, rule, 1, h, a);
     snprintf(x->reason, sizeof x->reason, "%.0f evaluations, %.3g s on the machine%s%s",
              steps * each, steps * each_s, error <= 0.01 ? "" : "; 1% needs more",
              x->step_s >= LONGEST ? "; longer steps not tried" : "");
 }
 
+/* A library's stepper with step control: here the tolerance is given, and the step is found.
+ * Limits are wider, since 1e-6 per step adds up. */
 static void library_row(struct stability_report *r, const char *subject, const struct model *m,
                         const struct state *s, const char *stepper, double duration,
                         const struct state *reference, struct arena *a)
@@ -161,6 +182,7 @@ static void library_row(struct stability_report *r, const char *subject, const s
         return;
     }
     double error = motion_error(m, s, &end, reference);
+    /* Graded by hand: row_grade's limits are for single evaluations. */
     x->error = isfinite(error) ? error : NAN;
     x->status = error <= 1e-3 ? STABILITY_OK : error <= 0.1 ? STABILITY_DEGRADED : STABILITY_FAILED;
     x->step_s = t.steps > 0 ? duration / (double)t.steps : NAN;
@@ -171,6 +193,8 @@ static void library_row(struct stability_report *r, const char *subject, const s
              (double)t.evaluations * machine_time(m, s, STEP_SEMI_IMPLICIT, 0, 0, a));
 }
 
+/* The reference for undamped springs is explicit and of high order, for damped ones implicit: an
+ * explicit one could not reach the end. */
 void stability_motion(struct stability_report *r, const char *subject, const struct model *m,
                       const struct state *s, bool damped, struct arena *scratch)
 {
@@ -198,7 +222,8 @@ void stability_motion(struct stability_report *r, const char *subject, const str
 
 /* --- energy of scenes that are not stiff ------------------------------------------------------ */
 
-/* The time in which the fastest joint turns by a third of a radian. */
+/* The time in which the fastest joint turns by about a third of a radian, at its rate or from
+ * rest under its acceleration. 0: no acceleration can be computed. */
 static double short_time(const struct model *m, const struct state *s, struct arena *a)
 {
     double *qdd = TAKE(a, m->nu + 1, double), rate = 0, force = 0;
@@ -211,7 +236,8 @@ static double short_time(const struct model *m, const struct state *s, struct ar
     return isfinite(fastest) ? fastest > 0 ? 0.3 / fastest : 1 : 0;
 }
 
-/* Of one motion from `begin` to `end`, in error and energy. */
+/* Error and energy of one motion. Without motors and dampers energy is kept: its change is an
+ * error, relative to the energy that moves. */
 static void judge_motion(struct stability_row *x, const struct model *m, const struct state *begin,
                          const struct state *end, const struct state *reference, struct arena *a)
 {
@@ -223,14 +249,17 @@ static void judge_motion(struct stability_row *x, const struct model *m, const s
     x->energy_drift = scale > 0 ? fabs(change) / scale : fabs(change);
     double error = motion_error(m, begin, end, reference);
     row_grade(x, error, false);
+    /* Right at the end but with energy lost on the way: not ok. */
     if (x->status == STABILITY_OK && !(x->energy_drift <= 1e-6)) x->status = STABILITY_DEGRADED;
 }
 
-/* The end of a motion by a tight stepper; *duration shrinks by tens where the scene whips too fast
- * to be followed. */
+/* The end of a motion by a tight stepper. Where the scene moves too fast to be followed within
+ * the evaluations allowed, *duration is divided by ten, at most three times. Returns false, with
+ * *e set unless the duration was 0. */
 static bool follow(const struct model *m, const struct state *begin, double *duration,
                    struct state *end, struct arena *a, struct err *e)
 {
+    /* Evaluations allowed: fewer for large scenes, so that each takes about the same time. */
     const double most = fmin(fmax(1e6 / m->nbody, 300), 4000);
     const struct trajectory_options tight = {
         .stepper = "rkck", .tolerance = 1e-12, .most_evaluations = (long)most};
@@ -242,6 +271,8 @@ static bool follow(const struct model *m, const struct state *begin, double *dur
     return false;
 }
 
+/* Two rows: fixed steps of RK4 and a tight library stepper, both with the motors off and without
+ * external forces, so that energy must be kept. */
 void stability_energy(struct stability_report *r, const char *subject, const struct model *m,
                       const struct state *s, struct arena *scratch)
 {
@@ -249,9 +280,11 @@ void stability_energy(struct stability_report *r, const char *subject, const str
     struct state begin = copy_of(m, s, scratch), reference = {0}, end;
     struct err e;
     err_clear(&e);
+    /* zeros: the motors are off */
     begin.tau = TAKE(scratch, m->nu + 1, double);
     begin.fext = NULL;
     struct stability_row *x = row_add(r, subject, "motion rk4", "double");
+    /* An evaluation of such a scene takes seconds: a motion takes hundreds. */
     if (m->nbody > MOST_MOVED) {
         snprintf(x->reason, sizeof x->reason,
                  "no motion: an evaluation of %d bodies takes too long", m->nbody);

@@ -10,11 +10,15 @@
 
 /* What is not said: unit rods on revolute joints under gravity, joint rates and forces of order
  * one. */
+/* Poses: straight in a plane, coiled in space, straight with twisted axes; and a short chain of
+ * stiff springs. */
 #define CHAIN(n) .nbody = (n)
 #define COIL(n) .nbody = (n), .pose = POSE_COILED, .axes = AXES_TWISTED
 #define TWIST(n) .nbody = (n), .pose = POSE_STRAIGHT, .axes = AXES_TWISTED
 #define STIFF(k, c) COIL(4), .stiffness = (k), .damping = (c)
 
+/* Each scene is extreme in one way: masses, lengths and units, poses, sizes, rates, points,
+ * forces, bases and joints, trees, loops, denormal numbers, springs. */
 static const struct stability_scene scenes[] = {
     {.name = "mass even", .spec = {COIL(64)}},
     {.name = "mass heavy tip 1e6", .spec = {COIL(64)}, .spread = SPREAD_HEAVY_TIP, .ratio = 1e6},
@@ -47,17 +51,20 @@ static const struct stability_scene scenes[] = {
      .spec = {COIL(64)},
      .spread = SPREAD_LIGHT_BASE,
      .ratio = 1e12},
+    /* units: nothing may depend on metres and kilograms */
     {.name = "length 1e-10 m", .spec = {COIL(64), .length = 1e-10, .radius = 5e-12}},
     {.name = "length 1e3 m", .spec = {COIL(64), .length = 1e3, .radius = 50}},
     {.name = "molecular SI",
      .spec = {COIL(64), .length = 1.5e-10, .radius = 1e-11, .mass = 2.3e-26}},
     {.name = "molecular amu",
      .spec = {COIL(64), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
+    /* poses in which columns of the mass matrix become alike */
     {.name = "pose straight planar", .spec = {CHAIN(64)}},
     {.name = "pose nearly straight", .spec = {CHAIN(64)}, .nudge = 1e-8},
     {.name = "pose straight twisted", .spec = {TWIST(64)}},
     {.name = "pose folded", .spec = {CHAIN(64), .pose = POSE_FOLDED}},
     {.name = "pose nearly folded", .spec = {CHAIN(64), .pose = POSE_FOLDED}, .nudge = 1e-8},
+    /* sizes, with odd ones, as cyclic reduction halves them */
     {.name = "n 1", .spec = {COIL(1)}},
     {.name = "n 2", .spec = {COIL(2)}},
     {.name = "n 3", .spec = {COIL(3)}},
@@ -71,6 +78,7 @@ static const struct stability_scene scenes[] = {
     {.name = "n 4096 torsion",
      .spec = {COIL(4096), .generator = MODEL_POLYMER, .torque = 1e-21, .rate = 1e11}},
     {.name = "n 65536", .spec = {COIL(65536)}},
+    /* forces that differ by many orders, and inertias near zero */
     {.name = "rates 1e3 rad/s", .spec = {COIL(64), .rate = 1e3}},
     {.name = "rates 1e6 rad/s", .spec = {COIL(64), .rate = 1e6}},
     {.name = "slender rods", .spec = {COIL(64), .radius = 1e-6}},
@@ -79,6 +87,7 @@ static const struct stability_scene scenes[] = {
     {.name = "nearly points 1e-6", .spec = {COIL(64)}, .point = 1e-6},
     {.name = "zero gravity at rest", .spec = {COIL(64)}, .weightless = true, .at_rest = true},
     {.name = "zero gravity", .spec = {COIL(64)}, .weightless = true},
+    /* bases, joints and trees */
     {.name = "free-floating", .spec = {COIL(64), .base = BASE_FLOATING}},
     {.name = "free-floating 1e6",
      .spec = {COIL(64), .base = BASE_FLOATING, .inertia = INERTIA_RANDOM, .mass_ratio = 1e6}},
@@ -91,6 +100,7 @@ static const struct stability_scene scenes[] = {
     {.name = "random tree 1e6",
      .spec = {COIL(64), .generator = MODEL_RANDOM_TREE, .inertia = INERTIA_RANDOM,
               .mass_ratio = 1e6}},
+    /* loops: singular, nearly singular, redundant */
     {.name = "four-bar at its singularity",
      .spec = {CHAIN(3), .generator = MODEL_FOUR_BAR, .gravity = {0, -9.81, 0}}},
     {.name = "four-bar near 1e-3",
@@ -103,11 +113,13 @@ static const struct stability_scene scenes[] = {
      .spec = {CHAIN(5), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
     {.name = "redundant ring of 63",
      .spec = {CHAIN(63), .generator = MODEL_RING, .gravity = {0, -9.81, 0}}},
+    /* numbers at the lower end of double */
     {.name = "denormal masses 1e-308", .spec = {COIL(16), .mass = 1e-308, .torque = 1e-308}},
     {.name = "denormal torques",
      .spec = {COIL(16), .torque = 1e-310},
      .weightless = true,
      .at_rest = true},
+    /* stiff springs: frequencies of sqrt(stiffness / inertia) */
     {.name = "springs 1e2 undamped", .spec = {STIFF(1e2, 0)}, .moves = true},
     {.name = "springs 1e4 undamped", .spec = {STIFF(1e4, 0)}, .moves = true},
     {.name = "springs 1e6 undamped", .spec = {STIFF(1e6, 0)}, .moves = true},
@@ -125,6 +137,7 @@ const struct stability_scene *scene_list(int *n)
     return scenes;
 }
 
+/* Mass of body i of n over the generated one; c->ratio is that of the largest to the smallest. */
 static double mass_factor(const struct stability_scene *c, int i, int n)
 {
     struct random r = random_make(1, STREAM_INERTIA, (uint64_t)i);
@@ -144,10 +157,13 @@ static double mass_factor(const struct stability_scene *c, int i, int n)
 
 /* The generated model with its masses and inertias changed; the model itself when nothing is to
  * change. */
+/* A new model with the same joints; kinematic loops do not occur in the scenes that are
+ * reshaped. */
 static struct model *reshape(const struct stability_scene *c, struct model *m, struct arena *a,
                              struct err *e)
 {
     double point = c->point > 0 ? c->point : 1;
+    /* Nothing to change: the generator's model, with its loops. */
     if (c->spread == SPREAD_EVEN && point == 1) return m;
     struct model *x = model_begin(a, NULL);
     memcpy(x->gravity, m->gravity, sizeof x->gravity);
@@ -155,6 +171,7 @@ static struct model *reshape(const struct stability_scene *c, struct model *m, s
     for (int i = 0; i < m->nbody; i++) {
         struct body_def b = m->body[i];
         double f = mass_factor(c, i, m->nbody);
+        /* Mass and inertia by the same factor; `point` shrinks the inertia alone. */
         b.mass *= f;
         for (int k = 0; k < 6; k++) b.inertia[k] *= f * point;
         if (model_add_body(x, &b, e) < 0) return NULL;
@@ -162,7 +179,8 @@ static struct model *reshape(const struct stability_scene *c, struct model *m, s
     return model_finish(x, false, e) ? x : NULL;
 }
 
-/* The spec with everything that its scene does not say. */
+/* The spec with what its scene does not say: rods of 1 m and 1 kg on revolute joints, gravity
+ * along -z (planar loops say theirs), torques and rates of order one. */
 static struct model_spec complete(const struct stability_scene *c)
 {
     struct model_spec x = c->spec;
@@ -179,6 +197,7 @@ static struct model_spec complete(const struct stability_scene *c)
     return x;
 }
 
+/* Model, then reshaped masses, then state, then the pose moved. */
 bool scene_build(const struct stability_scene *c, struct arena *a, struct model **m,
                  struct state **s, struct err *e)
 {
@@ -186,6 +205,7 @@ bool scene_build(const struct stability_scene *c, struct arena *a, struct model 
     *m = model_build(&spec, a, e);
     if (*m) *m = reshape(c, *m, a, e);
     if (!*m) return false;
+    /* Spatial inertias and their inverses follow from the changed masses. */
     system_prepare(*m);
     *s = state_make(*m, &spec, a);
     for (int i = 0; i < (*m)->nq && c->nudge != 0; i++) (*s)->q[i] += i % 2 ? -c->nudge : c->nudge;

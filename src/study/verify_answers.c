@@ -36,6 +36,7 @@ const char *verify_quantity_name(enum verify_quantity k)
 /* --- the list --------------------------------------------------------------------------------- */
 
 /* Append n numbers, in vectors of `part` numbers each. */
+/* Numbers of a vector know its first one: they will share its scale. */
 static void append(struct verify_answers *x, const double *from, int n, int part)
 {
     for (int i = 0; i < n; i++) {
@@ -54,6 +55,8 @@ static void append_joints(struct verify_answers *x, const struct vector_case *c,
     }
 }
 
+/* The first degree of freedom of the linear or the angular part that each one belongs to: joints
+ * with one or two have parts of one number, others parts of three. */
 static void parts_find(struct verify_answers *x, const struct vector_case *c)
 {
     for (int i = 0; i < c->nbody; i++) {
@@ -87,6 +90,7 @@ static void append_poses(struct verify_answers *x, const struct vector_case *c)
     }
 }
 
+/* Where the numbers of each quantity come from; NULL or a count of 0: the file does not have it. */
 static void append_quantity(struct verify_answers *x, const struct vector_case *c,
                             enum verify_quantity k)
 {
@@ -109,6 +113,7 @@ static void append_quantity(struct verify_answers *x, const struct vector_case *
     }
 }
 
+/* Numbers of all quantities together, and 16 for the totals. */
 static size_t room_for(const struct vector_case *c)
 {
     size_t nv = (size_t)c->nv,
@@ -116,6 +121,7 @@ static size_t room_for(const struct vector_case *c)
     return n + (c->mass_matrix ? nv * nv : 0) + (size_t)c->nrow;
 }
 
+/* 0: the file does not have the quantity. */
 static int count_of(const struct verify_answers *x, enum verify_quantity k)
 {
     return x->at[k + 1] - x->at[k];
@@ -123,12 +129,15 @@ static int count_of(const struct verify_answers *x, enum verify_quantity k)
 
 /* --- computing -------------------------------------------------------------------------------- */
 
+/* Copies a quantity to its place in y, as many numbers as the file has of it. */
 static void put(const struct verify_answers *x, enum verify_quantity k, const double *from,
                 double *y)
 {
     if (count_of(x, k) > 0) memcpy(y + x->at[k], from, (size_t)count_of(x, k) * sizeof *y);
 }
 
+/* Three inverse dynamics: as given, without accelerations (bias forces), and at rest without
+ * external forces (gravity). */
 static void put_inverse(const struct verify_answers *x, const struct model *m,
                         const struct state *s, const struct dynamics_type *type, struct arena *a,
                         double *y)
@@ -149,6 +158,7 @@ static void put_inverse(const struct verify_answers *x, const struct model *m,
     put(x, VERIFY_WRENCH, wrench, y);
 }
 
+/* Energies, momenta and mass of the whole system. */
 static void put_totals(const struct verify_answers *x, const struct model *m, const struct state *s,
                        const struct dynamics_type *type, struct arena *a, double *y)
 {
@@ -162,6 +172,7 @@ static void put_totals(const struct verify_answers *x, const struct model *m, co
     put(x, VERIFY_TOTAL_MASS, &t.mass, y);
 }
 
+/* Poses are computed of all bodies; the file may have those of a few. */
 static void put_poses(const struct verify_answers *x, const struct vector_case *c,
                       const struct model *m, const struct state *s,
                       const struct dynamics_type *type, struct arena *a, double *y)
@@ -191,6 +202,7 @@ void verify_answers_compute(const struct verify_answers *x, const struct vector_
 }
 
 /* Accelerations and loop forces in quad precision. redundant (may be NULL): see verify_answers. */
+/* On redundant loops accelerations are unique and loop forces are not: the rank tells. */
 static bool put_forward(const struct verify_answers *x, const struct model *m,
                         const struct state *s, struct arena *a, double *y, int *redundant)
 {
@@ -216,8 +228,11 @@ static bool put_forward(const struct verify_answers *x, const struct model *m,
 static const double cancels =
     1e-18; /* of the other scale: what quad precision leaves of a number that cancels */
 
+/* The states in which wrenches are needed: with the file's accelerations, without them, at rest,
+ * and with the exact accelerations. */
 enum load { LOAD_INVERSE, LOAD_BIAS, LOAD_REST, LOAD_FORWARD, LOADS };
 
+/* What a sample needs: the exact answers to compare with, and the scales that it raises. */
 struct sampler {
     struct verify_answers *x;
     const struct vector_case *c;
@@ -226,6 +241,7 @@ struct sampler {
     double *qdd;                          /* (nv) exact */
 };
 
+/* Wrenches in all joints in one of these states. */
 static void wrenches_of(const struct sampler *p, const struct model *m, const struct state *s,
                         enum load load, double *wrench)
 {
@@ -244,6 +260,7 @@ static void wrenches_take(const struct sampler *p, const struct model *m, const 
     struct arena_mark mark = arena_mark(p->a);
     double *w = TAKE(p->a, size_product(6, m->nbody), double);
     wrenches_of(p, m, s, load, w);
+    /* moved is the relative change of the inputs: change / moved is the effect of a change by 1. */
     for (int i = 0; i < 6 * m->nbody; i++) {
         double *scale = &p->scale[load][i / 3], *exact = &p->wrench[load][i];
         *scale = fmax(*scale, fmax(fabs(*exact), fabs(w[i] - *exact) / moved));
@@ -260,7 +277,8 @@ static double wrench_scale(const struct sampler *p, enum load load, int i, int v
     return p->scale[load][2 * i + (linear ? 0 : 1)];
 }
 
-/* Joint forces that cancel; after `share`. */
+/* Joint forces that cancel get the scale of the wrench that they are a component of; after
+ * `share`. */
 static void forces_mend(const struct sampler *p, enum verify_quantity k, enum load load)
 {
     if (count_of(p->x, k) == 0) return;
@@ -268,12 +286,15 @@ static void forces_mend(const struct sampler *p, enum verify_quantity k, enum lo
         for (int v = p->c->body[i].v; v < p->c->body[i].v + vector_joint_nv(p->c->body[i].joint);
              v++) {
             double *scale = &p->x->scale[p->x->at[k] + v], other = wrench_scale(p, load, i, v);
+            /* Only a scale that is nothing but leftover digits is replaced. */
             if (*scale < cancels * other) *scale = other;
         }
 }
 
 /* Accelerations that cancel: how far they move when joint forces move by roundings of what these
  * are components of. */
+/* The same for accelerations. There is no wrench of an acceleration: joint forces are shaken by
+ * what would be roundings of their wrenches, and the accelerations' response is the scale. */
 static void accelerations_mend(const struct sampler *p, const struct model *m,
                                const struct state *s, struct random *r, double *y)
 {
@@ -285,6 +306,7 @@ static void accelerations_mend(const struct sampler *p, const struct model *m,
         least = fmin(least, x->scale[first + k]);
         largest = fmax(largest, x->scale[first + k]);
     }
+    /* Least and largest scale within ten digits: no number cancels. */
     if (!x->forward || least > 1e-10 * largest) return; /* nothing cancels */
     shaken.tau = TAKE(p->a, m->nu + 1, double);
     for (int i = 0; i < p->c->nbody; i++)
@@ -299,6 +321,7 @@ static void accelerations_mend(const struct sampler *p, const struct model *m,
     }
 }
 
+/* Each sample moves all inputs at once, by random amounts. */
 /* Fewer where a sample takes long: a sample of many bodies already holds many roundings. */
 static int samples_of(const struct vector_case *c) { return c->nbody > 200 ? 3 : 6; }
 
@@ -307,6 +330,8 @@ static bool sample(const struct sampler *p, struct random *r, double *y, struct 
 {
     struct verify_answers *x = p->x;
     struct arena_mark mark = arena_mark(p->a);
+    /* The perturbed case is a case of its own: its model and state are built from it as from a
+     * file. */
     const struct vector_case *c = vector_perturb(p->c, moved, r, p->a);
     struct model *m = vector_model(c, p->a, e);
     if (!m) return false;
@@ -314,6 +339,7 @@ static bool sample(const struct sampler *p, struct random *r, double *y, struct 
     const struct state *s = vector_state(c, m, p->a);
     for (int load = 0; load < LOADS; load++) wrenches_take(p, m, s, (enum load)load);
     verify_answers_compute(x, c, m, s, PRECISION_QUAD, p->a, y);
+    /* A sample in which articulated bodies break down says nothing of accelerations. */
     bool forward = x->forward && put_forward(x, m, s, p->a, y, NULL);
     for (int i = 0; i < x->n; i++)
         if (i < x->at[VERIFY_QDD_FD] || forward)
@@ -322,6 +348,7 @@ static bool sample(const struct sampler *p, struct random *r, double *y, struct 
     return true;
 }
 
+/* The exact wrenches in all four states, before any sample. */
 static struct sampler sampler_make(struct verify_answers *x, const struct vector_case *c,
                                    const struct model *m, const struct state *s, struct arena *a)
 {
@@ -339,6 +366,7 @@ static struct sampler sampler_make(struct verify_answers *x, const struct vector
  * 1e-77 is left. */
 static void share(struct verify_answers *x)
 {
+    /* far below any digit of quad precision, far above what is left of zero */
     const double digits_left = 1e-50;
     for (int k = 0; k < VERIFY_QUANTITIES; k++) {
         double largest = 0;
@@ -350,6 +378,8 @@ static void share(struct verify_answers *x)
     for (int i = 0; i < x->n; i++) x->scale[i] = x->scale[x->group[i]];
 }
 
+/* The list of answers, their exact values, then their scales: at least their own size, raised by
+ * the samples, shared within vectors, mended where they cancel. */
 bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
                          const struct model *m, const struct state *s, struct arena *a,
                          struct err *e)
@@ -358,6 +388,7 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
     *x = (struct verify_answers){.group = TAKE(a, room, int), .reference = TAKE(a, room, double),
                                  .exact = TAKE(a, room, double), .scale = TAKE(a, room, double),
                                  .part = TAKE(a, c->nv + 1, int)};
+    /* Where the numbers of each quantity begin; at[VERIFY_QUANTITIES] is the end of the last. */
     parts_find(x, c);
     for (int k = 0; k < VERIFY_QUANTITIES; k++) {
         x->at[k] = x->n;
@@ -366,6 +397,7 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
     x->at[VERIFY_QUANTITIES] = x->n;
     verify_answers_compute(x, c, m, s, PRECISION_QUAD, a, x->exact);
     x->forward = c->qdd_fd && put_forward(x, m, s, a, x->exact, &x->redundant);
+    /* Scales: each sample can only raise them, so their order does not count. */
     for (int i = 0; i < x->n; i++) x->scale[i] = fabs(x->exact[i]);
     const struct sampler p = sampler_make(x, c, m, s, a);
     struct random r = random_make(1, 53, 0);
@@ -373,6 +405,7 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
     for (int k = samples_of(c); k > 0; k--)
         if (!sample(&p, &r, y, e)) return false;
     share(x);
+    /* Last, as a shared scale may already have mended a number. */
     forces_mend(&p, VERIFY_TAU_ID, LOAD_INVERSE);
     forces_mend(&p, VERIFY_BIAS, LOAD_BIAS);
     forces_mend(&p, VERIFY_GRAVITY_TORQUE, LOAD_REST);
@@ -382,6 +415,7 @@ bool verify_answers_make(struct verify_answers *x, const struct vector_case *c,
 
 /* --- judging ---------------------------------------------------------------------------------- */
 
+/* A number that no input can move must be exact: any difference is infinite. */
 double verify_answers_error(const struct verify_answers *x, enum verify_quantity k, const double *y)
 {
     const double *reference = x->reference + x->at[k], *scale = x->scale + x->at[k];
@@ -394,6 +428,7 @@ double verify_answers_error(const struct verify_answers *x, enum verify_quantity
     return error;
 }
 
+/* The usual measure: the largest difference over the largest number. */
 double verify_answers_plain(const struct verify_answers *x, enum verify_quantity k, const double *y)
 {
     const double *reference = x->reference + x->at[k];
@@ -408,6 +443,7 @@ double verify_answers_plain(const struct verify_answers *x, enum verify_quantity
 
 bool verify_answers_tells(const struct verify_answers *x, enum verify_quantity k, double tolerance)
 {
+    /* Every number is zero and none can move: then a zero is a right answer. */
     bool fixed = true; /* nothing moves: all are zero, and exactly so */
     for (int i = x->at[k]; i < x->at[k + 1]; i++) {
         if (fabs(x->exact[i]) > 10 * tolerance * x->scale[i]) return true;

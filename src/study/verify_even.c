@@ -13,6 +13,7 @@ bool verify_lump(struct verify_case *v, struct err *e)
 {
     v->lumped = v->model;
     v->lumped_state = v->state;
+    /* With inverses of all inertias there is nothing to lump. */
     if (v->model->has_phi) return true;
     struct lumped lumped;
     if (!lump_fixed(v->model, true, v->arena, &lumped, e)) return false;
@@ -22,6 +23,8 @@ bool verify_lump(struct verify_case *v, struct err *e)
     return true;
 }
 
+/* The same scene with even masses, made once and kept: a row that fails on the case is asked
+ * again there. Its reference is articulated bodies in quad precision. */
 bool verify_even(struct verify_case *v, struct err *e)
 {
     if (v->even) return true;
@@ -43,6 +46,7 @@ bool verify_even(struct verify_case *v, struct err *e)
     return true;
 }
 
+/* On a scene without extremes every correct algorithm has eight digits. */
 bool verify_even_right(const struct verify_case *v, const double *qdd)
 {
     const struct verify_answers *x = &v->even->answers;

@@ -1,5 +1,9 @@
-/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several numbers
- * of ranks. */
+/* verify_parallel.c - rows of the parallel kernels, run on virtual processors with several
+ * numbers of ranks.
+ *
+ * A row is a variant of a kernel; its error is the worst over the numbers of ranks, since an
+ * error in the communication may show with one number of ranks only (odd, not a power of two,
+ * one body per rank). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +22,8 @@ struct variant {
     struct kernel_spec kernel;
 };
 
+/* Every solver with every formulation and refinement, then the operators, partitions and the
+ * plane with one solver: a full product would repeat the same code. */
 static const struct variant variant_table[] = {
     {"parallel inverse incoming", {.name = "inverse", .composites_incoming = true}},
     {"parallel inverse outgoing", {.name = "inverse"}},
@@ -50,12 +56,14 @@ static const struct variant variant_table[] = {
 };
 enum { VARIANTS = sizeof variant_table / sizeof *variant_table, MAX_RANKS = 5 };
 
-/* P = 1, 2, 3, n/2, n without repetition; of large cases 3 and n. */
+/* P = 1, 2, 3, n/2, n without repetition, in rising order; of large cases 3 and n only, as each
+ * run takes its time. */
 static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANKS])
 {
     enum { LARGE = 200 };
     const int all[MAX_RANKS] = {1, 2, 3, n / 2, n}, few[2] = {3, n};
     bool large = n > LARGE && !o->all_ranks;
+    /* rising numbers: a repetition is not larger than the one before */
     int count = 0;
     for (int i = 0; i < (large ? 2 : MAX_RANKS); i++) {
         int p = large ? few[i] : all[i];
@@ -64,14 +72,15 @@ static int ranks_choose(const struct verify_options *o, int n, int rank[MAX_RANK
     return count;
 }
 
-/* What one run gave. */
+/* What one run gave: refused before it began, broken on the way, or an answer. */
 struct outcome {
     enum { ANSWERED, REFUSED, BROKEN } kind;
     double *x, *lambda;  /* tau or qdd, loop forces */
     char text[96];       /* refused, broken: why */
 };
 
-/* Run a kernel on nrank virtual processors; in space unless the plane is asked for. */
+/* Runs a kernel on nrank virtual processors; in space unless the plane is asked for. A refusal
+ * and a break are outcomes; false with *e set only when the run cannot be made at all. */
 static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, int nrank,
                        struct outcome *out, struct err *e)
 {
@@ -81,6 +90,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
                                 v->options->machine ? *v->options->machine : trial_machine(nrank),
                             .kernel = *kernel,
                             .nrank = nrank};
+    /* Forward kernels need inertias with inverses: bodies on fixed joints are lumped for them. */
     const bool lumped = strcmp(kernel->name, "inverse") != 0;
     struct err refused;
     err_clear(&refused);
@@ -92,6 +102,7 @@ static bool kernel_run(struct verify_case *v, const struct kernel_spec *kernel, 
         text_copy(out->text, sizeof out->text, refused.text);
         return true;
     }
+    /* The machine that the user named, or the crossbar: answers must not depend on it. */
     if (!launch_run(r, &spec.machine, &spec.record, 0, launch_largest_message(r), v->arena,
                     v->arena, result, e))
         return false;
@@ -108,6 +119,7 @@ struct spread {
     char ranks[32], text[128]; /* numbers of ranks tried; why one was refused or broke down */
 };
 
+/* Keep the row with the larger error; NaN compares as not larger. */
 static void worst_take(struct verify_row *worst, struct verify_row *row, int nrank)
 {
     if (worst->worst_rank > 0 && !(row->error > worst->error)) return;
@@ -115,17 +127,20 @@ static void worst_take(struct verify_row *worst, struct verify_row *row, int nra
     *worst = *row;
 }
 
+/* The judgement of one number of ranks, into the worst of its variant. */
 static void spread_add(struct spread *s, const struct verify_case *v, const struct outcome *x,
                        int nrank, bool inverse)
 {
     const struct verify_options *o = v->options;
     bool good = x->kind == ANSWERED;
     struct verify_row row = {.worst_rank = 0};
+    /* the list of numbers of ranks, "1,2,3" */
     size_t used = strlen(s->ranks);
     snprintf(s->ranks + used, sizeof s->ranks - used, "%s%d", used ? "," : "", nrank);
     if (!good) text_copy(s->text, sizeof s->text, x->text);
     verify_row_judge(v, &row, inverse ? VERIFY_TAU_ID : VERIFY_QDD_FD, good ? x->x : NULL,
                      inverse ? verify_tolerance_inverse(o) : verify_tolerance_forward(o));
+    /* A run that breaks down is the worst answer, and its reason is kept. */
     if (!good) snprintf(row.note, sizeof row.note, "breaks down: %.100s", x->text);
     worst_take(&s->answer, &row, nrank);
     if (inverse || !v->vector->lambda) return;
@@ -135,6 +150,7 @@ static void spread_add(struct spread *s, const struct verify_case *v, const stru
     worst_take(&s->lambda, &lambda, nrank);
 }
 
+/* All numbers of ranks. Each run's memory is released; *s has copies. */
 static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel, struct spread *s,
                         struct err *e)
 {
@@ -146,6 +162,7 @@ static bool variant_run(struct verify_case *v, const struct kernel_spec *kernel,
         struct outcome x;
         struct arena_mark mark = arena_mark(v->arena);
         if (!kernel_run(v, kernel, rank[i], &x, e)) return false;
+        /* Another number of ranks may still be accepted. */
         if (x.kind == REFUSED)
             text_copy(s->text, sizeof s->text, x.text);
         else
@@ -176,13 +193,16 @@ static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enu
     struct kernel_spec again = *kernel;
     struct arena_mark mark = arena_mark(v->arena);
     struct outcome x;
+    /* asked only where it matters: the even scene costs another run */
     bool sane = true;
     if (verify_row_refuted(v, row, k)) return true;
+    /* The same variant on the same ranks, so that only the precision differs. */
     again.precision = PRECISION_QUAD;
     if (!kernel_run(v, &again, row->worst_rank, &x, e)) return false;
     const double *y = k == VERIFY_LAMBDA ? x.lambda : x.x;
     double error = x.kind == ANSWERED ? verify_answers_error(&v->answers, k, y) : INFINITY;
     arena_release(v->arena, mark);
+    /* Inverse dynamics has no system that could be singular: nothing excuses it. */
     if (k == VERIFY_TAU_ID)
         sane = false; /* inverse dynamics has no system to solve that could be singular */
     else if (error > row->tolerance && !is_sane(v, &again, row->worst_rank, &sane, e)) return false;
@@ -190,13 +210,14 @@ static bool explain(struct verify_case *v, const struct kernel_spec *kernel, enu
     return true;
 }
 
-/* A row of the report from what a spread found. */
+/* A row of the report from what the ranks gave, explained if it fails. */
 static bool row_keep(struct verify_case *v, const struct variant *variant,
                      const struct kernel_spec *kernel, enum verify_quantity k,
                      const struct spread *s, struct err *e)
 {
     struct verify_row *row = verify_row_add(v, variant->name, verify_quantity_name(k));
     struct verify_row found = k == VERIFY_LAMBDA ? s->lambda : s->answer;
+    /* the spread's row has numbers, the new one has names */
     memcpy(found.algorithm, row->algorithm, sizeof found.algorithm);
     memcpy(found.quantity, row->quantity, sizeof found.quantity);
     memcpy(found.ranks, s->ranks, sizeof found.ranks);
@@ -205,6 +226,7 @@ static bool row_keep(struct verify_case *v, const struct variant *variant,
     return row->verdict != VERIFY_FAIL || explain(v, kernel, k, row, e);
 }
 
+/* One variant: its row, and one for the loop forces where the file has them. */
 static bool variant_row(struct verify_case *v, const struct variant *variant, struct err *e)
 {
     struct kernel_spec kernel = variant->kernel;
@@ -213,6 +235,7 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     struct spread s;
     kernel.precision = v->options->precision;
     if (!variant_run(v, &kernel, &s, e)) return false;
+    /* No number of ranks could run it: the last refusal is the reason. */
     if (s.answer.worst_rank == 0) {
         verify_row_skip(v, variant->name, verify_quantity_name(quantity), s.text);
         v->report->row[v->report->nrow - 1].parallel = true;
@@ -220,6 +243,7 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     }
     if (!row_keep(v, variant, &kernel, quantity, &s, e)) return false;
     if (s.lambda.worst_rank == 0) return true;
+    /* On redundant loops a difference of lambda is no error. */
     if (verify_loops_skip(v, variant->name)) {
         v->report->row[v->report->nrow - 1].parallel = true;
         return true;
@@ -228,6 +252,8 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
 }
 
 /* Whether three components describe the case, to the rounding of its numbers. */
+/* planar_scene compares axes, offsets and forces with the plane's; its reason is not needed
+ * here. */
 static bool in_plane(const struct verify_case *v)
 {
     struct err why;
@@ -235,6 +261,8 @@ static bool in_plane(const struct verify_case *v)
     return planar_scene(v->model, v->state, PRECISION_DOUBLE, &why);
 }
 
+/* All variants that apply to the case: the file must have the quantity, the plane needs a planar
+ * scene, forward kernels need inertias. */
 bool verify_parallel(struct verify_case *v, struct err *e)
 {
     const bool planar = in_plane(v);

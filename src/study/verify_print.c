@@ -7,6 +7,7 @@
 #include "measure/column.h"
 #include "study/verify.h"
 
+/* In the order of enum verify_verdict. */
 static const char *const verdict_word[] = {"pass", "rounding", "algorithm-fails", "fail",
                                            "not-applicable"};
 
@@ -14,11 +15,13 @@ const char *verify_verdict_word(enum verify_verdict v) { return verdict_word[v];
 
 #define ROW(member) .offset = offsetof(struct verify_row, member)
 
+/* A row that was left out has no error: the columns are absent, not 0. */
 static bool applies(const void *row)
 {
     return ((const struct verify_row *)row)->verdict != VERIFY_NOT_APPLICABLE;
 }
 
+/* The numbers of ranks as people read them: "P=1,2,3". */
 static void read_ranks(const struct column *c, const void *row, struct column_value *v)
 {
     const struct verify_row *x = row;
@@ -28,6 +31,8 @@ static void read_ranks(const struct column *c, const void *row, struct column_va
     v->text = v->buffer;
 }
 
+/* FAIL in capitals: a reader looks for it among hundreds of rows. */
+/* The verdict as people read it. */
 static void read_verdict(const struct column *c, const void *row, struct column_value *v)
 {
     const enum verify_verdict verdict = ((const struct verify_row *)row)->verdict;
@@ -35,6 +40,9 @@ static void read_verdict(const struct column *c, const void *row, struct column_
     v->text = verdict == VERIFY_FAIL ? "FAIL" : c->word[verdict];
 }
 
+/* One row: the JSON keys are for programs, the *_shown columns for the terminal. An error is
+ * measured by the scales of the numbers (verify_answers.h), and in the usual way over the
+ * largest number. */
 static const struct column row_column[] = {
     {"algorithm", COLUMN_CHARS, ROW(algorithm), .title = "algorithm", .before = "  ", .width = -40,
      .doc = "under test"},
@@ -62,6 +70,7 @@ static const struct column_table row_columns = COLUMNS(row_column);
 
 #define CASE(member) .offset = offsetof(struct verify_report, member)
 
+/* The rows of a case as a list inside its object. */
 static void write_rows(const struct column *c, const void *row, struct json *j)
 {
     const struct verify_report *r = row;
@@ -69,6 +78,8 @@ static void write_rows(const struct column *c, const void *row, struct json *j)
     columns_json_list(&row_columns, r->row, r->nrow, sizeof *r->row, j);
 }
 
+/* One case. input_rounding and peer come from the file: how far one rounding of the inputs moves
+ * the answers, and how close the best of other libraries comes. */
 static const struct column case_column[] = {
     {"bodies", COLUMN_INT, CASE(nbody), .doc = "of the model"},
     {"degrees_of_freedom", COLUMN_INT, CASE(nu), .doc = "of the model"},
@@ -88,12 +99,14 @@ static const struct column case_column[] = {
 };
 static const struct column_table case_columns = COLUMNS(case_column);
 
+/* Name, size and verdict of a case, and the two yardsticks of its file where it has them. */
 static void print_heading(FILE *out, const struct verify_report *r)
 {
     fprintf(out, "%s: %d bod%s, %d degrees of freedom", r->name, r->nbody,
             r->nbody == 1 ? "y" : "ies", r->nu);
     if (r->nrow_loop > 0) fprintf(out, ", %d loop constraints", r->nrow_loop);
     fprintf(out, ": %s%s%s\n", r->passed ? "pass" : "FAIL", r->passed ? "" : ": ", r->text);
+    /* Either of the two is enough: the other prints as nan. */
     if (isfinite(r->floor_fd) || isfinite(r->peer_fd))
         fprintf(
             out,
@@ -101,6 +114,7 @@ static void print_heading(FILE *out, const struct verify_report *r)
             r->floor_id, r->floor_fd, r->peer_id, r->peer_id_name, r->peer_fd, r->peer_fd_name);
 }
 
+/* The columns, then why and what to use instead. */
 static void print_row(FILE *out, const struct verify_row *row)
 {
     columns_cells(&row_columns, row, out);
@@ -108,6 +122,7 @@ static void print_row(FILE *out, const struct verify_row *row)
             row->remedy);
 }
 
+/* brief: only rows that are neither right nor left out. */
 void verify_print(FILE *out, const struct verify_report *r, bool brief)
 {
     print_heading(out, r);
@@ -118,6 +133,7 @@ void verify_print(FILE *out, const struct verify_report *r, bool brief)
             print_row(out, &r->row[i]);
 }
 
+/* Counts over all cases. rounding and algorithm-fails are excused by another row (verify.c). */
 void verify_print_summary(FILE *out, const struct verify_report *r, int n)
 {
     int count[VERIFY_VERDICTS] = {0}, failed = 0, rows = 0;
@@ -138,6 +154,7 @@ struct matrix_column {
     const char *title, *algorithm, *quantity;
 };
 
+/* A prefix stands for a family: "parallel forward paper" for that form with every solver. */
 static const struct matrix_column column_table[] = {
     {"RNEA", "rnea", "tau_id"},
     {"parallel", "parallel inverse", "tau_id"},
@@ -156,12 +173,14 @@ enum { COLUMNS = sizeof column_table / sizeof *column_table };
 /* The largest error in the column, "-" when nothing there applies. */
 static void print_cell(FILE *out, const struct verify_report *r, const struct matrix_column *column)
 {
+    /* negative: no row so far */
     double largest = -1;
     for (int i = 0; i < r->nrow; i++) {
         const struct verify_row *row = &r->row[i];
         bool here = strncmp(row->algorithm, column->algorithm, strlen(column->algorithm)) == 0 &&
                     strcmp(row->quantity, column->quantity) == 0 &&
                     row->verdict != VERIFY_NOT_APPLICABLE;
+        /* The measure is the usual one, so that the column compares with `best library`. */
         if (here) largest = fmax(largest, row->plain);
     }
     if (largest < 0)
@@ -170,6 +189,8 @@ static void print_cell(FILE *out, const struct verify_report *r, const struct ma
         fprintf(out, " %.0e |", largest);
 }
 
+/* The matrix of cases and algorithms, in Markdown: errors over the largest number, as other
+ * libraries' errors are quoted. */
 void verify_print_matrix(FILE *out, const struct verify_report *r, int n)
 {
     fprintf(out, "| case | bodies |");
@@ -192,6 +213,7 @@ void verify_print_json(FILE *out, const struct verify_report *r, int n)
 {
     struct json j = json_make(out);
     int failed = 0;
+    /* The exit status of the verb follows from this number. */
     for (int i = 0; i < n; i++) failed += !r[i].passed;
     json_object(&j);
     json_key(&j, "cases");

@@ -1,5 +1,8 @@
-/* verify_serial.c - rows of the serial algorithms: inverse dynamics, kinematics, mass matrix, every
- * way forward. */
+/* verify_serial.c - rows of the serial algorithms: inverse dynamics, kinematics, mass matrix,
+ * every way forward.
+ *
+ * They are the baselines of every speedup, so they are verified first, and as strictly as the
+ * parallel ones. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,6 +19,8 @@ static const char *const answered_by[VERIFY_QUANTITIES] = {
     [VERIFY_POTENTIAL] = "totals", [VERIFY_LINEAR] = "totals",     [VERIFY_ANGULAR] = "totals",
     [VERIFY_COM] = "totals",       [VERIFY_TOTAL_MASS] = "totals", [VERIFY_MASS_MATRIX] = "crba"};
 
+/* All quantities but accelerations in one computation, then a row for each that the file has.
+ * Quad precision explains a failure; no scene is singular for these algorithms. */
 static void inverse_rows(struct verify_case *v)
 {
     const struct verify_answers *x = &v->answers;
@@ -36,12 +41,15 @@ static void inverse_rows(struct verify_case *v)
 
 /* --- forward dynamics ------------------------------------------------------------------------- */
 
+/* One answer of forward dynamics. good: no pivot broke down. */
 struct answer {
     double *qdd, *lambda;
     struct forward_report report;
     bool good;
 };
 
+/* Constraint-force algorithms run on the lumped model, others on the file's own: their
+ * accelerations have the same size, as fixed joints have no degrees of freedom. */
 static struct answer forward(const struct verify_case *v, enum precision precision,
                              enum forward_method method)
 {
@@ -56,6 +64,7 @@ static struct answer forward(const struct verify_case *v, enum precision precisi
     return x;
 }
 
+/* NULL as the answer: a pivot broke down. */
 static void judge(const struct verify_case *v, struct verify_row *row, enum verify_quantity k,
                   const double *y, bool good)
 {
@@ -63,7 +72,7 @@ static void judge(const struct verify_case *v, struct verify_row *row, enum veri
 }
 
 /* Rows above the tolerance, accelerations and loop forces (may be NULL), by a second run in quad
- * precision. */
+ * precision. Only if that is wrong as well, the even scene is asked. */
 static bool explain(struct verify_case *v, enum forward_method method, struct verify_row *qdd,
                     struct verify_row *lambda, struct err *e)
 {
@@ -100,6 +109,7 @@ static int lambda_row(struct verify_case *v, const char *name, const struct answ
 static const char *left_out(const struct verify_case *v, enum forward_method method,
                             const char *unfit)
 {
+    /* O(n^3) in the degrees of freedom; the O(n) algorithms have no limit. */
     enum { MASS_MATRIX_LIMIT = 512 };
     bool mass_matrix = method == FORWARD_CRBA || method == FORWARD_CRBA_SPARSE;
     if (method >= FORWARD_CFA_PAPER) return unfit;
@@ -109,6 +119,8 @@ static const char *left_out(const struct verify_case *v, enum forward_method met
 }
 
 /* unfit: why constraint forces do not apply, NULL when they do. */
+/* One algorithm: a row for its accelerations, and one for the loop forces. Pointers are taken
+ * after both rows exist, since rows move. */
 static bool forward_row(struct verify_case *v, enum forward_method method, const char *unfit,
                         struct err *e)
 {
@@ -118,6 +130,7 @@ static bool forward_row(struct verify_case *v, enum forward_method method, const
         return true;
     }
     struct answer x = forward(v, v->options->precision, method);
+    /* places, not pointers: the next row may move the table */
     int at = v->report->nrow;
     judge(v, verify_row_add(v, name, "qdd_fd"), VERIFY_QDD_FD, x.qdd, x.good);
     int at_lambda = lambda_row(v, name, &x);
@@ -127,11 +140,11 @@ static bool forward_row(struct verify_case *v, enum forward_method method, const
     return !wrong || explain(v, method, qdd, lambda, e);
 }
 
-/* The robust form has two algorithms and refines both: in double precision nothing that another one
- * passes is excused.
- */
+/* The robust form contains two algorithms and refines both: in double precision it must pass
+ * wherever another one passes, and no excuse counts. */
 static void robust_judge(const struct verify_case *v)
 {
+    /* `other`: another algorithm passes */
     struct verify_row *row = v->report->row, *robust = NULL;
     bool other = false;
     for (int i = 0; i < v->report->nrow; i++) {
@@ -146,6 +159,7 @@ static void robust_judge(const struct verify_case *v)
     if (v->options->precision == PRECISION_DOUBLE) robust->verdict = VERIFY_FAIL;
 }
 
+/* Every serial algorithm on the case. */
 bool verify_serial(struct verify_case *v, struct err *e)
 {
     char unfit[96];

@@ -38,8 +38,11 @@ static void worst_take(struct worst *w, double error, double tolerance)
  * is compared. */
 static const double hopeless = 1e-3;
 
+/* The tolerance at an instant: asked for, or the stepper's local errors grown by the
+ * sensitivity. */
 static double tolerance_at(const struct verify_case *v, int instant, int stepper)
 {
+    /* The user's tolerance replaces the stepper's own. */
     double asked = v->options->tolerance_forward > 0 ? v->options->tolerance_forward
                                                      : stepper_table[stepper].global;
     double grown = stepper_table[stepper].slack * stepper_table[stepper].local *
@@ -47,8 +50,8 @@ static double tolerance_at(const struct verify_case *v, int instant, int stepper
     return isfinite(grown) ? fmax(asked, grown) : asked;
 }
 
-/* The largest error of n numbers, in vectors of `part`, each vector by its largest length over the
- * motion. */
+/* The largest error of n numbers that form one vector, over its largest component in the whole
+ * motion: a joint that passes through zero keeps its scale. */
 static double motion_error(const struct vector_case *c, const double *x, int instant, bool rates,
                            int at, int n)
 {
@@ -63,7 +66,8 @@ static double motion_error(const struct vector_case *c, const double *x, int ins
     return scale > 0 ? difference / scale : difference > 0 ? INFINITY : 0;
 }
 
-/* Joint by joint, linear and angular parts by themselves. */
+/* Joint by joint; linear and angular parts by themselves, as their units differ. A floating base
+ * has seven coordinates, three of them linear. */
 static double state_error(const struct vector_case *c, int instant, const struct state *s)
 {
     double worst = 0;
@@ -79,6 +83,7 @@ static double state_error(const struct vector_case *c, int instant, const struct
     return worst;
 }
 
+/* A row of a pair of error and tolerance. */
 static void row_fill(struct verify_case *v, const char *name, const char *quantity,
                      const struct worst *w)
 {
@@ -88,9 +93,8 @@ static void row_fill(struct verify_case *v, const char *name, const char *quanti
     row->verdict = w->error <= w->tolerance ? VERIFY_PASS : VERIFY_FAIL;
 }
 
-/* Evaluations that an interval may take: a stiff motion needs ever more of an explicit stepper, and
- * is left to others.
- */
+/* Evaluations that one interval between instants may take, for all files about the same time: a
+ * stiff motion needs ever more of an explicit stepper, and is left to the others. */
 static long evaluations_allowed(const struct vector_case *c)
 {
     return 24000000L / c->nbody / c->ninstant;
@@ -110,6 +114,8 @@ static bool stepper_row(struct verify_case *v, int k)
     memcpy(s->q, c->q, (size_t)c->nq * sizeof *c->q);
     memcpy(s->qd, c->qd, (size_t)c->nv * sizeof *c->qd);
     err_clear(&e);
+    /* From instant to instant, without going back to the reference's states: errors accumulate
+     * as they would in a simulation. */
     for (int i = 0; i < c->ninstant; i++) {
         double tolerance = tolerance_at(v, i, k),
                duration = c->instant[i].time - (i > 0 ? c->instant[i - 1].time : 0);
@@ -120,6 +126,7 @@ static bool stepper_row(struct verify_case *v, int k)
             return false;
         }
         double error = state_error(c, i, s);
+        /* Past this instant every stepper is off: the motion is chaotic on this time scale. */
         if (tolerance > hopeless) {
             snprintf(why, sizeof why, "the motion is too sensitive for it (error %.1e)", error);
             verify_row_skip(v, stepper_table[k].name, "states", why);
@@ -147,7 +154,7 @@ static struct vector_case case_at(const struct vector_case *c, const struct vect
     return x;
 }
 
-/* The worst instant of each total, by the scales of its own state. */
+/* The worst instant of each total. Each instant is a case of its own, with scales of its own. */
 static bool totals_rows(struct verify_case *v, struct err *e)
 {
     const struct vector_case *c = v->vector;
@@ -166,6 +173,7 @@ static bool totals_rows(struct verify_case *v, struct err *e)
         for (int k = VERIFY_KINETIC; k <= VERIFY_ANGULAR; k++) {
             struct verify_row row = {.error = 0};
             verify_row_judge(&x, &row, (enum verify_quantity)k, y + x.answers.at[k], tolerance);
+            /* A row that tells something replaces one that does not. */
             bool told = row.verdict != VERIFY_NOT_APPLICABLE, first = worst[k].tolerance == 0;
             if (first ||
                 (told && (row.error > worst[k].error || worst[k].verdict == VERIFY_NOT_APPLICABLE)))
@@ -185,8 +193,10 @@ static bool totals_rows(struct verify_case *v, struct err *e)
 
 /* --- what the file says twice ----------------------------------------------------------------- */
 
+/* The file says it twice: both must be equal but for rounding when it was written. */
 static void twice_take(struct worst *w, double x, double again, double scale)
 {
+    /* decimal numbers read into double: two or three roundings */
     const double few_roundings = 1e-15;
     worst_take(w, x == again ? 0 : scale > 0 ? fabs(x - again) / scale : INFINITY, few_roundings);
 }
@@ -208,6 +218,7 @@ static void twice_rows(struct verify_case *v)
     if (c->instant[0].digits) row_fill(v, "trajectory.states", "states_45_digits", &digits);
 }
 
+/* At least one stepper must reach the end, or the motion is not verified. */
 bool verify_trajectory(struct verify_case *v, struct err *e)
 {
     bool any = false;

@@ -27,6 +27,7 @@ static double difference(const double *x, const double *ref, int n)
 static double frame_difference(const struct frame *x, const struct frame *ref)
 {
     double worst = difference(x->p, ref->p, 3);
+    /* Both are normalised: files have few digits. */
     struct frame a = *x, b = *ref;
     frame_normalise(&a);
     frame_normalise(&b);
@@ -40,11 +41,14 @@ static double frame_difference(const struct frame *x, const struct frame *ref)
     return worst;
 }
 
+/* Names, kinds and parents must be equal: there is no rounding of them. */
 static bool same_joint(const struct body_def *x, const struct body_def *ref)
 {
     return x->joint == ref->joint && x->parent == ref->parent && strcmp(x->name, ref->name) == 0;
 }
 
+/* A row without scales of its own; the tolerance is the one of double precision, whatever
+ * precision is under test, since reading a file computes nothing. */
 static void row_plain(struct verify_case *v, const char *quantity, double error, const char *where)
 {
     struct verify_row *row = verify_row_add(v, "URDF file", quantity);
@@ -55,6 +59,7 @@ static void row_plain(struct verify_case *v, const char *quantity, double error,
 }
 
 /* The worst body of each kind of number. */
+/* Each kind of number is a row of its own: a wrong axis and a wrong mass have different causes. */
 static void body_rows(struct verify_case *v, const struct model *m)
 {
     enum { JOINT, AXIS, FRAME, MASS, COM, INERTIA, KINDS };
@@ -62,6 +67,7 @@ static void body_rows(struct verify_case *v, const struct model *m)
         "joint, parent, name", "axis", "placement", "mass", "com", "inertia_com"};
     double worst[KINDS] = {0};
     const char *at[KINDS] = {NULL};
+    /* Axes of fixed and free joints mean nothing. */
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *x = &m->body[i], *ref = &v->model->body[i];
         bool moves = x->joint == JOINT_REVOLUTE || x->joint == JOINT_PRISMATIC;
@@ -72,6 +78,7 @@ static void body_rows(struct verify_case *v, const struct model *m)
                                      [COM] = difference(x->com, ref->com, 3),
                                      [INERTIA] = difference(x->inertia, ref->inertia, 6)};
         for (int k = 0; k < KINDS; k++)
+            /* NaN never counts as larger: numbers of a file are finite. */
             if (error[k] > worst[k]) worst[k] = error[k], at[k] = ref->name;
     }
     for (int k = 0; k < KINDS; k++) row_plain(v, name[k], worst[k], at[k]);
@@ -96,6 +103,8 @@ static void answer_rows(struct verify_case *v, struct model *m)
     }
 }
 
+/* The URDF file lies beside the vector's. It is read with fixed joints kept and without judging
+ * its masses, as the reference did. */
 bool verify_urdf(struct verify_case *v, struct err *e)
 {
     const struct vector_case *c = v->vector;
@@ -106,20 +115,24 @@ bool verify_urdf(struct verify_case *v, struct err *e)
     struct urdf_options o = {.floating = c->body[0].joint == VECTOR_FLOATING,
                              .keep_fixed = true,
                              .allow_nonphysical = true};
+    /* Most files name no URDF file. */
     if (!c->urdf[0]) return true;
     snprintf(path, sizeof path, "%.*s%s", folder, c->path, c->urdf);
     if (access(path, R_OK) != 0)
         return err_set_at(e, ERR_DATA, c->path, c->urdf_line, "the URDF file '%.200s' does not "
                                                               "exist; it must be in the folder of "
                           "this file", c->urdf);
+    /* URDF has no gravity: the vector's. */
     memcpy(o.gravity, c->gravity, sizeof o.gravity);
     struct model *m =
         urdf_read(path, &robot, v->arena, e) ? urdf_model(&robot, &o, v->arena, e) : NULL;
     if (!m) return false;
+    /* The reference may have left out or joined bodies: then nothing can be compared. */
     if (m->nbody != c->nbody || m->nu != c->nv)
         return err_set_at(e, ERR_DATA, c->path, c->urdf_line,
                           "'%.200s' has %d bodies and %d degrees of freedom, this "
                           "file %d and %d", c->urdf, m->nbody, m->nu, c->nbody, c->nv);
+    /* The reference has no damping. */
     for (int i = 0; i < m->nbody; i++) m->body[i].damping = 0;
     system_prepare(m);
     body_rows(v, m);
