@@ -1,4 +1,8 @@
-/* claims.c - reading the claims' files, judging them, keeping the verdicts; see claims.h. */
+/* claims.c - reading the claims' files, judging them, keeping the verdicts; see claims.h.
+ *
+ * The rules stand in the files, before any number is known; this file only asks them and writes
+ * down the answers. A claim has many variants (serial baselines, operators, machines): one of
+ * them is designated to give the verdict, the others show how much depends on that choice. */
 #include "report/claims.h"
 
 #include <dirent.h>
@@ -17,7 +21,7 @@ static bool is_claim_file(const char *name)
     return n > 4 && strcmp(name + n - 4, ".sql") == 0;
 }
 
-/* C2 before C10, indicators last. */
+/* For qsort: C2 before C10, indicators last, by their names. */
 static int compare_rules(const void *a, const void *b)
 {
     const char *x = ((const struct claim_rule *)a)->id, *y = ((const struct claim_rule *)b)->id;
@@ -31,6 +35,8 @@ static int compare_rules(const void *a, const void *b)
 /* The rest of the line that begins with "-- word: ", with the lines "--   ..." that continue it. */
 static const char *header_line(struct arena *a, const char *sql, const char *word)
 {
+    /* The first occurrence must begin its line: a mark in the middle of a line would hide the
+     * header below it. */
     struct text mark = {0}, all = {0};
     text_add(&mark, "-- %s: ", word);
     const char *line = strstr(sql, mark.s), *found = NULL;
@@ -39,6 +45,7 @@ static const char *header_line(struct arena *a, const char *sql, const char *wor
         for (;;) {
             size_t n = strcspn(line, "\n");
             text_add_bytes(&all, line, n);
+            /* A continuation begins with three blanks; any other line ends the text. */
             if (strncmp(line + n, "\n--   ", 6) != 0) break;
             text_add(&all, " ");
             line += n + 6;
@@ -55,6 +62,7 @@ static bool read_headers(struct claim_rule *r, struct arena *a)
 {
     struct {
         const char *word, **place;
+    /* The order is that of the messages: all are needed, `never` and `explore` are not. */
     } const header[] = {{"statement", &r->statement}, {"test", &r->test},     {"unit", &r->unit},
                         {"designated", &r->designated}, {"judged", &r->judged}, {"points", &r->points},
                         {"needs", &r->needs}};
@@ -63,7 +71,7 @@ static bool read_headers(struct claim_rule *r, struct arena *a)
     return true;
 }
 
-/* Every "-- explore:" line. */
+/* Every "-- explore:" line; several scenarios may be needed for one claim. */
 static bool explore_lines(struct claim_rule *r, struct arena *a, const char *path, struct err *e)
 {
     for (const char *at = r->sql, *line; (line = header_line(a, at, "explore")) != NULL;) {
@@ -71,11 +79,13 @@ static bool explore_lines(struct claim_rule *r, struct arena *a, const char *pat
             return err_set_at(e, ERR_DATA, path, 1,
                               "more than %d lines -- explore:", CLAIM_MOST_EXPLORED);
         r->explore[r->nexplore++] = line;
+        /* Go on behind this line's mark: header_line finds the first one from there. */
         at = strstr(at, "-- explore: ") + 1;
     }
     return true;
 }
 
+/* One file as a rule. Its name without .sql is the claim's id. */
 static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder, const char *file,
                       struct err *e)
 {
@@ -86,10 +96,12 @@ static bool read_rule(struct claim_rule *r, struct arena *a, const char *folder,
         char *id = arena_text(a, file);
         id[strlen(id) - 4] = '\0';
         *r = (struct claim_rule){.id = id, .sql = arena_text(a, sql.s)};
+        /* The message names all lines: a missing one is easier to see in the list than to guess. */
         if (!read_headers(r, a))
             ok = err_set_at(e, ERR_DATA, path.s, 1, "a claim begins with -- statement:, test:, "
                                                     "unit:, designated:, judged:, points: and "
                                                     "needs: lines");
+        /* NULL where nobody knows a reason */
         r->never = header_line(a, r->sql, "never");
         ok = ok && explore_lines(r, a, path.s, e);
     }
@@ -103,10 +115,12 @@ bool claims_read(struct claim_rules *c, const char *data_dir, struct err *e)
     struct text folder = {0};
     text_add(&folder, "%s/plots/claims", data_dir);
     struct dirent **entry = NULL;
+    /* The kernel's order of files differs between file systems: sort by name, then by number. */
     int n = scandir(folder.s, &entry, NULL, alphasort);
     *c = (struct claim_rules){.arena = arena_create()};
     c->rule = TAKE(c->arena, n > 0 ? n : 1, struct claim_rule);
     bool ok = true;
+    /* After a failure only what scandir allocated is freed. */
     for (int i = 0; i < n; i++) {
         if (ok && is_claim_file(entry[i]->d_name))
             ok = read_rule(&c->rule[c->n++], c->arena, folder.s, entry[i]->d_name, e);
@@ -128,6 +142,7 @@ void claims_free(struct claim_rules *c)
 
 /* --- judging ---------------------------------------------------------------------------------- */
 
+/* What a row of a claim's query needs. */
 struct judging {
     const struct claim_rule *rule;
     judgement_fn *tell;
@@ -135,6 +150,7 @@ struct judging {
     struct err *e;
 };
 
+/* SQL has integers where a share happens to be 0 or 1. */
 static struct store_value as_real(struct store_value v)
 {
     return v.kind == STORE_INT    ? store_real((double)v.integer)
@@ -142,6 +158,7 @@ static struct store_value as_real(struct store_value v)
                                   : store_null();
 }
 
+/* One variant. A row that lacks runs has no value, whatever the query computed from the others. */
 static bool judge_row(void *context, int ncolumn, const char *const *name,
                       const struct store_value *value)
 {
@@ -151,6 +168,7 @@ static bool judge_row(void *context, int ncolumn, const char *const *name,
         return err_set(g->e, ERR_DATA, "claim %s: a row is (variant, value, threshold, holds, "
                                        "missing, note, margin)",
                        g->rule->id);
+    /* `missing` is NULL for a whole variant. */
     bool whole = value[4].kind != STORE_TEXT;
     struct store_value margin = whole && ncolumn == 7 ? as_real(value[6]) : store_null();
     struct judgement j = {.variant = value[0].text,
@@ -168,8 +186,11 @@ bool claims_judge(const struct claim_rule *rule, struct store *s, const char *ad
                   judgement_fn *tell, void *context, struct err *e)
 {
     struct judging g = {rule, tell, context, e};
+    /* A query that does not ask for ?1 cannot be bound to it. */
     bool asks = strstr(rule->sql, "?1") != NULL;
     if (!store_query(s, rule->sql, asks ? 1 : 0, &admitted, NULL, judge_row, &g, e))
+        /* What the query refuses is told with the claim's id; what `tell` refused is in *e
+         * already. */
         return err_in(e, rule->id);
     return e->kind == ERR_NONE;
 }
@@ -182,6 +203,7 @@ struct sampling {
     struct err *e;
 };
 
+/* Samples keep values and verdicts only: texts are the same for all. */
 static bool keep_sample(void *context, const struct claim_rule *rule, const struct judgement *j)
 {
     struct sampling *p = context;
@@ -195,6 +217,7 @@ bool claims_sample(const struct claim_rules *c, struct store *from, struct store
                    struct err *e)
 {
     struct sampling p = {into, sample, e};
+    /* One transaction per sample: a commit for each claim takes longer than judging it. */
     if (!store_begin(into, e)) return false;
     for (int i = 0; i < c->n; i++)
         if (!claims_judge(&c->rule[i], from, "what-if", keep_sample, &p, e)) {
@@ -223,6 +246,7 @@ struct spread {
     struct store_value count, share, low, high;
 };
 
+/* One row is expected, so reading stops after it. */
 static bool take_spread(void *context, int ncolumn, const char *const *name,
                         const struct store_value *value)
 {
@@ -238,6 +262,8 @@ static const char *verdict_of(struct store_value holds)
     return holds.kind == STORE_NULL ? "not-testable" : holds.integer ? "pass" : "fail";
 }
 
+/* A row of table claim: the claim itself (variant ''), or one of its variants. What all variants
+ * share is stored with each, so that a row can be read alone. */
 static bool put_claim(struct deciding *d, const struct claim_rule *rule, const char *variant,
                       const struct judgement *j, const char *note)
 {
@@ -246,6 +272,7 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
                                        "value_high", "samples",  "share",     "verdict",
                                        "judged",     "testable", "holding",   "note"};
     bool claim = *variant == '\0';
+    /* The claim's range and share are those of its designated variant. */
     const char *const key[] = {rule->id, *variant ? variant : rule->designated};
     struct spread p = {store_int(0), store_null(), store_null(), store_null()};
     if (!store_query(d->s,
@@ -273,8 +300,8 @@ static bool put_claim(struct deciding *d, const struct claim_rule *rule, const c
     return store_insert(d->s, "claim", 16, name, value, d->e);
 }
 
-/* Why a variant cannot be told: the runs that are missing, what makes them, and those that do not
- * count. */
+/* Why a variant cannot be told: which runs are missing, the command that makes them, and how
+ * many runs there are that do not count. */
 static void add_missing(const struct deciding *d, const struct claim_rule *rule,
                         const char *missing, struct text *note)
 {
@@ -285,6 +312,7 @@ static void add_missing(const struct deciding *d, const struct claim_rule *rule,
                  (long long)d->changed);
 }
 
+/* One variant: into the table, and into the lists of those that hold or fail. */
 static bool decide_row(void *context, const struct claim_rule *rule, const struct judgement *j)
 {
     struct deciding *d = context;
@@ -292,6 +320,7 @@ static bool decide_row(void *context, const struct claim_rule *rule, const struc
     struct text note = {0};
     if (j->missing) add_missing(d, rule, j->missing, &note);
     else text_add(&note, "%s", j->note);
+    /* Texts of a row are borrowed until the next one: the designated row's note is copied. */
     if (own) {
         d->found = true;
         d->whole = !j->missing;
@@ -309,10 +338,11 @@ static bool decide_row(void *context, const struct claim_rule *rule, const struc
     return ok;
 }
 
-/* What a reader wants to know next: where the verdict would be the other one. */
+/* The note of the claim: its own verdict, then where the verdict would be the other one. */
 static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, struct text *note)
 {
     if (d->what_if && d->changed > 0) text_add(note, "what-if, runs on changed machines count; ");
+    /* Without all its runs the variant was not judged, whatever the rule. */
     if (d->whole) text_add(note, "judged for %s: ", rule->designated);
     text_add(note, "%s", d->own_note.s ? d->own_note.s : "");
     if (d->own.holds.kind != STORE_INT) return;
@@ -322,6 +352,7 @@ static void add_elsewhere(struct deciding *d, const struct claim_rule *rule, str
     if (other->length) text_add(note, "; %s: %s", holds ? "fails for" : "holds for", other->s);
 }
 
+/* One claim. Its variants' rows come first; the claim's own row needs their counts. */
 static bool decide(const struct claim_rule *rule, struct store *s, bool what_if, int64_t changed,
                    struct err *e)
 {
@@ -330,6 +361,7 @@ static bool decide(const struct claim_rule *rule, struct store *s, bool what_if,
         .own = {.value = store_null(), .threshold = store_null(), .holds = store_null()}};
     bool ok = claims_judge(rule, s, what_if ? "what-if" : "as shipped", decide_row, &d, e);
     struct text note = {0};
+    /* The query gave no row for the designated variant: no run of it is stored at all. */
     if (!d.found) add_missing(&d, rule, rule->points, &d.own_note);
     add_elsewhere(&d, rule, &note);
     ok = ok && put_claim(&d, rule, "", &d.own, note.s);
@@ -352,12 +384,15 @@ static bool take_count(void *context, int ncolumn, const char *const *name,
 bool claims_decide(const struct claim_rules *c, struct store *s, struct err *e)
 {
     int64_t changed = 0;
+    /* Only machines that the claims are about, and not the runs that the study itself makes with
+     * changes. */
     if (!store_query(s, "SELECT count(*) FROM v_machine_state WHERE state <> 'as shipped'"
                         " AND machine IN ('t3e-300', 'paragon')"
                         " AND run_id NOT IN (SELECT id FROM run WHERE scenario LIKE 'paper-%')",
                      0, NULL, NULL, take_count, &changed, e) ||
         !store_begin(s, e))
         return false;
+    /* All claims or none: a table with old and new verdicts would be read as one study. */
     bool ok = true;
     for (int i = 0; ok && i < c->n; i++)
         ok = store_delete(s, "claim", "id", store_text(c->rule[i].id), e) &&

@@ -1,10 +1,16 @@
-/* claims_print.c - the verdicts as a table for people and as JSON. */
+/* claims_print.c - the verdicts as a table for people and as JSON.
+ *
+ * For people the table comes first and the reasons below it; a program gets one object per claim
+ * with all of its variants. */
 #include "base/json.h"
 #include "report/claims.h"
 #include "report/report.h"
 
+/* C2 before C10, indicators last, as claims.c sorts the rules. */
 static const char order[] = " ORDER BY substr(id, 1, 1) <> 'C', length(id), id, variant";
 
+/* One line per claim: value, threshold, range and share over the samples, in how many variants
+ * it holds. */
 static const char table_sql[] =
     "SELECT id, verdict, iif(value IS NULL, '-', format('%.4g', value)) AS value, threshold, unit,"
     " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g .. %.3g', value_low, value_high),"
@@ -18,6 +24,7 @@ static const char reason_sql[] = "SELECT id, verdict, judged, test, note FROM cl
                                  " WHERE variant = ''"
                                  " ORDER BY substr(id, 1, 1) <> 'C', length(id), id";
 
+/* Test and tolerance stand before the finding: a reader should judge the rule before the result. */
 static bool tell_reason(void *context, int ncolumn, const char *const *name,
                         const struct store_value *value)
 {
@@ -37,6 +44,7 @@ struct listing {
                          sorted */
 };
 
+/* Ends the list of variants and the claim around it. */
 static void close_claim(struct listing *l)
 {
     if (!l->open) return;
@@ -54,6 +62,8 @@ static const char json_sql[] = "SELECT holding, id, judged, note, samples, share
                                " unit, value, value_high,"
                                " value_low, variant, verdict FROM claim";
 
+/* A row with an empty variant begins a claim; those that follow are in its list `variants`. Keys
+ * are sorted, so a claim stays open until its last variant and its verdict, the last key. */
 static bool json_claim(void *context, int ncolumn, const char *const *name,
                        const struct store_value *value)
 {
@@ -62,6 +72,7 @@ static bool json_claim(void *context, int ncolumn, const char *const *name,
     if (own) close_claim(l);
     json_object(&l->j);
     for (int i = 0; i < ncolumn; i++) {
+        /* What a variant shares with its claim: columns by their places in json_sql. */
         bool shared = i <= COLUMN_JUDGED || (i >= COLUMN_STATEMENT && i <= COLUMN_TESTABLE) ||
                       i == COLUMN_UNIT;
         if (own ? i >= COLUMN_VARIANT : shared) continue;
@@ -73,6 +84,7 @@ static bool json_claim(void *context, int ncolumn, const char *const *name,
         json_array(&l->j);
         l->open = true;
         text_copy(l->verdict, sizeof l->verdict, value[COLUMN_VERDICT].text);
+    /* a variant is complete */
     } else json_end(&l->j);
     return true;
 }

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/text.h"
 
+/* Where the rows go, and whom to tell about run ids. */
 struct writer {
     FILE *out;
     int64_t nrow;
@@ -14,6 +15,8 @@ struct writer {
     void *context;
 };
 
+/* RFC 4180: a cell with a comma, a quote or a line break stands in quotes, and quotes in it are
+ * doubled. Outer blanks are quoted as well, since gnuplot and spreadsheets drop them. */
 void csv_cell(FILE *out, const char *s, bool last)
 {
     if (s == NULL) s = "";
@@ -31,6 +34,8 @@ void csv_cell(FILE *out, const char *s, bool last)
     fputs(last ? "\r\n" : ",", out);
 }
 
+/* Gnuplot cannot read a quote inside a quoted cell, and control characters could move the
+ * cursor. */
 void csv_plain(char *s)
 {
     for (; *s; s++)
@@ -41,6 +46,7 @@ void csv_plain(char *s)
 /* A text of the database, which may hold anything. */
 static void plain_cell(FILE *out, const char *s, bool last)
 {
+    /* a copy: the row's text belongs to SQLite */
     char *copy = strdup(s);
     CHECK(copy != NULL);
     csv_plain(copy);
@@ -48,6 +54,7 @@ static void plain_cell(FILE *out, const char *s, bool last)
     free(copy);
 }
 
+/* Names of columns: of this program's queries, so they need no cleaning. */
 static bool header(void *context, int ncolumn, const char *const *name,
                    const struct store_value *value)
 {
@@ -57,6 +64,7 @@ static bool header(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* One row. Reals have all digits that tell them apart; NULL is an empty cell. */
 static bool row(void *context, int ncolumn, const char *const *name,
                 const struct store_value *value)
 {
@@ -68,6 +76,7 @@ static bool row(void *context, int ncolumn, const char *const *name,
         else if (value[i].kind == STORE_REAL) text_real(buffer, value[i].real);
         if (value[i].kind == STORE_TEXT) plain_cell(w->out, value[i].text, i + 1 == ncolumn);
         else csv_cell(w->out, buffer, i + 1 == ncolumn);
+        /* A column run_id says whose numbers these are: the figure's provenance collects them. */
         if (w->run_id != NULL && value[i].kind == STORE_INT && strcmp(name[i], "run_id") == 0)
             w->run_id(w->context, value[i].integer);
     }
@@ -75,6 +84,7 @@ static bool row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* The header is written even if no row follows. */
 bool csv_write(struct store *s, const char *sql, int nparam, const char *const *param, FILE *out,
                void (*run_id)(void *context, int64_t id), void *context, int64_t *nrow,
                struct err *e)

@@ -1,12 +1,17 @@
-/* explanations.c - see explanations.h. Every number is the answer of a query. */
+/* explanations.c - see explanations.h. Every number is the answer of a query.
+ *
+ * The sentences were made when the search ended (table explain_answer): the report repeats them,
+ * so that both always say the same. */
 #include "report/explanations.h"
 
 #include "base/text.h"
 #include "report/findings.h"
 #include "report/report.h"
 
+/* Claims by number, all of them together last; of one claim its own goal before any other. */
 #define IN_ORDER " ORDER BY subject = 'together', length(subject), subject, goal = 'any'"
 
+/* One claim: what has to change for it to hold, in sentences, and its map if there is one. */
 static bool tell_answer(void *context, int ncolumn, const char *const *name,
                         const char *const *value)
 {
@@ -19,6 +24,7 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name,
     page_paragraph(p, value[1]);
     if (value[3]) {
         struct text figure = {0};
+        /* the map that `claims --explain` drew */
         text_add(&figure, "explain-%s", value[0]);
         page_figure(p, figure.s,
                     "Where the claim holds in the plane of the two most important parameters, with "
@@ -29,6 +35,7 @@ static bool tell_answer(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* The sentences of a claim are one paragraph; its map is only asked for. */
 static const char sentences[] =
     "SELECT a.subject, group_concat(a.sentence, ' '),"
     " (SELECT statement FROM claim WHERE id = a.subject AND variant = ''),"
@@ -36,6 +43,8 @@ static const char sentences[] =
     " FROM (SELECT * FROM explain_answer" IN_ORDER ") a GROUP BY a.subject"
     " ORDER BY a.subject = 'together', length(a.subject), a.subject";
 
+/* The same answers as a table: exp(distance) is the product of all factors, that is how large
+ * the change is as a single one. */
 static const char table_sql[] =
     "SELECT subject AS claim, iif(goal = 'own', 'as judged', 'any choice') AS goal, verdict,"
     " variant,"
@@ -43,12 +52,14 @@ static const char table_sql[] =
     " CASE confirmed WHEN 1 THEN 'yes' WHEN 0 THEN 'no' ELSE '' END AS confirmed FROM "
     "explain_answer" IN_ORDER;
 
+/* A database without a search has no such section. */
 bool explanations_section(struct page *p, struct store *s, struct err *e)
 {
     bool any;
     if (!findings_any(s, "SELECT 1 FROM explain_answer LIMIT 1", &any, e)) return false;
     if (!any) return true;
     page_heading(p, 2, "Changes under which failed claims hold");
+    /* What was varied, how a change is measured, and what finding nothing means. */
     page_paragraph(p, "The paper does not state the flop rate of its code, the cost of a call or a "
                       "message, how its serial code was written, or who else used the machine. For "
                       "each failed claim these parameters are varied to find the smallest change "
@@ -59,10 +70,12 @@ bool explanations_section(struct page *p, struct store *s, struct err *e)
                       "others up to 90 %, variation of computing times up to 100 %. If no point "
                       "was found, the claim may still hold at a point that was not tried, unless a "
                       "reason is given why it cannot.");
+    /* Sentences first; the table below has the numbers behind them. */
     return store_select(s, sentences, 0, NULL, tell_answer, p, e) &&
            page_table(p, s, table_sql, 0, NULL, "No search was made.", e);
 }
 
+/* On a terminal the sentences are enough. */
 static bool print_answer(void *context, int ncolumn, const char *const *name,
                          const char *const *value)
 {

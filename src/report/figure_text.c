@@ -12,10 +12,12 @@
 const char *figure_line(const char *sql, const char *mark, char *word, size_t size)
 {
     size_t n = strlen(mark);
+    /* Line by line: a mark inside a line is no mark. */
     for (const char *line = sql; *line;) {
         const char *end = strchrnul(line, '\n');
         if (strncmp(line, mark, n) == 0) {
             size_t length = (size_t)(end - line) - n;
+            /* What is too long is cut: buffers are larger than any description needs. */
             if (length >= size) length = size - 1;
             memcpy(word, line + n, length);
             word[length] = '\0';
@@ -28,8 +30,8 @@ const char *figure_line(const char *sql, const char *mark, char *word, size_t si
 
 enum { TITLE_LENGTH = 110 };
 
-/* Where a sentence ends in [line, end): at a full stop that is none of several; NULL when it does
- * not. */
+/* Where a sentence ends in [line, end): at a full stop that is followed by a blank or the end,
+ * and is not one of several ("..."). NULL: it goes on. */
 static const char *sentence_end(const char *line, const char *end)
 {
     for (const char *c = line; c < end; c++)
@@ -37,7 +39,8 @@ static const char *sentence_end(const char *line, const char *end)
     return NULL;
 }
 
-/* A title too long for a line ends before a clause, where there is one. */
+/* A title too long for a line ends before a clause: at a semicolon or colon, else at a comma,
+ * and only beyond its first quarter, so that something is left of it. */
 static void shorten(struct text *title)
 {
     static const char *const marks[] = {";:", ","};
@@ -46,6 +49,7 @@ static void shorten(struct text *title)
     for (int k = 0; k < 2 && at == TITLE_LENGTH; k++)
         for (size_t i = TITLE_LENGTH - 1; i > TITLE_LENGTH / 4 && at == TITLE_LENGTH; i--)
             if (title->s[i + 1] == ' ' && strchr(marks[k], title->s[i])) at = i;
+    /* No clause: cut before a word, and say so. */
     bool clause = at < TITLE_LENGTH;
     while (!clause && at > 0 && title->s[at] != ' ') at--;
     title->s[at] = '\0';
@@ -53,8 +57,8 @@ static void shorten(struct text *title)
     if (!clause) text_add(title, " ...");
 }
 
-/* The comment that `sql` begins with, up to the end of its first sentence or the line of what it
- * needs. */
+/* The comment that `sql` begins with, up to the end of its first sentence or its first technical
+ * line. */
 static void first_sentence(const char *sql, struct text *out)
 {
     for (const char *line = sql; strncmp(line, "-- ", 3) == 0 &&
@@ -68,6 +72,8 @@ static void first_sentence(const char *sql, struct text *out)
     }
 }
 
+/* A figure without a description has an empty title: a list of figures must not fail because of
+ * one. */
 void report_figure_about(const char *data_dir, const char *name, struct text *title,
                          struct text *needs)
 {
@@ -81,14 +87,15 @@ void report_figure_about(const char *data_dir, const char *name, struct text *ti
         shorten(title);
         figure_line(sql.s, "-- needs: ", line, sizeof line);
     }
+    /* never NULL */
     text_add(title, "%s", "");
     text_add(needs, "%s", line);
     text_free(&path);
     text_free(&sql);
 }
 
-/* Letters of any alphabet, digits and signs that mean nothing in a path, in gnuplot and in a
- * shell's quotes. */
+/* Letters of any alphabet (bytes of UTF-8 above 0x7f), digits, and signs that mean nothing in a
+ * path, in gnuplot's quotes and in a shell's. */
 static bool harmless(char c)
 {
     return (unsigned char)c >= 0x80 || isalnum((unsigned char)c) ||
@@ -97,11 +104,15 @@ static bool harmless(char c)
 
 enum { DRAWING_NAME_LENGTH = 120 };
 
+/* The name of a drawing's files from a text of the database, which may be anybody's. It begins
+ * with the figure's name; where something had to be changed, eight digits of a hash keep two
+ * texts apart. */
 char *figure_file_name(const char *figure, const char *s)
 {
     struct text name = {0};
     char hash[65];
     size_t n = strlen(figure);
+    /* Already "accuracy-four-bar": keep it as it is. */
     bool changed = strncmp(s, figure, n) != 0 || (s[n] != '\0' && s[n] != '-');
     if (changed) text_add(&name, "%s-", figure);
     for (const char *c = s; *c && name.length < DRAWING_NAME_LENGTH; c++) {

@@ -1,4 +1,7 @@
-/* findings.c - see findings.h. */
+/* findings.c - see findings.h.
+ *
+ * The tables and sentences are SQL: what is counted, how it is rounded and in which order it
+ * stands can be tried in any SQLite shell on a user's database. This file puts them in order. */
 #include "report/findings.h"
 
 #include "base/text.h"
@@ -10,6 +13,7 @@ struct section {
     struct err *e;
 };
 
+/* One row is enough to know that there are any. */
 static bool note_row(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -25,11 +29,13 @@ bool findings_any(struct store *s, const char *sql, bool *any, struct err *e)
     return store_select(s, sql, 0, NULL, note_row, any, e);
 }
 
+/* The rows of a query, with the section's name as ?1 where it asks for it. */
 static bool table(struct section *c, const char *sql, const char *param, const char *empty)
 {
     return page_table(c->page, c->store, sql, param != NULL, &param, empty, c->e);
 }
 
+/* A sentence of a query as a paragraph. */
 static bool tell_sentence(void *context, int ncolumn, const char *const *name,
                           const char *const *value)
 {
@@ -48,6 +54,8 @@ static bool sentences(struct section *c, const char *sql, const char *param)
 
 /* --- error against run time ------------------------------------------------------------------- */
 
+/* One sentence per choice of a ladder: the cheapest within the tolerance, its error and cost,
+ * and what the most accurate one would cost. Numbers and grammar both come from the query. */
 static const char choice_sentences[] =
     "SELECT format('%s (%s, %s within %g): ', c.ladder, c.at, c.quantity, c.tolerance) ||"
     " iif(c.method IS NULL, 'no method is within the tolerance.',"
@@ -66,6 +74,7 @@ static const char choice_sentences[] =
     " ORDER BY CASE c.ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2"
     " ELSE 3 END, c.tolerance";
 
+/* Which rungs gave no usable answer, each reason once. */
 static const char failed_rungs[] =
     "SELECT ladder, at, method, group_concat(rung, ', ') AS rungs, reason FROM"
     " (SELECT *, iif(relative_error IS NULL, text, format('error %.1e', relative_error)) AS reason"
@@ -74,6 +83,7 @@ static const char failed_rungs[] =
     " ORDER BY ordinal)"
     " GROUP BY ladder, at, method, reason ORDER BY min(ordinal)";
 
+/* One scenario: choices in words, the figure, failures. */
 static bool tell_ladders(void *context, int ncolumn, const char *const *name,
                          const char *const *value)
 {
@@ -82,6 +92,7 @@ static bool tell_ladders(void *context, int ncolumn, const char *const *name,
     (void)ncolumn;
     (void)name;
     page_heading(c->page, 3, value[0]);
+    /* the drawings are called after the scenario */
     text_add(&figure, "accuracy-%s", value[0]);
     bool ok = sentences(c, choice_sentences, value[0]);
     if (ok)
@@ -94,6 +105,7 @@ static bool tell_ladders(void *context, int ncolumn, const char *const *name,
     return ok;
 }
 
+/* Nothing of this section appears in a report of a database without ladders. */
 bool findings_accuracy(struct page *p, struct store *s, struct err *e)
 {
     struct section c = {p, s, e};
@@ -106,7 +118,9 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
                       "precision, motions against a reference with tight tolerance. The cost is "
                       "the run time on this computer for network levels, and the predicted run "
                       "time on the machine otherwise. Measured by mimdsim accuracy.");
+    /* First the overview over all scenarios, then a part for each. */
     if (!table(&c,
+               /* The choices: what a user may take instead of the most accurate method. */
                "SELECT scenario, ladder, at, quantity, format('%g', tolerance) AS \"tolerance\","
                " ifnull(method || iif(rung = method, '', ', ' || rung),"
                " 'none within the tolerance') AS cheapest,"
@@ -119,6 +133,7 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
                NULL, "No choice was made."))
         return false;
     if (!table(&c,
+               /* How many rungs of each ladder are of any use. */
                "SELECT scenario, ladder, at, reference, sum(status = 'ok') AS ok,"
                " sum(status = 'degraded') AS degraded,"
                " sum(status = 'failed') AS failed FROM ladder"
@@ -135,6 +150,7 @@ bool findings_accuracy(struct page *p, struct store *s, struct err *e)
 
 /* What became of the claim that a symmetric positive definite matrix guarantees stability. */
 static const char spd_sentence[] =
+    /* the three groups of algorithms that the claim distinguishes */
     "WITH kind AS (SELECT CASE"
     "  WHEN algorithm IN ('cfa-paper', 'paper cr', 'paper pcr', 'paper contraction') THEN 'paper'"
     "  WHEN algorithm IN ('cfa-direct', 'direct cr', 'direct pcr', 'direct contraction')"
@@ -157,11 +173,14 @@ static const char spd_sentence[] =
     " sum(kind = 'repaired' AND status = 'degraded'), sum(kind = 'repaired' AND status = 'failed'))"
     " FROM kind WHERE kind IS NOT NULL HAVING count(*) > 0";
 
+/* Grades by algorithm, with the case in which each did worst: failures before degraded answers,
+ * missing numbers before large errors. */
 static const char by_algorithm[] =
     "SELECT algorithm, precision, sum(status = 'ok') AS ok, sum(status = 'degraded') AS degraded,"
     " sum(status = 'failed') AS failed,"
     " iif(max(relative_error) IS NULL, '', format('%.1e', max(relative_error)))"
     " AS \"largest error\","
+    /* min and max of the status tell whether all rows are ok. */
     " iif(min(status) = 'ok' AND max(status) = 'ok', '', (SELECT subject FROM stability w"
     "   WHERE w.suite = s.suite AND w.algorithm = s.algorithm"
     "   AND w.precision = s.precision ORDER BY w.status = 'failed' DESC,"
@@ -169,6 +188,7 @@ static const char by_algorithm[] =
     "   w.relative_error IS NULL DESC, w.relative_error DESC LIMIT 1)) AS \"worst case\""
     " FROM stability s WHERE suite = ?1 GROUP BY algorithm, precision ORDER BY min(ordinal)";
 
+/* The cases in which most algorithms fail, at most 16: beyond that a reader learns nothing new. */
 static const char worst_cases[] =
     "SELECT subject AS \"worst cases\", sum(status = 'failed') AS failed,"
     " sum(status = 'degraded') AS degraded,"
@@ -204,11 +224,14 @@ static const char stiff_motions[] =
     "  AS \"explicit over implicit\", sum(status = 'failed') AS \"failed integrators\""
     " FROM motion GROUP BY subject ORDER BY min(ordinal)";
 
+/* One suite: its counts, figure, and three tables. The sentence on the paper's claim needs the
+ * built-in cases: a scenario's points are no sample of anything. */
 static bool tell_suite(void *context, int ncolumn, const char *const *name,
                        const char *const *value)
 {
     struct section *c = context;
     struct text figure = {0};
+    /* Columns of the query in findings_stability: suite, whether it is the built-in one, counts. */
     const bool built_in = value[1][0] == '1';
     (void)ncolumn;
     (void)name;
@@ -219,6 +242,7 @@ static bool tell_suite(void *context, int ncolumn, const char *const *name,
                 "Cases and algorithms; each cell gives the power of ten of the relative error. For "
                 "stiff motions: error, step, evaluations (if not run: the number needed) and "
                 "energy drift.");
+    /* Overview by algorithm, then by case, then motions; the figure shows all of them at once. */
     bool ok = (!built_in || sentences(c, spd_sentence, value[0])) &&
               table(c, by_algorithm, value[0], "No row.") &&
               table(c, worst_cases, value[0], "No result failed or degraded.") &&
@@ -239,6 +263,7 @@ bool findings_stability(struct page *p, struct store *s, struct err *e)
                       "accelerations up to 1e-8 "
                       "is graded ok and up to 1e-2 degraded, in single precision up to 1e-3 and "
                       "1e-1. Measured by mimdsim stability.");
+    /* The built-in suite first. */
     return store_select(s,
                         "SELECT suite, suite = 'suite',"
                         " format('%d ok, %d degraded, %d failed of %d answers on %d "
@@ -253,6 +278,8 @@ bool findings_stability(struct page *p, struct store *s, struct err *e)
 
 /* --- what leaving out saves ------------------------------------------------------------------- */
 
+/* One omission: what and why, its class, and what it saves. Savings within the noise are told as
+ * such. */
 static const char saving_rows[] =
     "SELECT what, why, class || iif(bound IS NULL, '', format(' %.0e', bound)) AS class, at,"
     " CASE WHEN host_saved_s IS NULL THEN 'cannot be undone'"
@@ -283,6 +310,7 @@ static bool tell_savings(void *context, int ncolumn, const char *const *name,
     return table(c, saving_rows, value[0], "Nothing.");
 }
 
+/* The heading is written by the caller, who has more to say of omissions. */
 bool findings_savings(struct page *p, struct store *s, struct err *e)
 {
     struct section c = {p, s, e};

@@ -1,4 +1,7 @@
-/* opening.c - abstract and glossary of the report on the paper; see opening.h. */
+/* opening.c - abstract and glossary of the report on the paper; see opening.h.
+ *
+ * Their texts are queries in plots/: abstract.sql makes sentences, verdicts.sql and glossary.sql
+ * tables. So a number in a sentence cannot differ from the one in the table. */
 #include "report/opening.h"
 
 #include "base/text.h"
@@ -9,11 +12,13 @@ static bool read_query(const char *data_dir, const char *name, struct text *sql,
     struct text path = {0};
     text_add(&path, "%s/plots/%s.sql", data_dir, name);
     bool ok = text_read_file(sql, path.s, e);
+    /* never NULL: an empty file is an empty query */
     text_add(sql, "%s", "");
     text_free(&path);
     return ok;
 }
 
+/* One paragraph per row: the sentences are made in SQL, from the numbers. */
 static bool tell_paragraph(void *context, int ncolumn, const char *const *name,
                            const char *const *value)
 {
@@ -23,6 +28,7 @@ static bool tell_paragraph(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* The rows of plots/NAME.sql as a table. */
 static bool put_table(struct page *p, struct store *s, const char *data_dir, const char *name,
                       struct err *e)
 {
@@ -33,6 +39,7 @@ static bool put_table(struct page *p, struct store *s, const char *data_dir, con
     return ok;
 }
 
+/* What a reader wants to know first: the findings in words, then the verdicts. */
 bool opening_abstract(struct page *p, struct store *s, const char *data_dir, struct err *e)
 {
     struct text sql = {0};
@@ -43,6 +50,7 @@ bool opening_abstract(struct page *p, struct store *s, const char *data_dir, str
     return ok && put_table(p, s, data_dir, "verdicts", e);
 }
 
+/* At the end: a reader looks there for a word, and does not begin with it. */
 bool opening_glossary(struct page *p, struct store *s, const char *data_dir, struct err *e)
 {
     page_heading(p, 2, "Glossary");

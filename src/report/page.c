@@ -1,4 +1,8 @@
-/* page.c - Markdown and HTML side by side; see page.h. */
+/* page.c - Markdown and HTML side by side; see page.h.
+ *
+ * Every part of a report is written to both files by one call, so that they cannot differ. The
+ * HTML file needs nothing beside it (pictures are inside); the Markdown file refers to the
+ * folder of figures. */
 #include "report/page.h"
 
 #include <ctype.h>
@@ -9,6 +13,7 @@
 #include "base/check.h"
 #include "base/text.h"
 
+/* HTML that is complete in itself: no style sheet, no script, no font from elsewhere. */
 static const char style[] =
     "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n"
@@ -28,6 +33,7 @@ static const char style[] =
     "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: "
     "0.85em; color: #444 }\n</style>\n";
 
+/* Makes folder/NAME.ENDING; false with ERR_CREATE becomes NULL. */
 static FILE *make_file(const char *folder, const char *name, const char *ending, struct err *e)
 {
     struct text path = {0};
@@ -38,6 +44,7 @@ static FILE *make_file(const char *folder, const char *name, const char *ending,
     return f;
 }
 
+/* Any text in HTML, also inside attributes. */
 static void escape(FILE *html, const char *s)
 {
     for (; *s; s++) {
@@ -49,7 +56,8 @@ static void escape(FILE *html, const char *s)
     }
 }
 
-/* Text for Markdown: what would be taken for markup is escaped. */
+/* Text for Markdown: what would be taken for markup is escaped; a line break would end a table's
+ * row. */
 static void escape_md(FILE *md, const char *s, bool cell)
 {
     for (; *s; s++) {
@@ -58,6 +66,7 @@ static void escape_md(FILE *md, const char *s, bool cell)
     }
 }
 
+/* On failure the caller closes the page, which knows what is open. */
 bool page_open(struct page *p, const char *folder, const char *name, const char *title,
                const char *figures, struct err *e)
 {
@@ -73,7 +82,7 @@ bool page_open(struct page *p, const char *folder, const char *name, const char 
     return true;
 }
 
-/* The file of a page with contents: their list, then what waited. */
+/* Ends the part that waited in memory: into the file go the list of contents and then that part. */
 static FILE *join(FILE *front, FILE *waiting, char *const *rest, const size_t *size,
                   const struct text *list)
 {
@@ -95,6 +104,8 @@ static void write_contents(struct page *p)
     text_free(&p->list_html);
 }
 
+/* From here on everything is written to memory: the list of contents needs headings that are not
+ * known yet. */
 void page_contents(struct page *p)
 {
     CHECK(!p->front_md);
@@ -107,11 +118,13 @@ void page_contents(struct page *p)
     CHECK(p->md && p->html);
 }
 
+/* Writing errors are asked for at the end, once: stdio remembers them. */
 bool page_close(struct page *p, struct err *e)
 {
     bool ok = true;
     if (p->front_md) write_contents(p);
     if (p->html) fputs("</body>\n</html>\n", p->html);
+    /* Both are closed, whatever the first one says. */
     for (int i = 0; i < 2; i++) {
         FILE *f = i ? p->html : p->md;
         if (!f) continue;
@@ -122,7 +135,8 @@ bool page_close(struct page *p, struct err *e)
     return ok;
 }
 
-/* The name that links to a heading: as GitHub makes it of a heading in Markdown. */
+/* The anchor of a heading, as GitHub makes it in Markdown: small letters, hyphens for blanks,
+ * punctuation left out. HTML gets the same, so that both have the same links. */
 static void add_anchor(struct text *out, const char *heading)
 {
     for (const char *c = heading; *c; c++) {
@@ -136,6 +150,7 @@ static void add_anchor(struct text *out, const char *heading)
 /* One line of the contents. */
 static void list_heading(struct page *p, const char *text, const char *anchor)
 {
+    /* In memory, since the list itself is a text. */
     char *md = NULL, *html = NULL;
     size_t size;
     FILE *to_md = open_memstream(&md, &size), *to_html = open_memstream(&html, &size);
@@ -149,6 +164,7 @@ static void list_heading(struct page *p, const char *text, const char *anchor)
     free(html);
 }
 
+/* Only headings of level 2 have anchors: the contents list no others. */
 void page_heading(struct page *p, int level, const char *text)
 {
     struct text anchor = {0};
@@ -176,14 +192,17 @@ void page_paragraph(struct page *p, const char *text)
 
 enum { SHORT_CELL = 20 }; /* bytes: "0.815 to 0.892" stays on one line */
 
+/* The class decides alignment and line breaks in the style sheet. */
 static const char *cell_class(const char *s)
 {
     if (strcmp(s, "pass") == 0) return " class=\"pass\"";
     if (strcmp(s, "fail") == 0) return " class=\"fail\"";
+    /* made of the characters of a number only */
     if (*s && s[strspn(s, "-+.0123456789e%")] == '\0') return " class=\"number\"";
     return strlen(s) <= SHORT_CELL ? " class=\"short\"" : "";
 }
 
+/* A row in both. In Markdown the head is followed by a line of hyphens; HTML needs none. */
 void page_row(struct page *p, bool head, int n, const char *const *cell)
 {
     fputs(head ? "<table>\n<tr>" : "<tr>", p->html);
@@ -200,20 +219,24 @@ void page_row(struct page *p, bool head, int n, const char *const *cell)
     putc('\n', p->md);
     fputs("</tr>\n", p->html);
     for (int i = 0; head && i < n; i++) fputs(i + 1 < n ? "|---" : "|---|\n", p->md);
+    /* Not 0: a table is open. */
     p->columns = n;
 }
 
 void page_table_end(struct page *p)
 {
+    /* No table is open: an end too many does no harm. */
     if (!p->columns) return;
     fputs("\n", p->md);
     fputs("</table>\n", p->html);
     p->columns = 0;
 }
 
+/* Of queries in this room: more columns than a page is wide. */
 enum { MOST_COLUMNS = 32 };
 
-/* Columns by their names in SQL, in words. */
+/* Names of columns as headings: "largest_error" is "largest error". A name in quotes in SQL is
+ * as it is. */
 static void add_heading(struct page *p, int n, const char *const *name)
 {
     char word[MOST_COLUMNS][64];
@@ -226,6 +249,7 @@ static void add_heading(struct page *p, int n, const char *const *name)
     page_row(p, true, n, words);
 }
 
+/* One row of a query. Whole numbers have all their digits, reals four. */
 static bool add_row(void *context, int ncolumn, const char *const *name,
                     const struct store_value *value)
 {
@@ -233,6 +257,7 @@ static bool add_row(void *context, int ncolumn, const char *const *name,
     char number[MOST_COLUMNS][40];
     const char *cell[MOST_COLUMNS];
     if (ncolumn > MOST_COLUMNS) ncolumn = MOST_COLUMNS;
+    /* The head is written when the first row comes: an empty table has none. */
     if (!p->columns) add_heading(p, ncolumn, name);
     for (int i = 0; i < ncolumn; i++) {
         cell[i] = value[i].kind == STORE_TEXT   ? value[i].text
@@ -247,6 +272,7 @@ static bool add_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* p->columns tells afterwards whether there was any row. */
 bool page_table(struct page *p, struct store *s, const char *sql, int nparam,
                 const char *const *param, const char *empty, struct err *e)
 {
@@ -257,11 +283,13 @@ bool page_table(struct page *p, struct store *s, const char *sql, int nparam,
     return ok;
 }
 
-/* RFC 4648. */
+/* Base64, RFC 4648, section 4: three bytes are four digits of six bits; a short end is filled
+ * with '='. */
 static void base64(FILE *out, const unsigned char *s, size_t n)
 {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < n; i += 3) {
+        /* bytes behind the end count as 0 */
         unsigned a = s[i], b = i + 1 < n ? s[i + 1] : 0, c = i + 2 < n ? s[i + 2] : 0;
         putc(digit[a >> 2], out);
         putc(digit[(a & 3) << 4 | b >> 4], out);
@@ -270,7 +298,8 @@ static void base64(FILE *out, const unsigned char *s, size_t n)
     }
 }
 
-/* A path as Markdown takes it for a link's target. */
+/* A path as Markdown takes it for a link's target: what would end or quote it is
+ * percent-encoded. */
 static void put_target(FILE *md, const char *path)
 {
     for (; *path; path++)
@@ -278,11 +307,14 @@ static void put_target(FILE *md, const char *path)
         else putc(*path, md);
 }
 
+/* Markdown refers to the file beside it, by the last part of the folder's path; HTML contains
+ * the picture, so that it can be sent alone. */
 void page_figure(struct page *p, const char *name, const char *caption)
 {
     struct text path = {0}, svg = {0};
     struct err ignored;
     err_clear(&ignored);
+    /* A figure that cannot be read was not drawn: no error of the report. */
     const char *slash = strrchr(p->figures, '/');
     text_add(&path, "%s/%s.svg", p->figures, name);
     if (text_read_file(&svg, path.s, &ignored)) {
@@ -293,6 +325,7 @@ void page_figure(struct page *p, const char *name, const char *caption)
         putc('/', p->md);
         put_target(p->md, name);
         fputs(".svg)\n\n", p->md);
+        /* SVG as a data: address; inside <img> it cannot run scripts. */
         fputs("<figure><img alt=\"", p->html);
         escape(p->html, name);
         fputs("\" src=\"data:image/svg+xml;base64,", p->html);

@@ -1,5 +1,8 @@
 /* report_document.c - the chapters of the report (report_document.h). Each number comes from a
- * query. */
+ * query.
+ *
+ * Texts say what the tables are and how to read them; what the numbers mean for a claim is
+ * decided by its rule (claims.h), not here. */
 #include "report/report_document.h"
 
 #include <stdlib.h>
@@ -12,14 +15,18 @@
 #include "report/opening.h"
 #include "report/page.h"
 
+/* C2 before C10, indicators last. */
 #define IN_ORDER " ORDER BY substr(id, 1, 1) <> 'C', length(id), id"
 
+/* What each chapter needs. A chapter is a function that writes its heading and its parts; false
+ * stops the report with *e set. */
 struct chapter {
     const struct document *d;
     struct page *page;
     struct err *e;
 };
 
+/* The rows of a query without parameters. */
 static bool table(struct chapter *c, const char *sql, const char *empty)
 {
     return page_table(c->page, c->d->store, sql, 0, NULL, empty, c->e);
@@ -27,6 +34,7 @@ static bool table(struct chapter *c, const char *sql, const char *empty)
 
 /* --- what contradicts the paper --------------------------------------------------------------- */
 
+/* A claim that failed: rule first, then what the model gives, then how sure that is. */
 static bool tell_claim(void *context, int ncolumn, const char *const *name,
                        const char *const *value)
 {
@@ -37,11 +45,13 @@ static bool tell_claim(void *context, int ncolumn, const char *const *name,
     text_add(&t, "%s: %s", value[0], value[1]);
     page_heading(c->page, 3, t.s);
     text_free(&t);
+    /* Columns as in the query of contradictions: rule and reason first. */
     text_add(&t, "Test: %s. Judged: %s", value[2], value[8]);
     if (value[3])
         text_add(&t, " The model gives %s (%s)", value[3], value[4]);
     else
         text_add(&t, " The model gives no value");
+    /* Without samples nothing is said of uncertainty. */
     if (value[6]) text_add(&t, ", over the samples of the machine parameters %s", value[6]);
     if (value[7]) text_add(&t, "; the claim holds in %s of the samples", value[7]);
     text_add(&t, ". In detail: %s.", value[5]);
@@ -50,6 +60,7 @@ static bool tell_claim(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* Only failed claims: what a reader of the paper wants to know. */
 static bool contradictions(struct chapter *c)
 {
     page_heading(c->page, 2, "Where the model contradicts the paper");
@@ -70,6 +81,7 @@ static bool contradictions(struct chapter *c)
         0, NULL, tell_claim, c, c->e);
 }
 
+/* The estimates were made by hand before; the query compares them with what was simulated. */
 static bool estimates(struct chapter *c)
 {
     struct text path = {0}, sql = {0};
@@ -86,6 +98,7 @@ static bool estimates(struct chapter *c)
 
 /* --- all claims ------------------------------------------------------------------------------- */
 
+/* All claims as one table, with what the samples say. */
 static bool claims(struct chapter *c)
 {
     page_heading(c->page, 2, "The claims");
@@ -106,6 +119,8 @@ static bool claims(struct chapter *c)
         "No claim has been judged.");
 }
 
+/* Each claim for all variants: the verdict may depend on the serial baseline, and here a reader
+ * sees how. */
 static bool tell_variants(void *context, int ncolumn, const char *const *name,
                           const char *const *value)
 {
@@ -121,6 +136,7 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name,
     text_free(&t);
     return page_table(
         c->page, c->d->store,
+        /* A variant's note is its own: which runs it lacks, or what its value is made of. */
         "SELECT variant, verdict, iif(value IS NULL, '', format('%.4g', value)) AS value,"
         " iif(samples > 0 AND value_low IS NOT NULL, format('%.3g to %.3g', value_low, value_high),"
         " '') AS range,"
@@ -129,18 +145,20 @@ static bool tell_variants(void *context, int ncolumn, const char *const *name,
         1, value, "No run is stored for this claim.", c->e);
 }
 
+/* All claims again, one after the other. */
 static bool variants(struct chapter *c)
 {
     page_heading(c->page, 2, "Each claim for each baseline");
     static const char sql[] =
         "SELECT id, statement, test, unit, judged FROM claim WHERE variant = ''" IN_ORDER;
+    /* A row's function stops the query by false; whether that was an error, *e tells. */
     return store_select(c->d->store, sql, 0, NULL, tell_variants, c, c->e) &&
            c->e->kind == ERR_NONE;
 }
 
 /* --- figures ---------------------------------------------------------------------------------- */
 
-/* The comment that opens NAME.sql, without its technical lines. */
+/* The comment that opens NAME.sql as the figure's caption, without the lines for the program. */
 static void caption(const char *sql, struct text *out)
 {
     while (strncmp(sql, "-- ", 3) == 0) {
@@ -153,8 +171,11 @@ static void caption(const char *sql, struct text *out)
     }
 }
 
+/* Figures in the order of the study. One that was not drawn is told as such (page_figure). */
 static bool figures(struct chapter *c)
 {
+    /* An empty chapter appears in the report on the paper only, where it means that something is
+     * missing. */
     if (!c->d->whole && c->d->nfigure == 0) return true;
     page_heading(c->page, 2, "Figures");
     for (int i = 0; i < c->d->nfigure; i++) {
@@ -175,8 +196,10 @@ static bool figures(struct chapter *c)
 
 /* --- machines, accuracy, the rest ------------------------------------------------------------- */
 
+/* Every parameter with the evidence for it: a prediction is no better than these numbers. */
 static bool machines(struct chapter *c)
 {
+    /* Parameters come sorted by machine: one table each. */
     static const char *const head[] = {"key", "value", "range", "evidence", "source"};
     if (!c->d->whole && c->d->nparameter == 0) return true;
     page_heading(c->page, 2, "The machines");
@@ -188,6 +211,7 @@ static bool machines(struct chapter *c)
     for (int i = 0; i < c->d->nparameter; i++) {
         const struct document_parameter *p = &c->d->parameter[i];
         const char *const cell[] = {p->key, p->value, p->range, p->evidence, p->source};
+        /* A new machine begins a new table. */
         if (strcmp(machine, p->machine) != 0) {
             page_table_end(c->page);
             page_heading(c->page, 3, p->machine);
@@ -200,6 +224,8 @@ static bool machines(struct chapter *c)
     return true;
 }
 
+/* Errors of the numbers that the simulated processors computed, over all runs; then whether all
+ * simulated time is accounted for. */
 static bool numerics(struct chapter *c)
 {
     page_heading(c->page, 2, "Accuracy of the numerics");
@@ -209,6 +235,8 @@ static bool numerics(struct chapter *c)
                    "of all runs.");
     if (!table(
             c,
+            /* The largest error beside the largest tolerance: a failed check shows in the last
+             * column. */
             "SELECT kernel, formulation, solver, precision, quantity, reference, count(*) AS runs,"
             " max(n) AS largest_n,"
             " format('%.1e', max(relative_error)) AS largest_error,"
@@ -222,14 +250,19 @@ static bool numerics(struct chapter *c)
                    "receiving, waiting and contention of all ranks add up to P times the run "
                    "time.");
     return table(c,
+                 /* Sums over all ranks, exact in picoseconds: any difference is a mistake of the
+                  * simulator. */
                  "SELECT count(*) AS runs, sum(difference_ps <> 0) AS runs_that_do_not_add_up,"
                  " max(abs(difference_ps)) AS largest_difference_ps FROM v_accounting",
                  "No run is stored.");
 }
 
+/* What no run of this database contains: failed runs, serial codes that were too slow,
+ * contention at cheap levels, packets; then the program's own omissions. */
 static bool left_out_of_runs(struct chapter *c)
 {
     return table(c,
+                 /* A line per kind, with how many runs it concerns. */
                  "SELECT 'failed runs' AS what, count(*) AS runs,"
                  " ifnull(group_concat(DISTINCT status), "
                  "'') AS which"
@@ -250,6 +283,7 @@ static bool left_out_of_runs(struct chapter *c)
                  "'' FROM run WHERE links = 0",
                  "Nothing.") &&
            table(c,
+                 /* The program's own omissions, each with its reason. */
                  "SELECT what, why, class || iif(max(bound) IS NULL, '',"
                  " format(' %.0e', max(bound))) AS class,"
                  " count(*) AS runs FROM run_omission GROUP BY what, why, class"
@@ -257,6 +291,7 @@ static bool left_out_of_runs(struct chapter *c)
                  "No run has omissions.");
 }
 
+/* In a report of a part of the study the chapter appears only if there is something in it. */
 static bool omissions(struct chapter *c)
 {
     bool runs, savings;
@@ -269,6 +304,7 @@ static bool omissions(struct chapter *c)
     return findings_savings(c->page, c->d->store, c->e);
 }
 
+/* Time of this command is 0 when it ran nothing. */
 static bool effort(struct chapter *c)
 {
     struct text t = {0};
@@ -280,6 +316,8 @@ static bool effort(struct chapter *c)
     text_free(&t);
     return table(
         c,
+        /* Host times of all scenarios, of all together, and of the samples, whose runs are not
+         * stored. */
         "SELECT scenario, count(*) AS runs, max(P) AS largest_P, sum(events) AS events,"
         " format('%.2f', sum(host_s)) AS simulating_s,"
         " format('%.2f', sum(host_total_s)) AS in_all_s,"
@@ -292,16 +330,20 @@ static bool effort(struct chapter *c)
         "No run is stored.");
 }
 
+/* Which programs made the runs, and hashes that change when a setting or a result does. */
 static bool provenance(struct chapter *c)
 {
     page_heading(c->page, 2, "Provenance");
     if (!table(c,
+               /* By program: a database may have runs of several versions. */
                "SELECT 'mimdsim ' || version AS program, git, compiler, flags, count(*) AS runs,"
                " min(created_utc) AS first_run, max(created_utc) AS last_run FROM v_provenance"
                " GROUP BY 1, 2, 3, 4",
                "No run is stored."))
         return false;
     return table(c,
+                 /* Least and largest hash of a scenario: not a proof of equality, but enough to
+                  * see a difference. */
                  "SELECT scenario, count(*) AS runs, group_concat(DISTINCT machine) AS machines,"
                  " substr(min(config_hash), 1, 12) || ' ... ' || substr(max(config_hash), 1, 12)"
                  " AS configurations,"
@@ -309,6 +351,8 @@ static bool provenance(struct chapter *c)
                  "No run is stored.");
 }
 
+/* The order of the report: verdicts, reasons, evidence, then what it is based on. `whole`: the
+ * report on the paper, in which an empty chapter is told as empty; others leave it out. */
 static bool chapters(struct chapter *c)
 {
     const struct document *d = c->d;
@@ -316,6 +360,7 @@ static bool chapters(struct chapter *c)
     if (!findings_any(d->store, "SELECT 1 FROM claim LIMIT 1", &claimed, c->e) ||
         !findings_any(d->store, "SELECT 1 FROM run LIMIT 1", &run, c->e))
         return false;
+    /* The report on the paper tells what is missing. */
     claimed = claimed || d->whole;
     run = run || d->whole;
     if (claimed && !opening_abstract(c->page, d->store, d->data_dir, c->e)) return false;
@@ -332,6 +377,8 @@ static bool chapters(struct chapter *c)
 bool document_write(const struct document *d, struct err *e)
 {
     struct page page = {0};
+    /* The report lies beside its folder of figures, so that links are short: its folder is the
+     * path above, without trailing slashes. */
     char *figures_folder = strdup(d->figures);
     CHECK(figures_folder);
     for (size_t n = strlen(figures_folder); n > 1 && figures_folder[n - 1] == '/'; n--)
@@ -345,6 +392,7 @@ bool document_write(const struct document *d, struct err *e)
     struct chapter c = {d, &page, e};
     bool ok = page_open(&page, folder.s, d->name, d->title, figures_folder, e) &&
               chapters(&c);
+    /* Close in any case: half a report is closed, and the error stays. */
     ok = page_close(&page, e) && ok;
     text_free(&folder);
     free(figures_folder);

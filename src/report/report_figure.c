@@ -41,6 +41,7 @@ struct figure {
     bool folder_made;    /* `dir` was not there */
 };
 
+/* Owned by the caller. */
 static char *joined(const char *a, const char *b, const char *c)
 {
     struct text t = {0};
@@ -60,11 +61,13 @@ static char *figure_stem(const char *plots, const char *file)
     return drawn ? strndup(file, n - 4) : NULL;
 }
 
+/* For qsort. */
 static int compare_names(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
+/* Every pair of NAME.sql and NAME.gp: adding a figure is adding two files. */
 int report_figures(const char *data_dir, char ***name)
 {
     char *plots = joined(data_dir, "/plots", "");
@@ -84,6 +87,7 @@ int report_figures(const char *data_dir, char ***name)
     return n;
 }
 
+/* The nearest name, or all of them. Returns false, for the caller's return. */
 static bool no_such_figure(const char *data_dir, const char *wanted, struct err *e)
 {
     char **name;
@@ -102,12 +106,15 @@ static bool no_such_figure(const char *data_dir, const char *wanted, struct err 
     return false;
 }
 
+/* JSON, as SQLite's json_each takes it back. */
+/* Called for every row that has a run_id; a run may come several times. */
 static void remember_run(void *context, int64_t id)
 {
     struct text *ids = context;
     text_add(ids, "%s%lld", ids->length == 0 ? "[" : ",", (long long)id);
 }
 
+/* A file is written whole or not at all. */
 static bool write_file(const char *path, const char *data, size_t size, struct err *e)
 {
     FILE *out = fopen(path, "w");
@@ -119,14 +126,15 @@ static bool write_file(const char *path, const char *data, size_t size, struct e
     return ok;
 }
 
-/* One table of the figure into its file; a main table without rows leaves what an earlier drawing
- * wrote. */
+/* One table of the figure into its file. It is made in memory first: a main table without rows
+ * leaves what an earlier drawing wrote. */
 static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow,
                         struct err *e)
 {
     struct text path = {0};
     char *data = NULL;
     size_t size = 0;
+    /* ?1 is bound only where the description asks for a run. */
     FILE *out = open_memstream(&data, &size);
     CHECK(out != NULL);
     bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run,
@@ -155,6 +163,7 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
         text_free(&statement);
         if (!ok) return false;
         if (*table == '\0') f->nrow = nrow;
+        /* Without rows in the main table nothing is drawn, so the others are not needed. */
         if (f->nrow == 0) return true;
         text_copy(table, sizeof table, next);
         from = after;
@@ -162,6 +171,7 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
     return true;
 }
 
+/* "version (commit)" of each program that made a run, joined by commas. */
 static bool add_source(void *context, int ncolumn, const char *const *name,
                        const char *const *value)
 {
@@ -172,6 +182,7 @@ static bool add_source(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* 64 digits each: their number is the length divided by 64. */
 static bool add_hash(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -199,6 +210,7 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
     if (f->run_ids.length == 0) return writers(f, out, e);
     struct text sources = {0}, hashes = {0};
     char hash[65];
+    /* run_ids is closed here, once all tables have been read. */
     text_add(&f->run_ids, "]");
     const char *const ids[] = {f->run_ids.s};
     bool ok = store_select(f->s,
@@ -210,6 +222,7 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
                            " WHERE id IN (SELECT value FROM json_each(?1)) "
                            "ORDER BY config_hash, seed, rep",
                            1, ids, add_hash, &hashes, e);
+    /* One run is named by its own hash, several by a hash of all their hashes. */
     size_t nrun = hashes.length / 64;
     if (ok && nrun == 1 && sources.s)
         text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
@@ -222,6 +235,7 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
     return ok;
 }
 
+/* Appends plots/NAME.gp. */
 static bool add_file(struct text *script, const char *plots, const char *name, struct err *e)
 {
     struct text path = {0}, content = {0};
@@ -239,6 +253,7 @@ static bool write_provenance(struct figure *f, struct err *e)
     struct text source = {0}, path = {0};
     bool ok = provenance(f, &source, e);
     if (source.length == 0) text_add(&source, "unknown");
+    /* A database's texts must not break the line. */
     csv_plain(source.s);
     text_add(&source, "\n");
     text_add(&path, "%s/%s.provenance", f->dir, f->as);
@@ -248,7 +263,8 @@ static bool write_provenance(struct figure *f, struct err *e)
     return ok;
 }
 
-/* The name is ours, or went through figure_file_name: no more than a quote in it needs care. */
+/* The script: the figure's name, the common style, then the figure's own commands. The name is
+ * this program's, or went through figure_file_name: only a quote in it needs care. */
 static bool write_script(struct figure *f, struct err *e)
 {
     struct text script = {0}, path = {0};
@@ -264,6 +280,7 @@ static bool write_script(struct figure *f, struct err *e)
 }
 
 /* Images of an earlier drawing must not be taken for this one's. */
+/* PNG and SVG are what the scripts make. */
 static void remove_images(const struct figure *f)
 {
     static const char *const suffix[] = {".png", ".svg"};
@@ -275,6 +292,7 @@ static void remove_images(const struct figure *f)
     }
 }
 
+/* As mkdir -p. That a folder exists is no error; that a file has its name is one. */
 bool report_folder(const char *dir, struct err *e)
 {
     char *path = strdup(dir);
@@ -293,8 +311,8 @@ bool report_folder(const char *dir, struct err *e)
     return ok;
 }
 
-/* Nothing to draw: a folder that was made for it goes again; what another database's drawing left
- * there stays. */
+/* Nothing to draw. A folder that was made for it is removed again; what a drawing of another
+ * database left there stays. */
 static bool no_rows(const struct figure *f, const char *sql, struct err *e)
 {
     char needs[200] = "";
@@ -304,6 +322,8 @@ static bool no_rows(const struct figure *f, const char *sql, struct err *e)
                    f->name, *needs ? "; first: " : "", needs);
 }
 
+/* Tables, then the script, then gnuplot. If that fails, no image is left: data and script stay,
+ * to be drawn elsewhere. */
 static bool draw(struct figure *f, const char *sql, struct err *e)
 {
     struct text script = {0};
@@ -317,7 +337,8 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     return ok;
 }
 
-/* The text of figure `name`; false when there is no such figure. */
+/* The text of figure `name`. False: there is no such figure; a name with a slash is none, so
+ * that no path leads out of plots/. */
 static bool read_description(const char *data_dir, const char *name, struct text *sql,
                              struct err *e)
 {
@@ -332,6 +353,7 @@ static bool read_description(const char *data_dir, const char *name, struct text
     return ok;
 }
 
+/* One drawing: `run` is what ?1 is bound to, `as` the name of its files. */
 static bool make_figure(struct store *s, const char *data_dir, const char *name, const char *run,
                         const char *as, const char *dir, struct err *e)
 {
@@ -349,6 +371,7 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
 
 /* --- figures with a drawing for each of several rows ------------------------------------------ */
 
+/* A row of -- each: what ?1 is bound to, and what the drawing is called after. */
 static bool add_drawing(void *context, int ncolumn, const char *const *name,
                         const char *const *value)
 {
@@ -376,7 +399,7 @@ void report_drawings_free(struct report_drawings *d)
     *d = (struct report_drawings){0};
 }
 
-/* Only the drawing called `as` stays. */
+/* Only the drawing called `as` stays, the first of that name. */
 static void keep_drawing(struct report_drawings *d, const char *as)
 {
     int n = 0;
@@ -393,7 +416,8 @@ static void keep_drawing(struct report_drawings *d, const char *as)
     d->n = n;
 }
 
-/* The figure that `name` is a drawing of: NAME itself, or what stands before one of its hyphens. */
+/* The figure that `name` is a drawing of: NAME itself, or what stands before one of its hyphens,
+ * the last one first. */
 static bool find_description(const char *data_dir, const char *name, struct report_drawings *d,
                              struct text *sql, struct err *e)
 {
@@ -402,6 +426,7 @@ static bool find_description(const char *data_dir, const char *name, struct repo
     if (read_description(data_dir, name, sql, e)) return true;
     for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
         *hyphen = '\0';
+        /* Without a line -- each: a figure has no drawings of its own. */
         if (read_description(data_dir, d->figure, sql, e) &&
             figure_line(sql->s, "-- each: ", each, sizeof each))
             return true;
@@ -418,6 +443,8 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
     *d = (struct report_drawings){0};
     if (!find_description(data_dir, name, d, &sql, e)) return false;
     bool ok = true;
+    /* A figure with several drawings: as many as rows; one of them if it was asked for by its
+     * own name. */
     if (figure_line(sql.s, "-- each: ", each, sizeof each)) {
         ok = store_select(s, each, 0, NULL, add_drawing, d, e);
         if (ok && strcmp(d->figure, name) != 0) keep_drawing(d, name);
@@ -425,6 +452,7 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
         if (ok && d->n == 0)
             ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s",
                          store_path(s), name, *needs ? "; first: " : "", needs);
+    /* A figure without: a single drawing that needs no row. */
     } else {
         const char *const alone[] = {"", name};
         add_drawing(d, 2, NULL, alone);
@@ -434,6 +462,8 @@ bool report_drawings_find(struct store *s, const char *data_dir, const char *nam
     return ok;
 }
 
+/* Every drawing is tried, though gnuplot is missing for one as for all: the numbers are written.
+ * Any other error stops. */
 bool report_figure(struct store *s, const char *data_dir, const char *name, const char *dir,
                    struct err *e)
 {

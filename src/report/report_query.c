@@ -1,4 +1,6 @@
-/* report_query.c - the rows of a query as an aligned table or as one JSON document. */
+/* report_query.c - the rows of a query as an aligned table or as one JSON document.
+ *
+ * A table is for eyes: six digits, "-" for NULL. The document is for programs: all digits, null. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +47,8 @@ static char *readable(struct arena *a, const struct store_value *v)
     return arena_text(a, buffer);
 }
 
+/* A row takes the widths of its columns with it, so that printing needs no second look at all
+ * cells. */
 static void grid_add(struct grid *g, char *const *cell)
 {
     if (g->nrow == g->capacity) {
@@ -60,12 +64,14 @@ static void grid_add(struct grid *g, char *const *cell)
     g->nrow++;
 }
 
+/* Columns of numbers are aligned to the right until a text is seen in them. */
 static bool grid_header(void *context, int ncolumn, const char *const *name,
                         const struct store_value *value)
 {
     struct grid *g = context;
     (void)value;
     g->ncolumn = ncolumn;
+    /* The names are row 0 and widen the columns like any row. */
     g->width = TAKE(g->a, ncolumn, int);
     g->number = TAKE(g->a, ncolumn, bool);
     char **cell = TAKE(g->a, ncolumn, char *);
@@ -91,6 +97,7 @@ static bool grid_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* The last column is not padded: no line ends in blanks. */
 static void grid_print(const struct grid *g, FILE *out)
 {
     for (int64_t r = 0; r < g->nrow; r++)
@@ -113,6 +120,7 @@ struct document_rows {
     } * column; /* (ncolumn) by name */
 };
 
+/* For qsort: by name, equal names by their places. */
 static int compare_columns(const void *a, const void *b)
 {
     const struct key_place *x = a, *y = b;
@@ -128,12 +136,14 @@ static void name_apart(struct document_rows *d)
         struct text t = {0};
         if (strcmp(d->column[first].name, d->column[i].name) != 0) first = i;
         if (first == i) continue;
+        /* "x", "x:1", "x:2" */
         text_add(&t, "%s:%d", d->column[first].name, i - first);
         d->column[i].name = arena_text(d->a, t.s);
         text_free(&t);
     }
 }
 
+/* Keys are sorted once, for all rows. */
 static bool json_header(void *context, int ncolumn, const char *const *name,
                         const struct store_value *value)
 {
@@ -149,6 +159,7 @@ static bool json_header(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* SQL's types are JSON's; what is not finite was stored as NULL. */
 void report_value_json(struct json *j, const struct store_value *v)
 {
     switch (v->kind) {
@@ -159,6 +170,7 @@ void report_value_json(struct json *j, const struct store_value *v)
     }
 }
 
+/* One object per row, columns in the order of their names. */
 static bool json_row(void *context, int ncolumn, const char *const *name,
                      const struct store_value *value)
 {
@@ -179,24 +191,28 @@ static bool query_json(struct store *s, const char *sql, int nparam, const char 
 {
     struct document_rows d = {.j = json_make(out), .a = arena_create()};
     bool ok = store_query(s, sql, nparam, param, json_header, json_row, &d, e);
+    /* A query that failed after its head leaves a list open. */
     if (d.j.depth > 0) json_end(&d.j);
     if (ok) json_finish(&d.j);
     arena_destroy(d.a);
     return ok;
 }
 
+/* Widths need all rows: the table is printed at the end, JSON row by row. */
 bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json,
                   FILE *out, struct err *e)
 {
     bool ok;
     if (json) ok = query_json(s, sql, nparam, param, out, e);
     else {
+        /* All rows in memory: a database of reports has thousands, not millions. */
         struct grid g = {.a = arena_create()};
         ok = store_query(s, sql, nparam, param, grid_header, grid_row, &g, e);
         if (ok) grid_print(&g, out);
         free(g.cell);
         arena_destroy(g.a);
     }
+    /* A full disk shows up when the buffer is flushed. */
     if (ok && (fflush(out) != 0 || ferror(out))) return err_set(e, ERR_IO,
                                                                 "the output cannot be written");
     return ok;

@@ -6,17 +6,21 @@
 
 #include "base/check.h"
 
+/* In the order of enum span_kind. */
 const char *timeline_kind(enum span_kind kind)
 {
     static const char *const word[] = {"compute", "send", "recv", "wait", "barrier"};
     return word[kind];
 }
 
+/* A stage without a name, -1, is what a program does before its first one. */
 const char *timeline_stage(const struct timeline *t, int stage)
 {
     return stage >= 0 && stage < t->run->nstage ? t->run->stage_name[stage] : "";
 }
 
+/* Spans are sorted by rank and begin: a group is what one rank does in one stage without a
+ * break. */
 int64_t timeline_group(const struct timeline *t, int64_t first)
 {
     int64_t i = first + 1;
@@ -26,11 +30,12 @@ int64_t timeline_group(const struct timeline *t, int64_t first)
     return i;
 }
 
-/* A message's two ends, while they are matched. */
+/* A message's two ends, while they are matched: number of the message and place of the span. */
 struct message_end {
     int64_t message, index;
 };
 
+/* Ends of one message next to each other; of equal ones the earlier span first. */
 static int compare_message(const void *a, const void *b)
 {
     const struct message_end *x = a, *y = b;
@@ -38,6 +43,9 @@ static int compare_message(const void *a, const void *b)
     return x->index < y->index ? -1 : x->index > y->index;
 }
 
+/* partner[i]: the span at the other end of span i's message, -1: none. Sorting all ends by
+ * message takes n log n, and needs no table of messages. A partner is missing when the window or
+ * the limit cut it off, or the rank is not shown. */
 int64_t *timeline_partners(const struct timeline *t)
 {
     int64_t *partner = malloc((size_t)t->nspan * sizeof *partner), n = 0;
@@ -52,6 +60,7 @@ int64_t *timeline_partners(const struct timeline *t)
     qsort(end, (size_t)n, sizeof *end, compare_message);
     for (int64_t i = 0; i + 1 < n; i++) {
         int64_t a = end[i].index, b = end[i + 1].index;
+        /* Two sends of one number cannot be: neighbours of the same kind are no pair. */
         if (end[i].message != end[i + 1].message || t->span[a]->kind == t->span[b]->kind) continue;
         partner[a] = b;
         partner[b] = a;

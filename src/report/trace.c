@@ -1,4 +1,7 @@
-/* trace.c - picking the spans of a trace, and the formats by name. */
+/* trace.c - picking the spans of a trace, and the formats by name.
+ *
+ * A run may have millions of spans, and viewers stop responding at far fewer: a window in time,
+ * a range of ranks and a limit choose what is written. All formats get the same choice. */
 #include "report/trace.h"
 
 #include <stdlib.h>
@@ -9,6 +12,7 @@
 #include "report/csv.h"
 #include "report/timeline.h"
 
+/* In the order of enum trace_format. */
 bool trace_format_find(const char *name, enum trace_format *format)
 {
     static const char *const names[] = {"chrome", "paje", "csv", "text"};
@@ -20,6 +24,7 @@ bool trace_format_find(const char *name, enum trace_format *format)
     return false;
 }
 
+/* By time; of equal times the order in which they were recorded, so that output is reproducible. */
 static int compare_begin(const void *a, const void *b)
 {
     const struct span *x = *(const struct span *const *)a, *y = *(const struct span *const *)b;
@@ -33,8 +38,8 @@ static int compare_rank(const void *a, const void *b)
     return x->rank != y->rank ? (x->rank < y->rank ? -1 : 1) : compare_begin(a, b);
 }
 
-/* The spans of *t within its window and ranks, at most `max` of them. Returns how many were left
- * out. */
+/* The spans of *t within its window and ranks, at most `max` of them, sorted by rank and time.
+ * Returns how many were left out. */
 static int64_t pick(struct timeline *t, int64_t max)
 {
     const struct run_result *r = t->run;
@@ -42,10 +47,13 @@ static int64_t pick(struct timeline *t, int64_t max)
     CHECK(t->span != NULL);
     for (int64_t i = 0; i < r->nspan; i++) {
         const struct span *p = &r->span[i];
+        /* A span that reaches into the window is shown whole: cutting it would falsify its
+         * length. */
         bool inside = p->begin_ps < t->end_ps && p->end_ps > t->begin_ps;
         if (inside && p->rank >= t->first_rank && p->rank <= t->last_rank) t->span[t->nspan++] = p;
     }
     int64_t left_out = t->nspan > max ? t->nspan - max : 0;
+    /* What is too much is cut at the end of time, on all ranks alike. */
     if (left_out > 0) {
         qsort(t->span, (size_t)t->nspan, sizeof *t->span, compare_begin);
         t->nspan = max;
@@ -54,6 +62,7 @@ static int64_t pick(struct timeline *t, int64_t max)
     return left_out;
 }
 
+/* One line per span, RFC 4180. Times are whole picoseconds. */
 void trace_csv(const struct timeline *t, FILE *out)
 {
     fputs("rank,stage,kind,begin_ps,end_ps,peer,bytes,message\r\n", out);
@@ -63,6 +72,7 @@ void trace_csv(const struct timeline *t, FILE *out)
         csv_cell(out, timeline_stage(t, p->stage), false);
         fprintf(out, "%s,%lld,%lld,", timeline_kind(p->kind), (long long)p->begin_ps,
                 (long long)p->end_ps);
+        /* peer and message are empty where there is none */
         if (p->peer >= 0) fprintf(out, "%d", p->peer);
         fprintf(out, ",%lld,", (long long)p->bytes);
         if (p->message >= 0) fprintf(out, "%lld", (long long)p->message);
@@ -73,14 +83,18 @@ void trace_csv(const struct timeline *t, FILE *out)
 bool trace_write(const struct run_result *r, enum trace_format format,
                  const struct trace_options *o, FILE *out, int64_t *left_out, struct err *e)
 {
+    /* In the order of enum trace_format. */
     static void (*const write[])(const struct timeline *, FILE *) = {trace_chrome, trace_paje,
                                                                      trace_csv, trace_text};
+    /* Ranks 0 to 0 are the default of the options, which means all. */
     bool all = o->first_rank == 0 && o->last_rank == 0;
     struct timeline t = {.run = r,
                          .title = o->title ? o->title : "",
                          .begin_ps = o->begin_ps,
                          .first_rank = o->first_rank,
                          .last_rank = all ? r->nrank - 1 : o->last_rank,
+                         /* end_ps 0: to the end; + 1, since a span of no length at the very end
+                          * is inside, too. */
                          .end_ps = o->end_ps > 0 ? o->end_ps : r->makespan_ps + 1,
                          .columns = o->columns > 0 ? o->columns : TRACE_COLUMNS};
     if (r->span == NULL || r->nspan == 0)
@@ -94,6 +108,7 @@ bool trace_write(const struct run_result *r, enum trace_format format,
                                      (double)t.end_ps * 1e-6);
     if (ok) write[format](&t, out);
     free(t.span);
+    /* A full disk shows up when the buffer is flushed. */
     if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO,
                                                               "the timeline cannot be written");
     return ok;

@@ -19,6 +19,8 @@ static void put_time(FILE *out, const char *key, int64_t ps)
 /* A JSON string. */
 static void put_text(FILE *out, const char *s)
 {
+    /* The JSON writer escapes; the events around it are written by hand, as they are many and
+     * alike. */
     struct json j = json_make(out);
     json_text(&j, s);
 }
@@ -30,6 +32,7 @@ static void put_head(FILE *out, const char *phase, int rank, const char *name)
     put_text(out, name);
 }
 
+/* A slice that has a beginning and a length ("X", a complete event). */
 static void put_slice(FILE *out, int rank, const char *name, const char *category, int64_t begin,
                       int64_t end)
 {
@@ -39,6 +42,7 @@ static void put_slice(FILE *out, int rank, const char *name, const char *categor
     put_time(out, "dur", end - begin);
 }
 
+/* What it exchanged, and with whom, appears when the slice is clicked. */
 static void put_span(const struct span *p, FILE *out)
 {
     put_slice(out, p->rank, timeline_kind(p->kind), timeline_kind(p->kind), p->begin_ps, p->end_ps);
@@ -47,6 +51,7 @@ static void put_span(const struct span *p, FILE *out)
     fputs("}", out);
 }
 
+/* The flow of a message: "s" starts at the send's slice, "f" ends at the receive's. */
 static void put_flow(const struct span *p, FILE *out)
 {
     put_head(out, p->kind == SPAN_SEND ? "s" : "f", p->rank, "message");
@@ -55,6 +60,7 @@ static void put_flow(const struct span *p, FILE *out)
     fputs(p->kind == SPAN_SEND ? "}" : ",\"bp\":\"e\"}", out);
 }
 
+/* Names of process and tracks; tracks in the order of ranks, not of their first event. */
 static void put_names(const struct timeline *t, FILE *out)
 {
     fputs("{\"ph\":\"M\",\"pid\":0,\"name\":\"process_name\",\"args\":{\"name\":", out);
@@ -75,6 +81,7 @@ void trace_chrome(const struct timeline *t, FILE *out)
     int64_t *partner = timeline_partners(t);
     fputs("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[\n", out);
     put_names(t, out);
+    /* A stage's slice is written before the spans that it contains. */
     for (int64_t first = 0, next; first < t->nspan; first = next) {
         const struct span *head = t->span[first];
         next = timeline_group(t, first);

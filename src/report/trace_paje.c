@@ -9,6 +9,7 @@
 /* In the order in which events of one time must be written. */
 enum change { STAGE_BEGINS, SPAN_BEGINS, MESSAGE_LEAVES, MESSAGE_ARRIVES, SPAN_ENDS };
 
+/* A line of the trace that is yet to be written. */
 struct event {
     int64_t time;
     enum change change;
@@ -23,8 +24,10 @@ static int compare_events(const void *a, const void *b)
     return x->index < y->index ? -1 : x->index > y->index;
 }
 
+/* The fields of each event that is used, numbered 0 to 8; a reader learns the format from here. */
 static void put_definitions(FILE *out)
 {
+    /* number, name and fields; fields are separated by blanks */
     static const char *const definition[] = {
         "PajeDefineContainerType 0\n% Alias string\n% Type string\n% Name string",
         "PajeDefineStateType 1\n% Alias string\n% Type string\n% Name string",
@@ -74,18 +77,22 @@ static int64_t gather(const struct timeline *t, const int64_t *partner, struct e
     int64_t n = 0;
     for (int64_t i = 0; i < t->nspan; i++) {
         const struct span *p = t->span[i];
+        /* The first and the last span of a rank open and close its states. */
         bool first = i == 0 || t->span[i - 1]->rank != p->rank;
         bool last = i + 1 == t->nspan || t->span[i + 1]->rank != p->rank;
+        /* Stages change only when the next span has another one. */
         if (first || t->span[i - 1]->stage != p->stage)
             event[n++] = (struct event){p->begin_ps, STAGE_BEGINS, i};
         event[n++] = (struct event){p->begin_ps, SPAN_BEGINS, i};
         if (partner[i] >= 0 && p->kind == SPAN_SEND)
             event[n++] = (struct event){p->end_ps, MESSAGE_LEAVES, i};
+        /* A message cannot arrive before it left: the receive may have been posted earlier. */
         if (partner[i] >= 0 && p->kind == SPAN_RECV) {
             int64_t sent = t->span[partner[i]]->end_ps;
             event[n++] =
                 (struct event){p->begin_ps > sent ? p->begin_ps : sent, MESSAGE_ARRIVES, i};
         }
+        /* Where the next span follows at once, it replaces the state; else the rank is idle. */
         if (last || t->span[i + 1]->begin_ps > p->end_ps)
             event[n++] = (struct event){p->end_ps, SPAN_ENDS, i};
     }
@@ -93,6 +100,7 @@ static int64_t gather(const struct timeline *t, const int64_t *partner, struct e
     return n;
 }
 
+/* Event 6 sets a state, 7 and 8 are the two ends of a message, matched by its number. */
 static void put_event(const struct timeline *t, const struct event *v, FILE *out)
 {
     const struct span *p = t->span[v->index];
@@ -105,6 +113,7 @@ static void put_event(const struct timeline *t, const struct event *v, FILE *out
 }
 
 /* Make or end the containers: the machine around the ranks. */
+/* Ranks are inside the machine: made after it, ended before it. */
 static void put_containers(const struct timeline *t, bool make, int64_t time, FILE *out)
 {
     if (make) {
@@ -126,6 +135,9 @@ static void put_containers(const struct timeline *t, bool make, int64_t time, FI
 
 void trace_paje(const struct timeline *t, FILE *out)
 {
+    /* At most four events a span: stage, span, message end, idle. */
+    /* Gather and sort first: Paje is read from start to end, in the order of time, while spans
+     * lie rank by rank. */
     int64_t *partner = timeline_partners(t), end = t->begin_ps;
     struct event *event = malloc((size_t)t->nspan * 4 * sizeof *event);
     CHECK(event != NULL);

@@ -1,4 +1,7 @@
-/* trace_read.c - the timeline of a stored run, back from the database. */
+/* trace_read.c - the timeline of a stored run, back from the database.
+ *
+ * So every format can be written later, without running again: only a run with `record: {spans:
+ * true}` has spans. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,12 +10,14 @@
 #include "report/timeline.h"
 
 /* A query's rows on their way into a result. */
+/* What the rows of three queries fill, one after the other. */
 struct reading {
     struct arena *a;
     struct run_result *r;
     bool found;
 };
 
+/* The run: number of ranks, length, and how many spans there will be. */
 static bool read_run(void *context, int ncolumn, const char *const *name,
                      const struct store_value *value)
 {
@@ -22,10 +27,12 @@ static bool read_run(void *context, int ncolumn, const char *const *name,
     g->found = true;
     g->r->nrank = (int)value[0].integer;
     g->r->makespan_ps = value[1].integer;
+    /* room for all of them, counted by the same statement */
     g->r->span = TAKE(g->a, value[2].integer + 1, struct span);
     return false;
 }
 
+/* Names of stages by their numbers; numbers of a damaged database stay inside the array. */
 static bool read_stage(void *context, int ncolumn, const char *const *name,
                        const struct store_value *value)
 {
@@ -40,6 +47,7 @@ static bool read_stage(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* One span. NULL as peer or message is -1. */
 static bool read_span(void *context, int ncolumn, const char *const *name,
                       const struct store_value *value)
 {
@@ -54,12 +62,14 @@ static bool read_span(void *context, int ncolumn, const char *const *name,
                        .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
                        .bytes = value[6].integer,
                        .message = value[7].kind == STORE_INT ? value[7].integer : -1};
+    /* Kinds are stored as words. */
     for (int k = SPAN_COMPUTE; k <= SPAN_BARRIER; k++)
         if (strcmp(value[2].text, timeline_kind((enum span_kind)k)) == 0)
             p->kind = (enum span_kind)k;
     return true;
 }
 
+/* Run, then stages, then spans: each query needs what the one before allocated. */
 bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_result *r,
                 struct err *e)
 {
@@ -72,6 +82,7 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
                         " FROM run "
                         "WHERE id = ?1", 1, param, NULL, read_run, &g, e))
         return false;
+    /* No row: there is no such run. */
     if (!g.found) return err_set(e, ERR_NO_INPUT, "there is no run %s in %s", id, store_path(s));
     if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL,
                      read_stage, &g, e) ||
@@ -81,6 +92,7 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
                      "ORDER BY span",
                      1, param, NULL, read_span, &g, e))
         return false;
+    /* A run without spans was not recorded: the message says how to record it. */
     return r->nspan > 0 ||
            err_set(e, ERR_NO_INPUT,
                    "run %s has no stored timeline; record it with `record: {spans: true}`", id);

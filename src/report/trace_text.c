@@ -6,7 +6,7 @@
 
 enum { NKIND = SPAN_BARRIER + 1 };
 
-/* The slot's share of [begin, end). */
+/* How much of the span lies in [begin, end) [ps]. */
 static int64_t overlap(const struct span *p, int64_t begin, int64_t end)
 {
     int64_t from = p->begin_ps > begin ? p->begin_ps : begin,
@@ -14,15 +14,18 @@ static int64_t overlap(const struct span *p, int64_t begin, int64_t end)
     return to > from ? to - from : 0;
 }
 
-/* One rank's spans are span[first..next). Two lines: its stages (a letter each), and what it
- * does. */
+/* One rank's spans are span[first] to span[next - 1], by time. Two lines: its stages, a letter
+ * each, and what it does most of the time in each column. */
 static void put_rank(const struct timeline *t, int64_t first, int64_t next, int64_t begin,
                      int64_t end, FILE *out)
 {
+    /* in the order of enum span_kind */
     static const char sign[] = "#><.|";
     char stage_bar[512], bar[512];
     int columns = t->columns < 500 ? t->columns : 500;
     int64_t from = first;
+    /* One column is the time from left to right. Spans that ended before it are not looked at
+     * again, so the whole line takes one pass. */
     for (int c = 0; c < columns; c++) {
         /* in wide arithmetic: length times columns may exceed 64 bits */
         int64_t left = begin + (int64_t)((__int128)(end - begin) * c / columns);
@@ -35,6 +38,7 @@ static void put_rank(const struct timeline *t, int64_t first, int64_t next, int6
             if (t->span[i]->stage >= 0 && t->span[i]->stage <= RUN_MAX_STAGES)
                 stages[t->span[i]->stage] += part;
         }
+        /* The largest share wins; of equal ones the first kind. Nothing recorded: a blank. */
         int kind = -1, stage = -1;
         for (int k = 0; k < NKIND; k++)
             if (share[k] > (kind < 0 ? 0 : share[kind])) kind = k;
@@ -51,6 +55,7 @@ void trace_text(const struct timeline *t, FILE *out)
 {
     int64_t begin = INT64_MAX, end = 0;
     int shown = 0, ranks = 0;
+    /* The window is what was asked for, less what is empty at its ends. */
     for (int64_t i = 0; i < t->nspan; i++) {
         if (t->span[i]->begin_ps < begin) begin = t->span[i]->begin_ps;
         if (t->span[i]->end_ps > end) end = t->span[i]->end_ps;
@@ -61,9 +66,12 @@ void trace_text(const struct timeline *t, FILE *out)
     fprintf(out, "%.3f to %.3f us, one letter is %.3f us\n", (double)begin * 1e-6,
             (double)end * 1e-6, (double)(end - begin) * 1e-6 / t->columns);
     fputs("what: # compute  > send  < receive  . wait  | barrier\nstages:", out);
+    /* A letter for each stage, as in the bars. */
     for (int i = 0; i < t->run->nstage; i++)
         fprintf(out, " %c %s ", 'A' + i, t->run->stage_name[i]);
     fputs("\n\n    rank\n", out);
+    /* Spans are sorted by rank: a rank's are a run of them. Beyond TRACE_TEXT_RANKS they are
+     * only counted. */
     for (int64_t first = 0, next; first < t->nspan; first = next, ranks++) {
         for (next = first; next < t->nspan && t->span[next]->rank == t->span[first]->rank;) next++;
         if (ranks < TRACE_TEXT_RANKS) {
