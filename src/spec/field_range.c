@@ -5,6 +5,7 @@
 
 #include "spec/field_list.h"
 
+/* Always false, so that a refusal is one statement: return field_refuse(..). */
 bool field_refuse(char *why, int size, const char *format, ...)
 {
     va_list args;
@@ -14,7 +15,7 @@ bool field_refuse(char *why, int size, const char *format, ...)
     return false;
 }
 
-/* A bound for messages: counts without, quantities with their unit. */
+/* A bound for messages: counts without, quantities with their unit, as the user writes them. */
 static void print_bound(const struct field *f, double value, char *buffer, int size)
 {
     if (f->kind == FIELD_REAL || f->kind == FIELD_REALS || f->unit == UNIT_BYTES)
@@ -22,6 +23,8 @@ static void print_bound(const struct field *f, double value, char *buffer, int s
     else snprintf(buffer, (size_t)size, "%.0f", value);
 }
 
+/* "Not a number" fails both comparisons and is refused. Bounds that are technical (1e15 and more)
+ * are not told, since they would not help anybody. */
 bool field_in_range(const struct field *f, double value, char *why, int size)
 {
     if (value >= f->min && value <= f->max) return true;
@@ -29,7 +32,8 @@ bool field_in_range(const struct field *f, double value, char *why, int size)
     print_bound(f, f->min, low, (int)sizeof low);
     print_bound(f, f->max, high, (int)sizeof high);
     bool has_low = isfinite(f->min), has_high = isfinite(f->max) && fabs(f->max) < 1e15;
-    if (has_low && has_high) return field_refuse(why, size, "out of range; expected %s to %s", low, high);
+    if (has_low && has_high)
+        return field_refuse(why, size, "out of range; expected %s to %s", low, high);
     if (has_low) return field_refuse(why, size, "out of range; expected at least %s", low);
     return field_refuse(why, size, "out of range; expected at most %s", high);
 }

@@ -1,4 +1,14 @@
-/* identity.c - canonical texts of runs, their SHA-256, and runs from stored texts; see identity.h. */
+/* identity.c - canonical texts of runs, their SHA-256, and runs from stored texts; see identity.h.
+ *
+ * The text that is hashed has one line for each setting that differs from its default, in the order
+ * of the keys, and a line for the content of each file:
+ *
+ *     kernel.solver = cr
+ *     machine.topology.dims = [8, 4, 4]
+ *     model.file = sha256 ..
+ *
+ * A row that is added to a table, moved or given another default text of the same value changes
+ * nothing here. Labels (titles) and the repetition number are no part of it. */
 #include "spec/identity.h"
 
 #include <stdio.h>
@@ -9,6 +19,7 @@
 #include "base/digest.h"
 #include "spec/spec_fields.h"
 
+/* Lines that stand for the content of files, in place of the paths. */
 static const char file_key[] = "model.file = sha256 ";
 static const char program_key[] = "program.file = sha256 ";
 
@@ -19,12 +30,14 @@ struct part {
     bool known;
 };
 
+/* Kept for a whole campaign, which has thousands of runs and few different structs. */
 struct identity {
     const struct field_table *const *table;
     int n;
     struct part *part; /* (n) */
 };
 
+/* Printed defaults, once: every run of a campaign is compared with these lines. */
 struct identity *identity_create(const struct field_table *const *table, int n)
 {
     struct identity *x = calloc(1, sizeof *x);
@@ -55,6 +68,7 @@ void identity_destroy(struct identity *x)
     free(x);
 }
 
+/* Two runs may have lists of equal length at one address after the arena was used again. */
 void identity_forget(struct identity *x)
 {
     for (int i = 0; i < x->n; i++) x->part[i].known = false;
@@ -67,13 +81,16 @@ static const char *next_line(const char *s)
     return *s != '\0' ? s + 1 : s;
 }
 
-/* The lines of `full` that are other ones in `fallback`: both name the same keys in the same order. */
+/* The lines of `full` that are other ones in `fallback`: both name the same keys in the same order.
+ * Equal lines mean a default, however it was written. */
 static void add_differences(const char *full, const char *fallback, struct text *own)
 {
+    /* Lines side by side: a key stands on the same line of both texts. */
     for (const char *line = full, *other = fallback; *line != '\0';) {
         const char *end = next_line(line), *other_end = next_line(other);
         const size_t n = (size_t)(end - line);
-        if (n != (size_t)(other_end - other) || memcmp(line, other, n) != 0) text_add_bytes(own, line, n);
+        if (n != (size_t)(other_end - other) || memcmp(line, other, n) != 0)
+            text_add_bytes(own, line, n);
         line = end;
         other = other_end;
     }
@@ -85,6 +102,7 @@ static const struct part *print_part(struct identity *x, int i, const void *base
     const struct field_table *t = x->table[i];
     const void *bytes = (const char *)base + t->offset;
     struct part *p = &x->part[i];
+    /* A campaign's runs mostly differ in one table: the others are recognised by their bytes. */
     if (i > 0 && p->known && memcmp(p->bytes, bytes, t->size) == 0) return p;
     p->full.length = p->own.length = 0;
     fields_print(t, bytes, false, &p->full);
@@ -94,12 +112,14 @@ static const struct part *print_part(struct identity *x, int i, const void *base
     return p;
 }
 
+/* Bytes, not the locale's order: identities are the same everywhere. */
 static int compare_lines(const void *a, const void *b)
 {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Sort the lines of `text`: then neither the order of tables nor that of their rows is part of an identity.
+/* Sort the lines of `text`: then neither the order of tables nor that of their rows is part of an
+ * identity.
  */
 static void sort_lines(struct text *text)
 {
@@ -115,6 +135,7 @@ static void sort_lines(struct text *text)
         end = strchr(s, '\n');
         *end = '\0';
     }
+    /* Keys are unique, so that the order is total. */
     qsort(line, (size_t)n, sizeof *line, compare_lines);
     for (int i = 0; i < n; i++) {
         text_add_bytes(&sorted, line[i], strlen(line[i]));
@@ -125,6 +146,7 @@ static void sort_lines(struct text *text)
     *text = sorted;
 }
 
+/* The full text is for people, in table order; the short one, sorted, is hashed. */
 void identity_texts(struct identity *x, const void *base, const char *more, struct text *full,
                     struct text *own)
 {
@@ -144,7 +166,9 @@ void identity_texts(struct identity *x, const void *base, const char *more, stru
 void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
 {
     struct text full = {0}, own = {0}, more = {0};
+    /* A copy whose paths are emptied: the same file elsewhere is the same run. */
     struct run_spec plain = *run;
+    /* An empty text is a text: a string that ends at once, not NULL. */
     text_add(&more, "%s", "");
     /* The content of a file is named: where it lies is no matter. */
     if (run->model_file[0] != '\0') {
@@ -155,15 +179,18 @@ void identity_set(struct identity *x, struct run_spec *run, struct arena *a)
         memset(plain.program.file, 0, sizeof plain.program.file);
         text_add(&more, "%s%s\n", program_key, run->program.hash);
     }
+    /* What a program declares itself counts like any setting. */
     program_lines_print(run->program.parameters, &more);
     identity_texts(x, &plain, more.s, &full, &own);
     text_free(&more);
+    /* 256 bits: no two different runs of any database will ever share one. */
     digest_sha256_hex(own.s, own.length, run->config_hash);
     run->config_text = arena_text(a, full.s);
     text_free(&full);
     text_free(&own);
 }
 
+/* For a single run the table of defaults is made and thrown away. */
 void run_identify(struct run_spec *run, struct arena *a)
 {
     int n;
@@ -173,11 +200,11 @@ void run_identify(struct run_spec *run, struct arena *a)
     identity_destroy(x);
 }
 
-/* --- back from a text
- * --------------------------------------------------------------------------------------------- */
+/* --- back from a text --- */
 
 /* What a person's own program declares is known to its image alone: kept as it stands. */
-static bool add_parameter(struct run_spec *run, const char *name, const char *value, struct arena *a)
+static bool add_parameter(struct run_spec *run, const char *name, const char *value,
+                          struct arena *a)
 {
     struct text lines = {0};
     text_add(&lines, "%s", run->program.parameters != NULL ? run->program.parameters : "");
@@ -188,18 +215,22 @@ static bool add_parameter(struct run_spec *run, const char *name, const char *va
 }
 
 /* The setting `key` gets the text `value`. */
-static bool take_setting(struct run_spec *run, const char *key, const char *value, struct arena *a, char *why,
-                         int size)
+static bool take_setting(struct run_spec *run, const char *key, const char *value, struct arena *a,
+                         char *why, int size)
 {
     const struct field_table *table;
     const struct field *f = field_find_full(key, &table);
     struct text shown = {0};
     char clause[160] = "";
+    /* Keys below the program's prefix that no table knows are its parameters. */
     const size_t n = strlen(program_table.prefix);
     if (f == NULL && strncmp(key, program_table.prefix, n) == 0 && key[n] == '.')
         return add_parameter(run, key + n + 1, value, a);
-    if (f == NULL) return snprintf(why, (size_t)size, "there is no setting '%.80s' any more", key), false;
-    /* What has its default already is not read: some defaults, such as an empty list, cannot be given. */
+    /* A setting of an older version: the run cannot be repeated, and says which key is gone. */
+    if (f == NULL)
+        return snprintf(why, (size_t)size, "there is no setting '%.80s' any more", key), false;
+    /* What has its default already is not read: some defaults, such as an empty list, cannot be
+     * given. */
     void *base = (char *)run + table->offset;
     field_print(f, base, &shown);
     bool fine = strcmp(shown.s != NULL ? shown.s : "", value) == 0 ||
@@ -223,9 +254,12 @@ static bool take_line(struct run_spec *run, char *line, struct arena *a, char *w
     }
     if (equals == NULL) return snprintf(why, (size_t)size, "'%.80s' is no setting", line), false;
     *equals = '\0';
+    /* The value may itself hold " = ": the first one divides. */
     return take_setting(run, line, equals + 3, a, why, size);
 }
 
+/* Defaults first, then the lines of the text over them: what a newer version has added is at its
+ * default, as it was when the run was made. */
 bool run_from_text(struct run_spec *run, const char *text, struct arena *a, char *why, int size)
 {
     int n;
@@ -236,6 +270,7 @@ bool run_from_text(struct run_spec *run, const char *text, struct arena *a, char
         char *end = strchrnul(line, '\n');
         const bool last = *end == '\0';
         *end = '\0';
+        /* Empty lines are no settings. */
         if (line < end && !take_line(run, line, a, why, size)) return false;
         line = last ? end : end + 1;
     }

@@ -1,4 +1,7 @@
-/* machine_spec.c - the settings of a machine, and how many processors it has. */
+/* machine_spec.c - the settings of a machine, and how many processors it has.
+ *
+ * Zero means "no cost" or "as the other one" in many rows; the row says which. Bounds are wide:
+ * they refuse mistyped units (a latency of 3 s), not unusual machines. */
 #include "spec/machine_spec.h"
 
 #include <math.h>
@@ -11,6 +14,8 @@
 #define AT(member) .offset = offsetof(struct machine_spec, member)
 #define COUNT(member) .count = offsetof(struct machine_spec, member)
 
+/* Words of enums, in the order of their values; topologies and levels have lists of their own, from
+ * which this table and every other one is made. */
 static const char *const families[] = {
 #define X(constant, word, stem, ndim, routers, traits) [constant] = word,
     TOPOLOGY_LIST(X)
@@ -28,6 +33,7 @@ static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
+/* Why a setting cannot act on this machine, as a clause; NULL when it acts. */
 static const char *idle_with_own_nodes(const struct run_spec *r)
 {
     return topology_has(r->machine.topology.family, TOPOLOGY_OWN_NODES)
@@ -70,7 +76,8 @@ static const char *idle_unless_tolerance(const struct run_spec *r)
     return r->machine.network.level == LEVEL_AUTO_TOLERANCE ? NULL : "network.level is not 'auto-tolerance'";
 }
 
-/* Packets, flits and buffers: what only the levels that know them can use. */
+/* Packets, flits and buffers: what only the levels that know them can use. On the others a message
+ * is one unit whose flits follow at the rate of the slowest resource. */
 static const char *idle_above_packets(const struct run_spec *r)
 {
     enum network_level level = r->machine.network.level;
@@ -88,7 +95,8 @@ static const char *idle_with_segments(const struct run_spec *r)
     return r->machine.software.nsegment > 0 ? "software.segments says it by size" : NULL;
 }
 
-/* Numbers that every segment gives itself. */
+/* Numbers that every segment gives itself: then the one for all sizes is never used. `number` is
+ * the place of the number in a segment, -1 there means not given. */
 static const char *idle_if_given(const struct run_spec *r, size_t number)
 {
     const struct software_spec *s = &r->machine.software;
@@ -127,6 +135,7 @@ static const char *idle_gap_per_byte(const struct run_spec *r)
     return idle_if_given(r, offsetof(struct software_segment, gap_per_byte));
 }
 
+/* A handshake needs a limit, or a segment that shakes hands without saying how long. */
 static const char *idle_unless_eager_limit(const struct run_spec *r)
 {
     if (r->machine.software.nsegment > 0) {
@@ -203,6 +212,7 @@ static const struct field fields[] = {
     {.key = "title", .kind = FIELD_TEXT, AT(title), .capacity = 128, .fallback = "", .label = true,
      .doc = "one line of description"},
 
+    /* Where routers are and how they are connected (docs/network.md 2). */
     {.key = "topology.family", .kind = FIELD_CHOICE, AT(topology.family), .choice = families,
      .doc = "how routers are connected"},
     {.key = "topology.dims", .kind = FIELD_INTS, AT(topology.dims), COUNT(topology.ndim),
@@ -229,6 +239,7 @@ static const struct field fields[] = {
      .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 dimensions on "
             "one to the opposite "
             "router"},
+    /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
      .max = 1 << 24, .fallback = "[]", .idle = idle_unless_graph, .doc = "graph: router pairs, each "
                                                                          "connected in both directions"},
@@ -236,6 +247,8 @@ static const struct field fields[] = {
      .min = 1, .max = 1000000, .fallback = "[]", .idle = idle_unless_graph,
      .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there and back of each"},
 
+    /* What computing costs: counts by class times these (machine/node_cost.c). Rates are those
+     * measured with small dense code, far below a processor's peak. */
     {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate), .min = 1, .max = 1e18,
      .doc = "rate of additions and multiplications in small dense double-precision code"},
     {.key = "node.serial_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.serial_rate), .min = 0,
@@ -258,6 +271,7 @@ static const struct field fields[] = {
     {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(node.copy_bandwidth), .min = 0,
      .max = 1e15, .fallback = "0 B/s", .doc = "rate of memory copies by the program (packing), 0: free"},
 
+    /* The wire (docs/network.md 1). Zero load: T = R hop_latency + (S - 1) flits + end_latency. */
     {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels, .fallback = "link",
      .doc = "detail of the network model; 'auto-tolerance 2%': the cheapest level within 2%"},
     {.key = "network.tolerance", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(network.tolerance), .min = 0, .max = 1,
@@ -282,6 +296,7 @@ static const struct field fields[] = {
     {.key = "network.vc_allocation_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.vc_allocation_latency),
      .min = 0, .max = 1, .fallback = "0 s", .idle = idle_above_packets,
      .doc = "part of hop_latency: a free virtual channel for a head"},
+    /* Sizes on the wire: a packet is header and payload in whole flits. */
     {.key = "network.flit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.flit_bytes), .min = 1, .max = 1 << 20,
      .fallback = "8 B", .doc = "unit of flow control; sizes on the wire are whole flits"},
     {.key = "network.packet", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.packet_bytes), .min = 0,
@@ -289,6 +304,7 @@ static const struct field fields[] = {
      .doc = "largest payload of a packet, 0 B: a message is one packet"},
     {.key = "network.header", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.header_bytes), .min = 0,
      .max = 1 << 20, .fallback = "0 B", .doc = "header added to each packet on the wire"},
+    /* Buffers and arbitration of routers: levels packet, flit and auto. */
     {.key = "network.virtual_channels", .kind = FIELD_INT, AT(network.virtual_channels), .min = 1, .max = 64,
      .fallback = "1", .idle = idle_above_packets, .doc = "virtual channels per link and direction, all "
                                                          "classes together"},
@@ -298,6 +314,8 @@ static const struct field fields[] = {
      .fallback = "round-robin", .idle = idle_above_packets, .doc = "arbitration between messages that wait "
                                                                    "for the same link"},
 
+    /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
+     * with sizes that change the protocol. */
     {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.send_overhead), .min = 0,
      .max = 10, .fallback = "0 s", .idle = idle_send_overhead, .doc = "processor time to send a message (LogGP's o)"},
     {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.send_copy), .min = 0,
@@ -312,6 +330,7 @@ static const struct field fields[] = {
      .min = 0, .max = 1, .fallback = "0 s/B",
      .idle = idle_gap_per_byte, .doc = "time per byte of interface and protocol (LogGP's G); the slower of "
                                        "this and the wire counts"},
+    /* The classic protocol: short, eager and rendezvous messages by two limits. */
     {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.short_bytes), .min = 0,
      .max = 1 << 30, .fallback = "0 B", .idle = idle_with_segments, .doc = "messages up to this size are short"},
     {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.short_saving), .min = 0,
@@ -345,6 +364,7 @@ static const struct field fields[] = {
      .valid = collective_rules_valid, .idle = idle_without_collectives,
      .doc = "algorithms that the message software selects: 'allreduce ring from 64 KiB on 8 ranks; ...', the last that "
             "matches counts; else MPICH's choice (docs/collectives.md)"},
+    /* Barriers, one-sided transfers, and the channel between processors of one node. */
     {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
      .fallback = "software", .doc = "barrier by messages or by hardware"},
     {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,
@@ -362,6 +382,7 @@ static const struct field fields[] = {
      .min = 0, .max = 1e15, .fallback = "0 B/s", .idle = idle_unless_several,
      .doc = "rate of the channel within a node, 0: such messages take the software path of the network"},
 
+    /* Which rank runs where. */
     {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements, .fallback = "linear",
      .doc = "order in which ranks fill the nodes"},
     {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads, .fallback = "block",
@@ -372,6 +393,7 @@ static const struct field fields[] = {
     {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist), .min = 0,
      .max = 1 << 30, .fallback = "[]", .idle = idle_unless_list, .doc = "processor of each rank"},
 
+    /* What other jobs and the operating system take; seeded by the run. */
     {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
      .fallback = "0 %", .doc = "relative standard deviation of each computing time"},
     {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
@@ -386,7 +408,8 @@ const struct field_table machine_table = {
     .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
 };
 
-/* Product of the first n dimensions; INT64_MAX where it is larger. */
+/* Product of the first n dimensions; INT64_MAX where it is larger, so that no caller meets a number
+ * that has wrapped. */
 static int64_t product(const int *dims, int n)
 {
     int64_t p = 1;
@@ -394,6 +417,7 @@ static int64_t product(const int *dims, int n)
     return p;
 }
 
+/* Stops when it cannot grow any more: base 0 or 1, or saturated. */
 static int64_t power(int64_t base, int exponent)
 {
     int64_t p = 1;
@@ -401,6 +425,7 @@ static int64_t power(int64_t base, int exponent)
     return p;
 }
 
+/* Each family's own formula, from its line of the list. */
 static int64_t router_count(const struct topology_spec *t)
 {
     switch (t->family) {
@@ -412,6 +437,7 @@ static int64_t router_count(const struct topology_spec *t)
     return 0;
 }
 
+/* Traits answer what other rooms would else ask by comparing families. */
 bool topology_has(enum topology_family f, enum topology_trait trait)
 {
     static const unsigned has[] = {
@@ -436,6 +462,7 @@ const char *topology_family_name(enum topology_family f) { return families[f]; }
 
 const char *network_level_name(enum network_level level) { return levels[level]; }
 
+/* Each level's line of the list says its place in the order. */
 void network_levels_by_cost(enum network_level level[LEVELS])
 {
 #define X(constant, word, stem, cost, fineness) level[cost] = constant;
@@ -459,6 +486,7 @@ void network_levels_by_name(enum network_level level[LEVELS])
     }
 }
 
+/* Saturates at INT64_MAX: a mistyped dimension is refused by its size, not wrapped. */
 int64_t machine_spec_processors(const struct machine_spec *m)
 {
     const struct topology_spec *t = &m->topology;

@@ -1,4 +1,8 @@
-/* program_spec.c - the settings of people's own programs, and the parameters that these declare. */
+/* program_spec.c - the settings of people's own programs, and the parameters that these declare.
+ *
+ * Declared parameters have rows too (struct program_sheet), made from the image: they are read,
+ * checked and printed by the same functions as built-in settings, but live in text lines instead of
+ * a struct. */
 #include "spec/program_spec.h"
 
 #include <string.h>
@@ -7,6 +11,7 @@
 
 #define AT(member) .offset = offsetof(struct program_spec, member)
 
+/* In the order of enum program_cost. */
 static const char *const costs[] = {"declared", "blocks", "author", "host", NULL};
 
 /* Built-in programs count their operations themselves and take no arguments. */
@@ -15,6 +20,7 @@ static const char *idle_unless_own(const struct run_spec *r)
     return r->program.file[0] != '\0' ? NULL : "no program of your own is given (program: FILE)";
 }
 
+/* Only a program with main has argv; one that declares parameters takes keys. */
 static const char *idle_unless_arguments(const struct run_spec *r)
 {
     const char *why = idle_unless_own(r);
@@ -22,6 +28,7 @@ static const char *idle_unless_arguments(const struct run_spec *r)
     return r->program.kind == PROGRAM_MPI ? NULL : "only programs with main have arguments";
 }
 
+/* A schedule states each computing time: there is nothing to be costed. */
 static const char *idle_unless_computing(const struct run_spec *r)
 {
     const char *why = idle_unless_own(r);
@@ -44,6 +51,7 @@ static const struct field fields[] = {
      .fallback = "",
      .idle = idle_unless_arguments,
      .doc = "arguments of a program with main, as in a shell"},
+    /* How the time between two calls of the machine is found. */
     {.key = "cost",
      .kind = FIELD_CHOICE,
      AT(cost),
@@ -52,6 +60,7 @@ static const struct field fields[] = {
      .idle = idle_unless_computing,
      .doc = "what computing costs: as the program declares, executed blocks of machine code, what "
             "the program states, or the time on this computer (then no two runs are alike)"},
+    /* Calibration: one number, found by measuring the same code on the real machine. */
     {.key = "factor",
      .kind = FIELD_REAL,
      .unit = UNIT_NONE,
@@ -73,6 +82,7 @@ const struct field_table program_table = {
     .field = fields,
 };
 
+/* What the program itself declares, read from its image. */
 const struct field *program_sheet_find(const struct program_sheet *p, const char *name)
 {
     for (int i = 0; i < p->nparameter; i++)
@@ -93,8 +103,10 @@ const char *program_parameter_text(const struct field *f, const char *text, stru
     return canonical;
 }
 
+/* Values travel as "name = value" lines: the text is what identity and store keep anyway. */
 bool program_value_find(const char *lines, const char *name, char *buffer, int size)
 {
+    /* A name matches whole: " = " must follow at once. */
     const size_t n = strlen(name);
     for (const char *s = lines; s != NULL && *s != '\0';) {
         const char *end = strchrnul(s, '\n');
@@ -112,6 +124,7 @@ void program_lines_add(struct text *lines, const char *name, const char *value)
     text_add(lines, "%s = %s\n", name, value);
 }
 
+/* With the table's prefix they look like settings of the built-in tables. */
 void program_lines_print(const char *lines, struct text *out)
 {
     for (const char *s = lines; s != NULL && *s != '\0';) {

@@ -8,36 +8,47 @@
 
 #define AT(member) .offset = offsetof(struct run_spec, member)
 
+/* Whether two runs with different seeds may differ: if not, the seed is idle, and one repetition
+ * says all. */
 bool run_spec_is_random(const struct run_spec *r)
 {
     const struct machine_spec *m = &r->machine;
     const enum topology_family f = m->topology.family;
+    /* Every place that draws from the run's seed. */
     bool valiant = topology_has(f, TOPOLOGY_CHOOSES) && m->topology.routing == ROUTE_VALIANT;
     bool tie = topology_has(f, TOPOLOGY_RINGS) && m->topology.tie == TIE_RANDOM;
     bool order = kernel_spec_has(&r->kernel, PROGRAM_RANDOM);
     return m->noise.compute_cv > 0 || m->noise.background_load > 0 || valiant || tie || order;
 }
 
+/* Repetitions of one run draw different numbers; the same repetition always the same ones. */
 uint64_t run_spec_seed(const struct run_spec *r)
 {
     return digest_mix(digest_mix(DIGEST_START, r->seed), (uint64_t)r->rep);
 }
 
+/* A seed that nothing draws from. */
 static const char *idle_unless_random(const struct run_spec *r)
 {
-    return run_spec_is_random(r) ? NULL
-                                 : "there is no noise, no background traffic, no random route and no random ring";
+    return run_spec_is_random(r)
+               ? NULL
+               : "there is no noise, no background traffic, no random route and no random ring";
 }
 
+/* In the order of the enum. */
 static const char *const baseline_rules[] = {"all", "needed", NULL};
 
+/* Baselines are serial codes of the same task: forward dynamics has several. */
 static const char *idle_without_choice(const struct run_spec *r)
 {
     if (r->kernel.own) return NULL;
-    if (!kernel_spec_needs_model(&r->kernel)) return "this kernel only sends messages and has no serial code";
-    return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL : "inverse dynamics has one serial code";
+    if (!kernel_spec_needs_model(&r->kernel))
+        return "this kernel only sends messages and has no serial code";
+    return kernel_spec_has(&r->kernel, PROGRAM_FORWARD) ? NULL
+                                                        : "inverse dynamics has one serial code";
 }
 
+/* Settings of the run itself; those of machine, model and program have tables of their own. */
 static const struct field fields[] = {
     {.key = "scenario",
      .kind = FIELD_TEXT,
@@ -65,6 +76,7 @@ static const struct field fields[] = {
      .fallback = "all",
      .idle = idle_without_choice,
      .doc = "serial codes to compare the run with: all, or only those that can be the fastest by operation count"},
+    /* Records cost memory and rows of the database: off unless asked for. */
     {.key = "record.links",
      .kind = FIELD_BOOL,
      AT(record.links),

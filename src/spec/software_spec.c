@@ -1,8 +1,18 @@
-/* software_spec.c - lists completed; short, eager and rendezvous messages made segments (software_spec.h). */
+/* software_spec.c - lists completed; short, eager and rendezvous messages made segments
+ * (software_spec.h).
+ *
+ *     o_s = send.overhead + b send.copy        o_r = recv.overhead + b recv.copy
+ *
+ * of a message of b bytes, by the numbers of its segment. The classic form (limits of short and
+ * eager messages) is the same thing with up to three segments, so that levels and processors need
+ * one rule. */
 #include "spec/software_spec.h"
 
+/* -1 in a segment: not given there. */
 static double given(double value, double otherwise) { return value < 0 ? otherwise : value; }
 
+/* After this every number of a segment is final; only latency has no value for all sizes, since
+ * network.end_latency is that. */
 static struct software_segment completed(const struct software_spec *s, struct software_segment x)
 {
     x.send_overhead = given(x.send_overhead, s->send_overhead);
@@ -16,7 +26,8 @@ static struct software_segment completed(const struct software_spec *s, struct s
     return x;
 }
 
-/* What short.*, eager.* and rendezvous.* say of messages of `from` bytes, the smallest of a segment. */
+/* What short.*, eager.* and rendezvous.* say of messages of `from` bytes, the smallest of a
+ * segment. */
 static struct software_segment classic(const struct software_spec *s, int64_t from)
 {
     struct software_segment x = {.from = from,
@@ -27,14 +38,20 @@ static struct software_segment classic(const struct software_spec *s, int64_t fr
                                  .gap = s->gap,
                                  .gap_per_byte = s->gap_per_byte,
                                  .rendezvous_latency = s->rendezvous_latency};
+    /* Limits are inclusive; a limit below 0 is none. */
     const bool is_short = s->short_bytes > 0 && from <= s->short_bytes;
     const bool eager = s->eager_bytes < 0 || from <= s->eager_bytes;
-    if (is_short) x.send_saving = s->short_saving < s->send_overhead ? s->short_saving : s->send_overhead;
+    /* A saving cannot be larger than the overhead: time never becomes negative. */
+    if (is_short)
+        x.send_saving = s->short_saving < s->send_overhead ? s->short_saving : s->send_overhead;
+    /* An eager message is copied out of a buffer at the receiver; a rendezvous arrives in place. */
     if (eager) x.recv_extra = is_short ? s->short_copy : s->eager_copy;
     x.protocol = eager ? PROTOCOL_EAGER : PROTOCOL_RENDEZVOUS;
     return x;
 }
 
+/* A list takes the place of short.* and eager.*; without one these make one to three segments, and
+ * all other code knows segments only. */
 int software_segments(const struct software_spec *s, struct software_segment *out)
 {
     int n = 0;
@@ -52,12 +69,15 @@ int software_segments(const struct software_spec *s, struct software_segment *ou
     return n;
 }
 
-const struct software_segment *software_segment_of(const struct software_segment *segment, int n, int64_t bytes)
+/* From the end: long messages are few segments away; at most eight. */
+const struct software_segment *software_segment_of(const struct software_segment *segment, int n,
+                                                   int64_t bytes)
 {
     while (n > 1 && bytes < segment[n - 1].from) n--;
     return &segment[n - 1];
 }
 
+/* Segments rise in size: the first that shakes hands ends the eager range. */
 int64_t software_eager_most(const struct software_spec *s)
 {
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
