@@ -1,8 +1,10 @@
-/* crash.h - crashes and endless loops of loaded programs: caught in the worker process, told by its parent.
+/* crash.h - crashes and endless loops of loaded programs: caught in the worker process, told by its
+ * parent.
  *
- * The handler runs on a stack of its own and writes raw facts (signal, addresses, rank) into a record in memory that
- * worker and parent share; then the worker ends. The parent, which has all its wits, makes the sentence out of it:
- * "rank 3 in compute (my.c:17): segmentation fault at address 0x0". */
+ * The handler runs on a stack of its own and writes raw facts (signal, addresses, rank) into a
+ * record in memory that worker and parent share; then the worker ends. The parent, which has all
+ * its wits, makes the sentence out of it: "rank 3 in compute (my.c:17): segmentation fault at
+ * address 0x0". */
 #ifndef LOADER_CRASH_H
 #define LOADER_CRASH_H
 
@@ -19,44 +21,44 @@ enum crash_kind { CRASH_NONE, CRASH_SIGNAL, CRASH_STACK, CRASH_HOST_TIME };
 
 /* What the handler leaves; plain data in shared memory. */
 struct crash_record {
-    _Atomic int kind;             /* enum crash_kind, stored last */
-    int signal, code;             /* of the signal, as in siginfo_t */
-    int rank;                     /* -1: not in a rank */
-    uint64_t address;             /* the memory accessed, for SIGSEGV and SIGBUS */
-    int64_t now_ps;               /* the rank's clock, -1: not known */
-    double seconds;               /* the limit of host time that was passed [s] */
-    int nframe;                   /* places, innermost first: those within the program's files */
+    _Atomic int kind; /* enum crash_kind, stored last */
+    int signal, code; /* of the signal, as in siginfo_t */
+    int rank;         /* -1: not in a rank */
+    uint64_t address; /* the memory accessed, for SIGSEGV and SIGBUS */
+    int64_t now_ps;   /* the rank's clock, -1: not known */
+    double seconds;   /* the limit of host time that was passed [s] */
+    int nframe;       /* places, innermost first: those within the program's files */
     struct {
-        char file[CRASH_PATH];    /* the image or library */
-        uint64_t address;         /* in that file */
+        char file[CRASH_PATH]; /* the image or library */
+        uint64_t address;      /* in that file */
     } frame[CRASH_FRAMES];
 };
 
-struct crash_guard;
-
-/* crash_record_create: a record in memory that processes forked from now on share, NULL: no memory. crash_record_clear
- * makes it empty for the next run. */
+/* crash_record_create: a record in memory that processes forked from now on share, NULL: no memory.
+ * crash_record_clear makes it empty for the next run. */
 struct crash_record *crash_record_create(void);
 void crash_record_clear(struct crash_record *r);
 void crash_record_destroy(struct crash_record *r);
 
-/* crash_guard_create: from now on crashes of this process (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) are written to
- * `record` and end it with status CRASH_STATUS. NULL with ERR_INTERNAL. One at a time. crash_guard_destroy: as it
- * was before. */
-struct crash_guard *crash_guard_create(struct crash_record *record, struct err *e);
-void crash_guard_destroy(struct crash_guard *g);
+/* crash_guard_begin: from now on crashes of this process (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT)
+ * are written to `record` and end it with status CRASH_STATUS. False with ERR_INTERNAL.
+ * crash_guard_end: as it was before. */
+bool crash_guard_begin(struct crash_record *record, struct err *e);
+void crash_guard_end(void);
 
-/* crash_guard_watch: whose ranks run now, NULL: none. The ranks are found by their stacks. */
-void crash_guard_watch(struct crash_guard *g, const struct loader_template *t);
+/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks. Without a guard: no
+ * effect. */
+void crash_watch(const struct loader_template *t);
 
-/* crash_guard_limit: end the process when `seconds` of host time pass until the next call; 0: no limit. */
-void crash_guard_limit(struct crash_guard *g, double seconds);
+/* crash_limit: end the process when it takes `seconds` of processor time from now on; 0: no limit.
+ * Without a guard: no effect. */
+void crash_limit(double seconds);
 
 /* crash_text: the sentence for a record; false when nothing was recorded. Starts addr2line. */
 bool crash_text(const struct crash_record *r, char *buffer, int size);
 
-/* place_text: "function (file.c:12)" for `address` of the ELF file `file` by addr2line; "file+0x1c" where it knows
- * nothing. */
+/* place_text: "function (file.c:12)" for `address` of the ELF file `file` by addr2line; "file+0x1c"
+ * where it knows nothing. */
 void place_text(const char *file, uint64_t address, char *buffer, int size);
 
 #endif

@@ -1,0 +1,205 @@
+/* crash.c - catching crashes of loaded programs: what the signal handler writes down before the
+ * worker ends.
+ *
+ * The handler needs to find its data without a global variable: they stand at the bottom of its own
+ * stack, and the system tells where that is (sigaltstack). It calls nothing but what POSIX allows
+ * in handlers, and reads the program's memory only where it is known to be mapped. */
+#include "loader/crash.h"
+
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/time.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include "loader/template.h"
+
+enum { GUARD_BYTES = 64 * 1024, SCAN_WORDS = 4096 };
+static const uint64_t GUARD_MAGIC = UINT64_C(0x6372617368677264);
+
+/* Stacks of ranks are smaller than this; beyond it, an address has nothing to do with the stack. */
+static const uint64_t MOST_STACK = UINT64_C(1) << 30;
+
+static const int signals[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF};
+enum { NSIGNAL = sizeof signals / sizeof *signals };
+
+/* The data at the bottom of the handler's stack. */
+struct guard {
+    uint64_t magic;
+    struct crash_record *record;
+    const struct loader_template *watched;
+    double seconds;
+    struct sigaction before[NSIGNAL];
+    stack_t stack_before;
+};
+
+static struct guard *guard_of_process(void)
+{
+    stack_t s;
+    if (sigaltstack(NULL, &s) != 0 || (s.ss_flags & SS_DISABLE) || s.ss_size < sizeof(struct guard))
+        return NULL;
+    struct guard *g = s.ss_sp;
+    return s.ss_size == GUARD_BYTES && g->magic == GUARD_MAGIC ? g : NULL;
+}
+
+/* The rank on whose stack `sp` is: of the stacks that begin above it the nearest. */
+static const struct loader_instance *instance_by_stack(const struct loader_template *t,
+                                                       uintptr_t sp)
+{
+    const struct loader_instance *best = NULL;
+    for (int k = 0; k < t->nrank; k++) {
+        const struct loader_instance *i = &t->instance[k];
+        if (!i->base || !i->outermost || i->stack < sp || i->stack - sp > MOST_STACK) continue;
+        if (!best || i->stack < best->stack) best = i;
+    }
+    return best;
+}
+
+static bool add_frame(struct crash_record *r, const struct loader_template *t, uint64_t pc)
+{
+    const char *file;
+    uint64_t at;
+    if (r->nframe == CRASH_FRAMES ||
+        !loader_find_address(t, (void *)(uintptr_t)pc, NULL, &file, &at))
+        return false;
+    size_t n = strlen(file);
+    if (n >= CRASH_PATH) return false;
+    memcpy(r->frame[r->nframe].file, file, n + 1);
+    r->frame[r->nframe++].address = at;
+    return true;
+}
+
+/* Whether `pc` is where a call of the rank's program returns to: it is program text, and a call
+ * stands before it (E8, or FF /2 with its shorter forms; Intel SDM 2, CALL). */
+static bool is_return(const struct loader_instance *i, uint64_t pc)
+{
+    const struct loader_template *t = i->t;
+    const uint64_t place = pc - (uint64_t)(uintptr_t)i->base;
+    for (int k = 0; k < t->nfile; k++) {
+        const struct loader_file *f = &t->file[k];
+        if (place < f->begin + 8 || place >= f->data || !image_code(&f->elf, place - f->place - 8))
+            continue;
+        const unsigned char *p = (const unsigned char *)(uintptr_t)pc;
+        return p[-5] == 0xe8 || (p[-6] == 0xff && p[-5] == 0x15) ||
+               (p[-2] == 0xff && (p[-1] & 0x38) == 0x10) ||
+               (p[-3] == 0xff && (p[-2] & 0x38) == 0x10) || (p[-3] == 0x41 && p[-2] == 0xff);
+    }
+    return false;
+}
+
+/* Frames: the place itself, then what looks like return addresses on the stack. Without frame
+ * pointers there is no better way that is safe here; the first one is right unless dead words look
+ * alike. */
+static void note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc,
+                        uintptr_t sp)
+{
+    add_frame(r, i->t, pc);
+    const uint64_t *word = (const uint64_t *)((sp + 7) / 8 * 8);
+    for (int k = 0; k < SCAN_WORDS && (uintptr_t)&word[k] < i->stack; k++)
+        if (is_return(i, word[k])) add_frame(r, i->t, word[k] - 1);
+}
+
+/* An address just outside of what the stack has, which is protected: its end. */
+static bool is_stack_overflow(const siginfo_t *info, const struct loader_instance *i, uintptr_t sp)
+{
+    const uintptr_t at = (uintptr_t)info->si_addr;
+    if (info->si_signo != SIGSEGV || info->si_code != SEGV_ACCERR) return false;
+    return at < i->stack && i->stack - at < MOST_STACK &&
+           (at + (1 << 20) > sp || sp - at < MOST_STACK) &&
+           !loader_find_address(i->t, info->si_addr, NULL, &(const char *){NULL}, &(uint64_t){0});
+}
+
+static void note_rank(struct crash_record *r, const struct loader_template *t,
+                      const siginfo_t *info, const ucontext_t *u, int *kind)
+{
+#ifdef __x86_64__
+    const uintptr_t sp = (uintptr_t)u->uc_mcontext.gregs[REG_RSP];
+    const uint64_t pc = (uint64_t)u->uc_mcontext.gregs[REG_RIP];
+    const struct loader_instance *i = instance_by_stack(t, sp);
+    if (!i) return;
+    r->rank = i->host.rank;
+    const bool overflow = *kind == CRASH_SIGNAL && is_stack_overflow(info, i, sp);
+    if (overflow) *kind = CRASH_STACK;
+    /* At an overflow the words at the stack pointer are not there to be read. */
+    if (overflow) add_frame(r, t, pc);
+    else note_frames(r, i, pc, sp);
+    if (t->hooks->now_ps) r->now_ps = t->hooks->now_ps(i->context);
+#else
+    (void)r, (void)t, (void)info, (void)u, (void)kind;
+#endif
+}
+
+static void handle(int number, siginfo_t *info, void *context)
+{
+    struct guard *g = guard_of_process();
+    if (!g || number == 0) _exit(CRASH_STATUS);
+    struct crash_record *r = g->record;
+    int kind = number == SIGPROF ? CRASH_HOST_TIME : CRASH_SIGNAL;
+    /* A second fault in here must not lose what is known. */
+    if (atomic_load(&r->kind) != CRASH_NONE) _exit(CRASH_STATUS);
+    r->signal = number;
+    r->code = info->si_code;
+    r->rank = -1;
+    r->address = (uint64_t)(uintptr_t)info->si_addr;
+    r->now_ps = -1;
+    r->seconds = g->seconds;
+    r->nframe = 0;
+    atomic_store(&r->kind, kind);
+    if (g->watched) note_rank(r, g->watched, info, context, &kind);
+    atomic_store(&r->kind, kind);
+    _exit(CRASH_STATUS);
+}
+
+bool crash_guard_begin(struct crash_record *record, struct err *e)
+{
+    struct guard *g =
+        mmap(NULL, GUARD_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (g == MAP_FAILED)
+        return err_set(e, ERR_INTERNAL, "no memory for a signal stack: %s", strerror(errno));
+    *g = (struct guard){.magic = GUARD_MAGIC, .record = record};
+    const stack_t s = {.ss_sp = g, .ss_size = GUARD_BYTES};
+    if (sigaltstack(&s, &g->stack_before) != 0) {
+        munmap(g, GUARD_BYTES);
+        return err_set(e, ERR_INTERNAL, "no signal stack: %s", strerror(errno));
+    }
+    /* A fault inside the handler comes back to it (SA_NODEFER), sees the record begun, and ends the
+     * process. */
+    struct sigaction a = {.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER};
+    a.sa_sigaction = handle;
+    sigemptyset(&a.sa_mask);
+    for (int i = 0; i < NSIGNAL; i++) sigaction(signals[i], &a, &g->before[i]);
+    return true;
+}
+
+void crash_guard_end(void)
+{
+    struct guard *g = guard_of_process();
+    if (!g) return;
+    crash_limit(0);
+    for (int i = 0; i < NSIGNAL; i++) sigaction(signals[i], &g->before[i], NULL);
+    stack_t before = g->stack_before;
+    if (!before.ss_sp) before.ss_flags = SS_DISABLE;
+    sigaltstack(&before, NULL);
+    munmap(g, GUARD_BYTES);
+}
+
+void crash_watch(const struct loader_template *t)
+{
+    struct guard *g = guard_of_process();
+    if (g) g->watched = t;
+}
+
+void crash_limit(double seconds)
+{
+    struct guard *g = guard_of_process();
+    if (!g) return;
+    g->seconds = seconds;
+    /* Processor time, so that a busy host does not make a program too slow. */
+    struct itimerval v = {{0, 0},
+                          {(time_t)seconds, (suseconds_t)(1e6 * (seconds - floor(seconds)))}};
+    setitimer(ITIMER_PROF, &v, NULL);
+}

@@ -1,0 +1,83 @@
+/* crash_text.c - the record of a crash and the sentence made of it, by the process that did not
+ * crash (crash.h). */
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "loader/crash.h"
+
+struct crash_record *crash_record_create(void)
+{
+    void *p = mmap(NULL, sizeof(struct crash_record), PROT_READ | PROT_WRITE,
+                   MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    return p == MAP_FAILED ? NULL : p;
+}
+
+void crash_record_clear(struct crash_record *r) { atomic_store(&r->kind, CRASH_NONE); }
+
+void crash_record_destroy(struct crash_record *r)
+{
+    if (r) munmap(r, sizeof *r);
+}
+
+/* What happened, in the words that people know from their shells. */
+static void describe(const struct crash_record *r, char *buffer, size_t size)
+{
+    const unsigned long long at = (unsigned long long)r->address;
+    switch (atomic_load(&r->kind)) {
+    case CRASH_STACK:
+        snprintf(buffer, size, "stack overflow (address 0x%llx)", at);
+        return;
+    case CRASH_HOST_TIME:
+        snprintf(buffer, size,
+                 "still busy after %g s of processor time of the host, which is the limit",
+                 r->seconds);
+        return;
+    default:
+        break;
+    }
+    switch (r->signal) {
+    case SIGSEGV:
+        /* Addresses that no program can have come with code SI_KERNEL and without their value
+         * (Intel SDM 3, #GP). */
+        if (r->code == SI_KERNEL)
+            snprintf(buffer, size, "segmentation fault at an address that is no address");
+        else snprintf(buffer, size, "segmentation fault at address 0x%llx", at);
+        return;
+    case SIGBUS:
+        snprintf(buffer, size, "bus error at address 0x%llx", at);
+        return;
+    case SIGFPE:
+        snprintf(buffer, size,
+                 r->code == FPE_INTDIV ? "whole-number division by zero"
+                                       : "arithmetic error (SIGFPE)");
+        return;
+    case SIGILL:
+        snprintf(buffer, size, "illegal instruction");
+        return;
+    case SIGABRT:
+        snprintf(buffer, size, "abort, by the C library or by the simulator itself");
+        return;
+    default:
+        snprintf(buffer, size, "%s", strsignal(r->signal));
+        return;
+    }
+}
+
+bool crash_text(const struct crash_record *r, char *buffer, int size)
+{
+    char what[256], where[512] = "", when[64] = "";
+    if (atomic_load(&r->kind) == CRASH_NONE) return false;
+    describe(r, what, sizeof what);
+    if (r->nframe > 0) {
+        char text[480];
+        place_text(r->frame[0].file, r->frame[0].address, text, (int)sizeof text);
+        snprintf(where, sizeof where, " in %s", text);
+    }
+    if (r->now_ps >= 0)
+        snprintf(when, sizeof when, " after %.9g s of simulated time", 1e-12 * (double)r->now_ps);
+    if (r->rank >= 0) snprintf(buffer, (size_t)size, "rank %d%s: %s%s", r->rank, where, what, when);
+    else snprintf(buffer, (size_t)size, "outside of the ranks' programs: %s", what);
+    return true;
+}

@@ -1,0 +1,97 @@
+/* runtime.c - what programs ask of the simulator whatever they are: time, output, ends
+ * (mimdsim/host.h). */
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "config.h"
+
+#include "base/check.h"
+#include "loader/template.h"
+
+#ifdef SANITIZERS
+#include <sanitizer/asan_interface.h>
+#endif
+
+static struct loader_instance *instance_of(struct mimdsim_host *host) { return host->instance; }
+
+static int64_t now_ps(struct mimdsim_host *host)
+{
+    struct loader_instance *i = instance_of(host);
+    return i->t->hooks->now_ps ? i->t->hooks->now_ps(i->context) : 0;
+}
+
+static void elapse_ps(struct mimdsim_host *host, int64_t ps)
+{
+    struct loader_instance *i = instance_of(host);
+    if (i->t->hooks->elapse_ps) i->t->hooks->elapse_ps(i->context, ps);
+}
+
+static void sleep_ps(struct mimdsim_host *host, int64_t ps)
+{
+    struct loader_instance *i = instance_of(host);
+    if (i->t->hooks->sleep_ps) i->t->hooks->sleep_ps(i->context, ps);
+}
+
+/* Without a hook a rank writes to the process's own streams; what cannot be written is lost as it
+ * is to a closed pipe. */
+static void output(struct mimdsim_host *host, int stream, const char *data, size_t n)
+{
+    struct loader_instance *i = instance_of(host);
+    if (i->t->hooks->output) i->t->hooks->output(i->context, stream, data, n);
+    else if (fwrite(data, 1, n, stream == 2 ? stderr : stdout) != n) return;
+}
+
+static void finish(struct mimdsim_host *host) { loader_finish(instance_of(host)); }
+
+/* The frames between are dropped, also those of the simulator when it has called back into the
+ * program. */
+static void leave(struct mimdsim_host *host, int status)
+{
+    struct loader_instance *i = instance_of(host);
+    CHECK(i->outermost);
+    i->exited = true;
+    i->status = status;
+#ifdef SANITIZERS
+    __asan_handle_no_return();
+#endif
+    loader_leave(i->outermost, status);
+}
+
+/* "compute (my.c:17): calls fork()": the place before the text, where the files tell it. */
+static void fail(struct mimdsim_host *host, const void *place, const char *text)
+{
+    struct loader_instance *i = instance_of(host);
+    char where[512], whole[1024];
+    if (place && loader_address_text(i->t, (const char *)place - 1, where, (int)sizeof where))
+        snprintf(whole, sizeof whole, "%s: %s", where, text);
+    else snprintf(whole, sizeof whole, "%s", text);
+    if (i->t->hooks->fail) i->t->hooks->fail(i->context, whole);
+    fprintf(stderr, "mimdsim: rank %d: %s\n", host->rank, whole);
+    leave(host, 1);
+}
+
+static int module(struct mimdsim_host *host, int n, uintptr_t *base, const void **headers,
+                  int *count)
+{
+    const struct loader_instance *i = instance_of(host);
+    if (n < 0 || n >= i->t->nfile) return 0;
+    const struct loader_file *f = &i->t->file[n];
+    *base = (uintptr_t)i->base + (uintptr_t)f->place;
+    *headers = f->elf.header;
+    *count = f->elf.nheader;
+    return 1;
+}
+
+void runtime_fill(struct mimdsim_runtime *r)
+{
+    *r = (struct mimdsim_runtime){.size = sizeof *r,
+                                  .now_ps = now_ps,
+                                  .elapse_ps = elapse_ps,
+                                  .sleep_ps = sleep_ps,
+                                  .output = output,
+                                  .finish = finish,
+                                  .leave = leave,
+                                  .fail = fail,
+                                  .module = module};
+}

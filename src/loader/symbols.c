@@ -1,0 +1,137 @@
+/* symbols.c - what a name means: first in the program and its libraries, then in the host's libc
+ * and libm.
+ *
+ * The order is that of the system's loader (gABI 5, "Shared Object Dependencies"), so that a
+ * program may put a function of its own before a library's; but names that dlopen would make one
+ * for the whole process (STB_GNU_UNIQUE: inline variables and static members of C++ templates) stay
+ * private, as each rank looks among its own files only. */
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "loader/template.h"
+
+/* Names that mean a function of the host even where a file defines the rest of the name. */
+static const char host_prefix[] = "mimdsim_libc_";
+
+/* An entry of the hash table, open addressing; symbol NULL: free. */
+struct symbol_slot {
+    const struct loader_file *file;
+    const Elf64_Sym *symbol;
+};
+
+/* FNV-1a, 32 bits: short names, well spread (Fowler, Noll, Vo). */
+static uint32_t hash_name(const char *name)
+{
+    uint32_t h = 2166136261u;
+    for (; *name; name++) h = (h ^ (unsigned char)*name) * 16777619u;
+    return h;
+}
+
+static struct symbol_slot *slot_of(const struct loader_template *t, const char *name)
+{
+    size_t i = hash_name(name) & (t->nslot - 1);
+    while (t->symbol[i].symbol &&
+           strcmp(elf_file_name(&t->symbol[i].file->elf, t->symbol[i].symbol->st_name), name) != 0)
+        i = (i + 1) & (t->nslot - 1);
+    return &t->symbol[i];
+}
+
+/* Whether other files may use it: defined, not local, not hidden, not an old version (bit 15: not
+ * the default one). */
+static bool is_offered(const struct elf_file *f, size_t i)
+{
+    const Elf64_Sym *s = &f->symbol[i];
+    int binding = ELF64_ST_BIND(s->st_info), visibility = ELF64_ST_VISIBILITY(s->st_other);
+    if (s->st_shndx == SHN_UNDEF || ELF64_ST_TYPE(s->st_info) > STT_TLS) {
+        if (s->st_shndx == SHN_UNDEF || ELF64_ST_TYPE(s->st_info) != STT_GNU_IFUNC) return false;
+    }
+    if (binding != STB_GLOBAL && binding != STB_WEAK && binding != STB_GNU_UNIQUE) return false;
+    if (visibility != STV_DEFAULT && visibility != STV_PROTECTED) return false;
+    return !f->version || !(f->version[i] & 0x8000);
+}
+
+bool symbols_make(struct loader_template *t, struct err *e)
+{
+    /* glibc 2.34 and later have the others of the host's libraries inside libc. */
+    t->libc = dlopen("libc.so.6", RTLD_NOW | RTLD_LOCAL);
+    t->libm = dlopen("libm.so.6", RTLD_NOW | RTLD_LOCAL);
+    if (!t->libc || !t->libm)
+        return err_set(e, ERR_INTERNAL, "the host's C library cannot be opened: %s", dlerror());
+
+    size_t n = 0;
+    for (int i = 0; i < t->nfile; i++) n += t->file[i].elf.nsymbol;
+    for (t->nslot = 64; t->nslot < 2 * n;) t->nslot *= 2;
+    t->symbol = calloc(t->nslot, sizeof *t->symbol);
+    if (!t->symbol) check_memory(t->nslot * sizeof *t->symbol);
+    for (int i = 0; i < t->nfile; i++) {
+        const struct loader_file *f = &t->file[i];
+        for (size_t k = 1; k < f->elf.nsymbol; k++) {
+            if (!is_offered(&f->elf, k)) continue;
+            struct symbol_slot *s = slot_of(t, elf_file_name(&f->elf, f->elf.symbol[k].st_name));
+            if (!s->symbol)
+                *s = (struct symbol_slot){f, &f->elf.symbol[k]}; /* the first file wins */
+        }
+    }
+    return true;
+}
+
+void symbols_give_back(struct loader_template *t)
+{
+    free(t->symbol);
+    t->symbol = NULL;
+    if (t->libc) dlclose(t->libc);
+    if (t->libm) dlclose(t->libm);
+}
+
+struct found symbols_defined(const struct loader_template *t, const char *name)
+{
+    const struct symbol_slot *s = slot_of(t, name);
+    return (struct found){.file = s->symbol ? s->file : NULL, .symbol = s->symbol};
+}
+
+/* Thread-locals by the general and the local dynamic model: the "module" is the rank's own block of
+ * memory, which the loader has put there in place of a number. So this function needs to know
+ * nothing of ranks. */
+static void *tls_get_address(const uint64_t index[2])
+{
+    return (char *)(uintptr_t)index[0] + index[1];
+}
+
+static void *host_symbol(const struct loader_template *t, const char *name, const char *version)
+{
+    void *at = NULL;
+    if (strcmp(name, "__tls_get_addr") == 0) return (void *)tls_get_address;
+    if (strncmp(name, host_prefix, sizeof host_prefix - 1) == 0) {
+        name += sizeof host_prefix - 1;
+        version = NULL;
+    }
+    if (version) at = dlvsym(t->libc, name, version);
+    if (!at && version) at = dlvsym(t->libm, name, version);
+    if (!at) at = dlsym(t->libc, name);
+    return at ? at : dlsym(t->libm, name);
+}
+
+bool symbols_find(const struct loader_template *t, const struct loader_file *f, size_t i,
+                  struct found *out)
+{
+    const Elf64_Sym *s = &f->elf.symbol[i];
+    *out = (struct found){0};
+    const bool defined = s->st_shndx != SHN_UNDEF;
+    if (i == 0) return true; /* no symbol: address 0 */
+    if (defined && (ELF64_ST_BIND(s->st_info) == STB_LOCAL ||
+                    ELF64_ST_VISIBILITY(s->st_other) != STV_DEFAULT || f->elf.symbolic)) {
+        *out = (struct found){.file = f, .symbol = s};
+        return true;
+    }
+    const char *name = elf_file_name(&f->elf, s->st_name);
+    *out = symbols_defined(t, name);
+    if (out->file) return true;
+    if (defined) {
+        *out = (struct found){.file = f, .symbol = s};
+        return true;
+    }
+    out->address = host_symbol(t, name, elf_file_version(&f->elf, i));
+    return out->address || ELF64_ST_BIND(s->st_info) == STB_WEAK;
+}
