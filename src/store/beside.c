@@ -1,5 +1,9 @@
-/* beside.c - files that are written beside their place, never through a link, and what a crash left
- * of them. */
+/* beside.c - files that are written beside their place, never through a link, and what a crash
+ * left of them.
+ *
+ * A file is made under a name of its own, PATH.new-XXXXXX.part, and gets its real name when it
+ * is whole. A lock tells a cleaner whether the maker still lives; the lock ends with the
+ * process, however that ends. */
 #include "store/beside.h"
 
 #include <ctype.h>
@@ -29,6 +33,7 @@ static bool is_ours(int file)
 
 int beside_open(const char *path, char **name)
 {
+    /* A cleaner may take a new file between its making and its lock: then try another one. */
     for (int trial = 0; trial < 100; trial++) {
         struct text t = {0};
         text_add(&t, "%s%sXXXXXX%s", path, middle, ending);
@@ -51,6 +56,7 @@ int beside_open(const char *path, char **name)
         }
         close(file);
     }
+    /* A hundred in a row: the folder is not usable. */
     *name = NULL;
     errno = EAGAIN;
     return -1;
@@ -83,6 +89,7 @@ static void remove_left(int dir, const char *name)
 
 void beside_clean(const char *path)
 {
+    /* The folder with its slash, "./" or "DIR/.". */
     const char *slash = strrchr(path, '/'), *own = slash == NULL ? path : slash + 1;
     struct text folder = {0};
     text_add(&folder, "%.*s.", slash == NULL ? 0 : (int)(slash - path) + 1, path);

@@ -1,4 +1,7 @@
-/* connection.c - statements of an open database, and what its errors mean to a user. */
+/* connection.c - statements of an open database, and what its errors mean to a user.
+ *
+ * Everything that can go wrong on a disk goes wrong here first: each case has a sentence of its
+ * own, as a user can do something about most of them. */
 #include "store/connection.h"
 
 #include <string.h>
@@ -6,16 +9,22 @@
 #include "base/text.h"
 #include "store/rows.h"
 
+/* In the order of enum statement; NULL: made from a table of columns (rows.h). */
 static const char *const statement_sql[] = {
 #define X(name, sql) sql,
     STORE_STATEMENTS(X)
 #undef X
 };
 
+/* What SQLite found, as a sentence for a user: what happened, to which file, and what can be
+ * done. The kind decides the exit status. */
 bool store_failed(struct store *s, struct err *e)
 {
+    /* The system's own reason, where there is one: "Permission denied" says more than "disk I/O
+     * error". */
     int code = sqlite3_errcode(s->db), system = sqlite3_system_errno(s->db);
     const char *path = s->path, *text = sqlite3_errmsg(s->db);
+    /* Extended codes are not enabled: these are the primary ones. */
     switch (code) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -42,6 +51,8 @@ bool store_exec(struct store *s, const char *sql, struct err *e)
     return sqlite3_exec(s->db, sql, NULL, NULL, NULL) == SQLITE_OK || store_failed(s, e);
 }
 
+/* Prepared once per connection: a campaign stores thousands of rows, and preparing takes longer
+ * than storing one. */
 sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)
 {
     sqlite3_stmt **kept = &s->statement[which];

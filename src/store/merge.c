@@ -27,6 +27,7 @@ static bool number(struct store *s, const char *sql, int64_t *out, struct err *e
 
 /* --- the other database ------------------------------------------------------------------------------------------ */
 
+/* By device and inode: two paths may name one file. */
 static bool same_file(const char *a, const char *b)
 {
     struct stat x, y;
@@ -46,6 +47,7 @@ static bool look_at(const struct store *s, const char *from, struct err *e)
                              from);
 }
 
+/* As schema `other` of the same connection, so that one statement can read both. */
 static bool attach(struct store *s, const char *from, struct err *e)
 {
     sqlite3_stmt *q = NULL;
@@ -75,6 +77,7 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
 /* Two programs that disagree about one run: whoever is right, a merge must not choose in silence. */
 static bool check_digests(struct store *s, const char *from, struct err *e)
 {
+    /* Only runs that ended well have a digest that means something; both builds are told. */
     static const char sql[] =
         "SELECT h.config_hash, h.seed, h.rep, h.digest, o.digest, hb.version || ' ' || hb.git || ' ' || hb.compiler,"
         " ob.version || ' ' || ob.git || ' ' || ob.compiler FROM main.run h"
@@ -84,6 +87,7 @@ static bool check_digests(struct store *s, const char *from, struct err *e)
     sqlite3_stmt *q = NULL;
     bool ok = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK;
     const int code = ok ? sqlite3_step(q) : SQLITE_ERROR;
+    /* One example is enough to stop. */
     if (code == SQLITE_ROW) {
         const char *text[7];
         for (int i = 0; i < 7; i++) text[i] = (const char *)sqlite3_column_text(q, i);
@@ -161,6 +165,8 @@ static bool take_rows(struct store *s, const char *insert, const char *table, co
 /* The runs themselves. Those that they replace go first, with all that belongs to them. */
 static bool take_runs(struct store *s, struct err *e)
 {
+    /* Builds and settings first: runs refer to them. OR IGNORE, as most of them are there
+     * already. */
     return take_rows(s, "INSERT OR IGNORE", "build", "", e) &&
            take_rows(s, "INSERT OR IGNORE", "setting",
                      "WHERE t.id IN (SELECT setting_id FROM other.run_setting JOIN merge_run ON run_id = old)", e) &&
@@ -188,6 +194,7 @@ static bool take_parts(struct store *s, struct err *e)
     return ok;
 }
 
+/* What is there stays: a study has no digest that could decide between two. */
 static bool take_studies(struct store *s, struct store_merged *done, struct err *e)
 {
     bool ok = true;
@@ -204,6 +211,8 @@ bool store_merge(struct store *s, const char *from, struct store_merged *done, s
 {
     memset(done, 0, sizeof *done);
     if (!look_at(s, from, e) || !attach(s, from, e)) return false;
+    /* trusted_schema: functions that a stranger's view or trigger calls are refused. Checks
+     * first, then runs, then what refers to them; the last statement commits. */
     bool ok = store_exec(s, "PRAGMA trusted_schema = OFF; BEGIN IMMEDIATE", e) && check_tables(s, from, e) &&
               check_digests(s, from, e) && choose_runs(s, done, e) && take_runs(s, e) && take_parts(s, e) &&
               take_studies(s, done, e) && store_exec(s, "DROP TABLE merge_run; COMMIT", e);

@@ -1,4 +1,7 @@
-/* rows.c - statements out of tables of columns (rows.h). */
+/* rows.c - statements out of tables of columns (rows.h).
+ *
+ * The columns of a row stand once, beside their struct; INSERT, CREATE TABLE and the order of
+ * binding all come from there, so that they cannot disagree. */
 #include "store/rows.h"
 
 #include <string.h>
@@ -18,6 +21,7 @@ struct row_table {
     const struct column_table *segment[MOST_SEGMENTS + 1];
 };
 
+/* The columns of a run come from five structs; every other row is one struct. */
 static const struct row_table row_table[] = {
     {STATEMENT_RUN_INSERT,
      "run",
@@ -36,6 +40,7 @@ static const struct row_table row_table[] = {
 };
 enum { TABLES = sizeof row_table / sizeof *row_table };
 
+/* A statement without a table would be a mistake of ours. */
 static const struct row_table *table_of(enum statement which)
 {
     const struct row_table *t = row_table;
@@ -59,7 +64,7 @@ void rows_insert(enum statement which, struct text *sql)
     text_add(sql, ")");
 }
 
-/* The columns of the table called name[0 .. length). */
+/* The column definitions of the table called name[0 .. length). */
 static void add_columns(const char *name, size_t length, struct text *sql)
 {
     for (int i = 0; i < TABLES; i++) {
@@ -71,6 +76,7 @@ static void add_columns(const char *name, size_t length, struct text *sql)
     CHECK(!"a table of schema.sql without columns");
 }
 
+/* schema.sql has a line "@table@" where the columns of that table belong. */
 void rows_schema(struct text *sql)
 {
     const char *rest = schema_text(), *at;
@@ -84,6 +90,8 @@ void rows_schema(struct text *sql)
     text_add(sql, "%s", rest);
 }
 
+/* One value into the statement's next parameter. Texts are not copied: the row lives until the
+ * step. */
 static void bind_column(struct binding *b, const struct column *c, const void *row)
 {
     struct column_value v = {0};
@@ -100,6 +108,7 @@ static void bind_column(struct binding *b, const struct column *c, const void *r
     }
 }
 
+/* In the order of rows_insert; the check fails when the two differ. */
 void rows_bind(enum statement which, struct binding *b, const void *row)
 {
     const struct row_table *t = table_of(which);

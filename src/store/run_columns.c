@@ -1,5 +1,8 @@
 /* run_columns.c - the columns of table run that come from the spec: labels by which rows are
- * chosen, and settings. */
+ * chosen, and settings.
+ *
+ * A column here is a copy: table run_setting has every setting of a run. A new setting needs no
+ * column. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,6 +13,7 @@
 
 #define SPEC(member) .part = PART(struct run_row, spec), .offset = offsetof(struct run_spec, member)
 
+/* All readers get a struct run_row. */
 static const struct run_spec *spec_of(const void *row)
 {
     return ((const struct run_row *)row)->spec;
@@ -18,10 +22,12 @@ static const struct run_spec *spec_of(const void *row)
 /* The word of the setting `more`, a choice. */
 static void read_setting(const struct column *c, const void *row, struct column_value *v)
 {
+    /* A name that is no choice of the settings would be a mistake in the table below. */
     const struct field_table *t;
     const struct field *f = field_find_full(c->more, &t);
     CHECK(f != NULL && f->kind == FIELD_CHOICE);
     const char *base = (const char *)spec_of(row) + t->offset;
+    /* Choices are stored as unsigned integers, whatever their enum is called. */
     v->kind = VALUE_TEXT;
     v->text = f->choice[*(const unsigned *)(const void *)(base + f->offset)];
 }
@@ -31,6 +37,7 @@ static void read_setting(const struct column *c, const void *row, struct column_
         name, COLUMN_STRING, .value = read_setting, .more = setting, .doc = text                   \
     }
 
+/* The scene says how many bodies were built; a run that failed before has what was asked for. */
 static void read_bodies(const struct column *c, const void *row, struct column_value *v)
 {
     const struct run_result *r = ((const struct run_row *)row)->result;
@@ -39,6 +46,8 @@ static void read_bodies(const struct column *c, const void *row, struct column_v
     v->integer = r->nbody > 0 ? r->nbody : spec_of(row)->model.nbody;
 }
 
+/* Labels by which rows are chosen and grouped in queries. They repeat settings of run_setting,
+ * since a column is found faster and is easier to write than a join. */
 static const struct column run_identity[] = {
     {"config_hash", COLUMN_CHARS, SPEC(config_hash), .doc = "SHA-256 that identifies its settings"},
     {"seed", COLUMN_COUNT, SPEC(seed), .doc = "of noise, background traffic and random routes"},
@@ -73,16 +82,19 @@ const struct column_table run_identity_columns = COLUMNS(run_identity);
 #define ORDER(member)                                                                              \
     .part = PART(struct run_row, order), .offset = offsetof(struct run_order, member)
 
+/* NULL where a run was stored without its order. */
 static const struct run_order *order_of(const void *row)
 {
     return ((const struct run_row *)row)->order;
 }
 
+/* Whether the level was chosen for its error, and not named. */
 static bool level_chosen(const void *row)
 {
     return order_of(row) && order_of(row)->level_choice.made;
 }
 
+/* The question as a user would write it; audit_again.c reads the tolerance back from it. */
 static void read_asked(const struct column *c, const void *row, struct column_value *v)
 {
     (void)c;
@@ -92,6 +104,7 @@ static void read_asked(const struct column *c, const void *row, struct column_va
     v->text = v->buffer;
 }
 
+/* NULL in all runs that named their level. */
 static const struct column run_level[] = {
     {"level_asked", COLUMN_STRING, .value = read_asked, .known = level_chosen, .flags = COLUMN_NULL,
      .doc = "'auto-tolerance 2 %': `level` was taken for its measured error"},
@@ -102,6 +115,7 @@ static const struct column run_level[] = {
 };
 const struct column_table run_level_columns = COLUMNS(run_level);
 
+/* Always a text: an audit reads the run back from it. */
 static void read_config(const struct column *c, const void *row, struct column_value *v)
 {
     (void)c;
@@ -109,8 +123,10 @@ static void read_config(const struct column *c, const void *row, struct column_v
     v->text = spec_of(row)->config_text ? spec_of(row)->config_text : "";
 }
 
+/* No machine of that name is shipped: nothing can be said to have changed. */
 static bool machine_shipped(const void *row) { return spec_of(row)->machine_changes != NULL; }
 
+/* The whole configuration, and how its machine differs from the shipped one. */
 static const struct column run_config[] = {
     {"config_text", COLUMN_STRING, .value = read_config,
      .doc = "all settings as text; config_hash is the SHA-256 of its lines that differ from the "

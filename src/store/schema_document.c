@@ -21,12 +21,14 @@ struct document {
     const char *statement; /* its CREATE in the text */
 };
 
+/* The text is read line by line, in place. */
 static const char *next_line(const char *line)
 {
     const char *end = strchr(line, '\n');
     return end != NULL ? end + 1 : line + strlen(line);
 }
 
+/* Whether the text at `line` begins with `word`. */
 static bool starts(const char *line, const char *word)
 {
     return strncmp(line, word, strlen(word)) == 0;
@@ -40,6 +42,8 @@ static const char *find_statement(const char *schema, const char *name, const ch
                                           "CREATE VIEW "};
     *about = NULL;
     for (const char *line = schema; *line; line = next_line(line)) {
+        /* Comment lines right above the statement belong to it; any other line in between ends
+         * them. */
         if (starts(line, "-- ")) {
             if (*about == NULL) *about = line;
             continue;
@@ -60,6 +64,7 @@ static const char *find_statement(const char *schema, const char *name, const ch
 static bool table_comment(const char *statement, const char *name, struct text *out)
 {
     for (const char *line = next_line(statement); *line && *line != ')'; line = next_line(line)) {
+        /* A line of a table: "    name TYPE ...,  -- text". */
         const char *word = line + strspn(line, " "), *end = next_line(line),
                    *dashes = strstr(word, "-- ");
         const size_t length = strcspn(word, " ");
@@ -95,6 +100,7 @@ static bool reads(const char *statement, const char *table)
     text_add(&word, " %s", table);
     for (const char *at = strstr(statement, word.s); at != NULL && at < end;
          at = strstr(at + 1, word.s))
+        /* The whole name, behind FROM or JOIN: "run" is not "run_setting". */
         found = found || (strchr(" \n;)", at[word.length]) != NULL && at[word.length] &&
                           (starts(at - 4, "FROM") || starts(at - 4, "JOIN")));
     text_free(&word);
@@ -118,6 +124,7 @@ static void describe(const struct document *d, const char *name, struct text *ou
     }
 }
 
+/* A heading for each table or view, its comment as text, and the head of the list of columns. */
 static void open_block(struct document *d, const char *kind, const char *name)
 {
     text_copy(d->block, sizeof d->block, name);
@@ -139,6 +146,7 @@ static bool write_column(void *context, int ncolumn, const char *const *name,
     struct text said = {0}, cell = {0};
     (void)ncolumn;
     (void)name;
+    /* Rows come block by block. */
     if (strcmp(d->block, value[1]) != 0) open_block(d, value[0], value[1]);
     describe(d, value[2], &said);
     /* A bar would end the cell. */
@@ -165,6 +173,7 @@ bool store_document(FILE *out, struct err *e)
     struct text schema = {0};
     rows_schema(&schema);
     struct document d = {.out = out, .schema = schema.s};
+    /* An empty database of this version tells names, types and keys as SQLite sees them. */
     struct store *s = store_open("(a new database)", STORE_MEMORY, e);
     fprintf(out, "# The database\n\n");
     for (const char *line = schema.s; starts(line, "-- "); line = next_line(line))

@@ -24,7 +24,7 @@
 #include "store/schema.h"
 #include "store/upgrade.h"
 
-/* The integer that `sql` (a pragma or a count) returns. */
+/* The integer that `sql` (a pragma or a count) returns; false with *e set. */
 static bool read_number(struct store *s, const char *sql, int64_t *out, struct err *e)
 {
     sqlite3_stmt *q = NULL;
@@ -36,7 +36,8 @@ static bool read_number(struct store *s, const char *sql, int64_t *out, struct e
     return ok;
 }
 
-/* Whose database it is, and of which version: *empty for one without tables. */
+/* Whose database it is, and of which version; *empty for one without tables. Checked before any
+ * other statement: a database of another program must not be touched. */
 static bool check_owner(struct store *s, bool *empty, int64_t *version, struct err *e)
 {
     int64_t application = 0, tables = 0;
@@ -44,6 +45,7 @@ static bool check_owner(struct store *s, bool *empty, int64_t *version, struct e
         !read_number(s, "PRAGMA application_id", &application, e) ||
         !read_number(s, "PRAGMA user_version", version, e))
         return false;
+    /* An empty file is a database to SQLite. */
     *empty = tables == 0 && application == 0;
     if (*empty) return true;
     if (application != STORE_APPLICATION)
@@ -79,8 +81,8 @@ static bool create_schema(struct store *s, struct err *e)
     return ok;
 }
 
-/* Whether the folder of `path` is on a file system that several hosts share (magic numbers:
- * statfs(2)). */
+/* Whether `path` is on a file system that several hosts share. Magic numbers of statfs(2): NFS,
+ * SMB, CIFS, SMB2, Lustre, GPFS, BeeGFS, 9P, Ceph, AFS and FUSE. */
 static bool on_network(const char *path)
 {
     static const unsigned magic[] = {0x6969,     0x517B,     0xFF534D42, 0xFE534D42,
@@ -93,6 +95,7 @@ static bool on_network(const char *path)
     return false;
 }
 
+/* See the head of this file. */
 static bool set_journal(struct store *s, struct err *e)
 {
     return on_network(s->path)
@@ -100,7 +103,7 @@ static bool set_journal(struct store *s, struct err *e)
                : store_exec(s, "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL", e);
 }
 
-/* Upgrade by `way`, and keep what it has to tell. */
+/* Upgrade by `way`, and keep what it says for store_remark. */
 static bool upgrade(struct store *s, int version,
                     bool (*way)(struct store *, int, struct text *, struct err *), struct err *e)
 {
@@ -128,6 +131,8 @@ static bool prepare_writer(struct store *s, struct err *e)
         s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
 }
 
+/* A reader changes nothing: an older database is upgraded in a copy, and query_only forbids the
+ * rest. */
 static bool prepare_reader(struct store *s, struct err *e)
 {
     bool empty = false;
@@ -136,6 +141,7 @@ static bool prepare_reader(struct store *s, struct err *e)
     if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e))
         return false;
     if (!store_exec(s, "PRAGMA query_only = ON", e)) return false;
+    /* Without tables every query would fail with a message about the table. */
     return !empty || err_set(e, ERR_DATA, "%s is an empty database", s->path);
 }
 
@@ -148,7 +154,8 @@ static char *folder_of(const char *path)
     return folder;
 }
 
-/* Mistakes in the path that SQLite would report vaguely. *exists when there is a file. */
+/* Mistakes in the path that SQLite would report vaguely, before it is called. *exists when there
+ * is a file. */
 static bool check_path(const char *path, enum store_mode mode, bool *exists, struct err *e)
 {
     struct stat info;
@@ -162,10 +169,12 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     char *folder = folder_of(path);
     bool writable = access(folder, W_OK | X_OK) == 0;
     free(folder);
+    /* access has set errno */
     return writable || err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
 }
 
-/* A new database as the bytes of its file, to be freed by sqlite3_free. */
+/* A new database as the bytes of its file, to be freed by sqlite3_free. Made in memory, so that
+ * the file appears whole. */
 static unsigned char *make_image(sqlite3_int64 *size, bool wal, struct err *e)
 {
     struct store s = {.path = (char[]){"in memory"}, .writable = true};
@@ -182,6 +191,7 @@ static unsigned char *make_image(sqlite3_int64 *size, bool wal, struct err *e)
 
 static bool write_all(int file, const unsigned char *bytes, sqlite3_int64 size)
 {
+    /* write may take less than it is given. */
     for (sqlite3_int64 done = 0; done < size;) {
         ssize_t n = write(file, bytes + done, (size_t)(size - done));
         if (n < 0 && errno != EINTR) return false;
@@ -215,6 +225,7 @@ static bool make_file(const char *path, struct err *e)
     remove_stale_logs(path);
     int file = beside_open(path, &beside);
     bool ok = file >= 0 && write_all(file, image, size) && fdatasync(file) == 0;
+    /* A file system without links: rename, which could replace a file that appeared meanwhile. */
     if (ok && link(beside, path) != 0 && errno != EEXIST) ok = rename(beside, path) == 0;
     if (!ok)
         err_set(e, file < 0 ? ERR_CREATE : ERR_IO, "cannot make database %s: %s", path,
@@ -234,6 +245,7 @@ static void reopen_immutable(struct store *s)
     struct text uri = {0};
     text_add(&uri, "file:");
     for (const unsigned char *c = (const unsigned char *)s->path; *c; c++)
+        /* What has a meaning in a URI is percent-encoded. */
         if (*c == '?' || *c == '#' || *c == '%') text_add(&uri, "%%%02X", *c);
         else text_add_bytes(&uri, (const char *)c, 1);
     text_add(&uri, "?immutable=1");
@@ -243,6 +255,7 @@ static void reopen_immutable(struct store *s)
     text_free(&uri);
 }
 
+/* With a log the database is in use, or was not closed: only SQLite may read it then. */
 static bool log_exists(const char *path)
 {
     struct text log = {0};
@@ -263,6 +276,7 @@ static bool open_reader(struct store *s, struct err *e)
     int64_t ignored;
     struct err first = {0};
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
+    /* The first read tells whether the log's shared memory can be used. */
     bool readable = read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
     int code = sqlite3_errcode(s->db);
     if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path))
@@ -279,6 +293,8 @@ static bool open_writer(struct store *s, struct err *e)
     return prepare_writer(s, e);
 }
 
+/* Nothing of it survives store_close. `passing`: rows of single ranks and settings are not even
+ * made. */
 static bool open_memory(struct store *s, bool passing, struct err *e)
 {
     if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
@@ -287,6 +303,7 @@ static bool open_memory(struct store *s, bool passing, struct err *e)
            store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }
 
+/* What a crash left is removed by the next writer, not by a reader. */
 struct store *store_open(const char *path, enum store_mode mode, struct err *e)
 {
     bool exists = true;
@@ -307,6 +324,8 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
     return NULL;
 }
 
+/* Statements first: SQLite refuses to close a database with open ones. A transaction that was
+ * not committed is undone. */
 void store_close(struct store *s)
 {
     if (s == NULL) return;
@@ -322,6 +341,7 @@ const char *store_path(const struct store *s) { return s->path; }
 
 const char *store_remark(const struct store *s) { return s->remark; }
 
+/* Opening for writing upgrades: all that is left is to say what happened. */
 bool store_upgrade(const char *path, struct text *told, struct err *e)
 {
     bool exists;
@@ -346,6 +366,7 @@ bool store_commit(struct store *s, struct err *e)
 {
     CHECK(s->in_transaction);
     sqlite3_stmt *commit = store_statement(s, STATEMENT_COMMIT, e);
+    /* A commit can fail (disk full): then nothing of the transaction is kept. */
     if (commit == NULL || !store_step(s, commit, e)) {
         store_rollback(s);
         return false;

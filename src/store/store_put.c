@@ -2,7 +2,10 @@
  * omissions, links, spans.
  *
  * All of them in one transaction. Which columns a row has, and what they hold, say the tables of
- * columns (rows.h). */
+ * columns (rows.h).
+ *
+ * Tables that grow with the machine (ranks, links, spans) have limits: a database of 10,000 runs
+ * must stay one that can be queried and copied. Sums over all of them are in table run. */
 #include "store/store.h"
 
 #include <stdlib.h>
@@ -13,7 +16,7 @@
 #include "store/build.h"
 #include "store/rows.h"
 
-/* Run a statement that finds one row id; 0 when there is none. */
+/* Run a statement that finds one row id; *id 0 when there is none. */
 static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err *e)
 {
     int code = sqlite3_step(b->statement);
@@ -23,6 +26,7 @@ static bool find_id(struct store *s, struct binding *b, int64_t *id, struct err 
     return ok;
 }
 
+/* A run is known by the hash of its settings, its seed and its repetition. */
 static bool bind_identity(struct store *s, const struct run_spec *spec, struct binding *b,
                           struct err *e)
 {
@@ -33,6 +37,7 @@ static bool bind_identity(struct store *s, const struct run_spec *spec, struct b
     return true;
 }
 
+/* Only a run that ended well counts: others are made again. An error reads as no. */
 bool store_has(struct store *s, const struct run_spec *spec)
 {
     struct err ignored = {0};
@@ -53,11 +58,13 @@ int64_t store_run_id(struct store *s, const struct run_spec *spec)
     return id;
 }
 
-/* The row of this program in table build. */
+/* The row of this program in table build, made when it is new; remembered for the connection. */
 static bool find_build(struct store *s, struct err *e)
 {
     if (s->build_id != 0) return true;
     struct build build = store_build();
+    /* Add first, which does nothing where it is there, then find: two programs that begin at
+     * once both find one row. */
     for (int add = 1; add >= 0; add--) {
         struct binding b;
         if (!bind_start(s, add ? STATEMENT_BUILD_ADD : STATEMENT_BUILD_FIND, &b, e)) return false;
@@ -78,6 +85,7 @@ static bool put_row(struct store *s, enum statement which, struct binding *b, co
     return store_step(s, b->statement, e);
 }
 
+/* The row of table run; *id is its key for all others. */
 static bool put_run(struct store *s, const struct run_spec *spec, const struct run_order *order,
                     const struct run_result *r, int64_t *id,
                     struct err *e)
@@ -92,14 +100,16 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     return ok;
 }
 
-/* The row of a setting, made when it is new. */
+/* The row of a setting, made when it is new: thousands of runs share most of their settings. */
 static bool setting_id(struct store *s, const char *key, int nkey, const char *value, int nvalue,
                        int64_t *id, struct err *e)
 {
+    /* Find first, unlike a build: nearly always the setting is there. */
     for (int add = 0; add < 2; add++) {
         struct binding b;
         if (!bind_start(s, add ? STATEMENT_SETTING_ADD : STATEMENT_SETTING_FIND, &b, e))
             return false;
+        /* Key and value as parts of the line: no copies. */
         sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC);
         sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC);
         if (!add && !find_id(s, &b, id, e)) return false;
@@ -111,6 +121,7 @@ static bool setting_id(struct store *s, const char *key, int nkey, const char *v
 }
 
 /* The "key = value" lines of the canonical configuration. */
+/* Settings of a passing database are never asked for. */
 static bool put_settings(struct store *s, int64_t run, const char *config, struct err *e)
 {
     if (s->passing) return true;
@@ -144,6 +155,7 @@ static bool put_numbered(struct store *s, enum statement which, int64_t run, int
     return put_row(s, which, &b, row, e);
 }
 
+/* A rank that did nothing in a stage has no row: large runs would have mostly zeros. */
 static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage,
                            const struct stage_time *t, struct err *e)
 {
@@ -156,8 +168,11 @@ static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage,
     return put_row(s, STATEMENT_RANK_STAGE, &b, t, e);
 }
 
+/* Stages always; single ranks of runs up to STORE_RANK_ROWS ranks, whose rows can be looked at
+ * one by one. */
 static bool put_stages(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
+    /* A run that failed before it began has no stages. */
     if (r->stage == NULL || r->nrank == 0) return true;
     for (int i = 0; i < r->nstage; i++) {
         const struct stage_row row = stage_row_make(r, i);
@@ -171,6 +186,7 @@ static bool put_stages(struct store *s, int64_t run, const struct run_result *r,
     return true;
 }
 
+/* The serial codes of the run, in the order in which they were timed. */
 static bool put_baselines(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     for (int i = 0; i < r->nbaseline; i++)
@@ -178,6 +194,7 @@ static bool put_baselines(struct store *s, int64_t run, const struct run_result 
     return true;
 }
 
+/* What was compared with a reference. */
 static bool put_errors(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     for (int i = 0; i < r->nerror; i++)
@@ -185,6 +202,8 @@ static bool put_errors(struct store *s, int64_t run, const struct run_result *r,
     return true;
 }
 
+/* What the run left out, and why no result needs it. A table without numbers: names are its
+ * keys. */
 static bool put_omissions(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     for (int i = 0; i < r->nomission; i++) {
@@ -196,7 +215,8 @@ static bool put_omissions(struct store *s, int64_t run, const struct run_result 
     return true;
 }
 
-/* Busiest first: longest queues, then longest use, then place. */
+/* For qsort: busiest first, by longest queues, then longest use, then place, so that the choice
+ * is the same every time. */
 static int compare_load(const void *a, const void *b)
 {
     const struct link_load *x = *(const struct link_load *const *)a,
@@ -212,14 +232,17 @@ static bool put_links(struct store *s, int64_t run, const struct run_result *r, 
     const struct link_load **order = malloc((size_t)r->nlink * sizeof *order);
     CHECK(order != NULL);
     for (int i = 0; i < r->nlink; i++) order[i] = &r->link[i];
+    /* All links where there are few; the busiest of many, as those limit the run. */
     if (r->nlink > STORE_LINK_ROWS) qsort(order, (size_t)r->nlink, sizeof *order, compare_load);
     bool ok = true;
+    /* order[i] - r->link: the link's number. */
     for (int i = 0; i < r->nlink && i < STORE_LINK_ROWS && ok; i++)
         ok = put_numbered(s, STATEMENT_LINK_LOAD, run, order[i] - r->link, order[i], e);
     free(order);
     return ok;
 }
 
+/* Half a timeline would be misread: all spans or none. */
 static bool put_spans(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     if (r->span == NULL || r->nspan > STORE_SPAN_ROWS) return true;
@@ -228,7 +251,8 @@ static bool put_spans(struct store *s, int64_t run, const struct run_result *r, 
     return true;
 }
 
-/* An older row of the same identity goes, with everything that belongs to it. */
+/* An older row of the same identity goes, with everything that belongs to it (ON DELETE
+ * CASCADE). */
 static bool remove_old(struct store *s, const struct run_spec *spec, struct err *e)
 {
     struct binding b;
@@ -245,6 +269,7 @@ bool store_note_build(struct store *s, struct err *e) { return find_build(s, e);
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order,
                const struct run_result *r, struct err *e)
 {
+    /* Within a transaction of the caller, many runs are one commit. */
     bool alone = !s->in_transaction;
     int64_t run = 0;
     CHECK(s->writable);

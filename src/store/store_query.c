@@ -1,4 +1,7 @@
-/* store_query.c - queries out of the database, and rows of any table into it. */
+/* store_query.c - queries out of the database, and rows of any table into it.
+ *
+ * Queries come from plots/, from the audit and from users (`mimdsim query`): each is checked as
+ * if a user had written it. */
 #include "store/store.h"
 
 #include <math.h>
@@ -9,6 +12,7 @@
 #include "base/text.h"
 #include "store/connection.h"
 
+/* Of one query, and of one inserted row. */
 enum { MAX_COLUMNS = 128, MAX_INSERT = 64 };
 
 struct store_value store_null(void) { return (struct store_value){.kind = STORE_NULL}; }
@@ -18,6 +22,7 @@ struct store_value store_int(int64_t v)
     return (struct store_value){.kind = STORE_INT, .integer = v};
 }
 
+/* What is not finite becomes NULL: a database of NaN cannot be compared or averaged. */
 struct store_value store_real(double v)
 {
     return isfinite(v) ? (struct store_value){.kind = STORE_REAL, .real = v} : store_null();
@@ -28,6 +33,7 @@ struct store_value store_text(const char *v)
     return v ? (struct store_value){.kind = STORE_TEXT, .text = v} : store_null();
 }
 
+/* SQLITE_STATIC: the caller's text lives until the step. */
 static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
 {
     switch (v->kind) {
@@ -38,6 +44,7 @@ static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
     }
 }
 
+/* The text belongs to SQLite, until the next step. */
 static struct store_value column_value(sqlite3_stmt *q, int column)
 {
     switch (sqlite3_column_type(q, column)) {
@@ -58,6 +65,9 @@ static bool has_statement(struct store *s, const char *sql)
     return more;
 }
 
+/* One statement with its parameters bound, or NULL with *e set. Everything that a user can write
+ * wrongly is told here: more than one statement, none, a change in a database that is only read,
+ * too few parameters. */
 static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const char *const *param,
                              struct err *e)
 {
@@ -67,6 +77,8 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         store_failed(s, e);
         return NULL;
     }
+    /* SQLite runs the first statement and ignores the rest: what would be ignored must not look
+     * done. */
     if (has_statement(s, rest)) {
         err_set(e, ERR_DATA, "more than one statement: '%.60s' would not be run",
                 rest + strspn(rest, " \t\r\n"));
@@ -77,6 +89,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         err_set(e, ERR_DATA, "empty query");
         return NULL;
     }
+    /* query_only would refuse it, too, but with a message of SQLite's. */
     if (!s->writable && !sqlite3_stmt_readonly(q)) {
         err_set(e, ERR_IO,
                 "database %s is opened for reading only: a statement that changes it is not run",
@@ -94,6 +107,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
     return q;
 }
 
+/* Row by row: a result of any size takes the memory of one row. */
 bool store_query(struct store *s, const char *sql, int nparam, const char *const *param,
                  store_value_fn *header, store_value_fn *row, void *context, struct err *e)
 {
@@ -105,16 +119,19 @@ bool store_query(struct store *s, const char *sql, int nparam, const char *const
     bool ok = ncolumn <= MAX_COLUMNS ||
               err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
     for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
+    /* Names before the first row, so that a table without rows has a head. */
     bool more = ok && (header == NULL || header(context, ncolumn, name, NULL));
     while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
         for (int i = 0; i < ncolumn; i++) value[i] = column_value(q, i);
         more = row(context, ncolumn, name, value);
     }
+    /* SQLITE_ROW: the row function stopped the query, which is no error of the database. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
     sqlite3_finalize(q);
     return ok;
 }
 
+/* The same with all values as texts, NULL as NULL: for sentences and names. */
 bool store_select(struct store *s, const char *sql, int nparam, const char *const *param,
                   store_row_fn *row, void *context, struct err *e)
 {
@@ -148,11 +165,13 @@ static bool run_once(struct store *s, const char *sql, int nvalue, const struct 
     return ok;
 }
 
+/* Names come from this program, but are quoted all the same: one may be a word of SQL. */
 bool store_insert(struct store *s, const char *table, int ncolumn, const char *const *name,
                   const struct store_value *value, struct err *e)
 {
     CHECK(ncolumn >= 1 && ncolumn <= MAX_INSERT);
     struct text sql = {0};
+    /* A row with the same key is the same thing, measured again. */
     text_add(&sql, "INSERT OR REPLACE INTO \"%s\" (", table);
     for (int i = 0; i < ncolumn; i++) text_add(&sql, "%s\"%s\"", i ? ", " : "", name[i]);
     text_add(&sql, ") VALUES (");
@@ -163,6 +182,8 @@ bool store_insert(struct store *s, const char *table, int ncolumn, const char *c
     return ok;
 }
 
+/* Columns that are not in the database are left out; the rest follows the keys in the table's
+ * order. */
 bool store_insert_row(struct store *s, const char *table, int n, const char *const *name,
                       const struct store_value *value, const struct column_table *t,
                       const void *row, struct err *e)
@@ -175,6 +196,7 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
         all[i] = name[i];
         cell[i] = value[i];
     }
+    /* cell[i].text may point into read[i].buffer, so both live until the insert. */
     for (int i = 0; i < t->n; i++) {
         struct column_value *v = &read[i];
         if (t->column[i].flags & COLUMN_NO_SQL) continue;
@@ -188,6 +210,7 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
     return store_insert(s, table, n, all, cell, e);
 }
 
+/* IS, not =: NULL equals NULL here. */
 bool store_delete(struct store *s, const char *table, const char *column, struct store_value value,
                   struct err *e)
 {

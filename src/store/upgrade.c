@@ -1,5 +1,9 @@
-/* upgrade.c - one transaction from an older schema to this one, and the old database kept beside;
- * see upgrade.h. */
+/* upgrade.c - one transaction from an older schema to this one, and the old database kept
+ * beside; see upgrade.h.
+ *
+ * There is no list of changes between versions: every table is put aside under another name,
+ * made anew, and filled from the old one, column by column with the same name. A new column
+ * takes its default. So a column can be added without writing an upgrade. */
 #include "store/upgrade.h"
 
 #include <errno.h>
@@ -17,6 +21,7 @@ enum { MOST_BACKUPS = 100 };
 /* --- tables ----------------------------------------------------------------------------------- */
 
 /* Call `visit` with each row of `sql` on `db`; false at the first failure of either. */
+/* The statement is finalized in any case; its code is the error of the last step. */
 typedef bool visit_fn(struct store *s, sqlite3_stmt *row, struct err *e);
 
 static bool for_each(struct store *s, sqlite3 *db, const char *sql, visit_fn *visit, struct err *e)
@@ -50,8 +55,7 @@ static bool has_column(struct store *s, const char *table, const char *column)
                                          NULL) == SQLITE_OK;
 }
 
-/* Views and indices are made anew; those of the user's own, which the schema does not name,
- * stay. */
+/* Views and indices of the schema are made anew with it; those of the user's own stay. */
 static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
 {
     const bool view = strcmp((const char *)sqlite3_column_text(row, 1), "view") == 0;
@@ -59,6 +63,7 @@ static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
                       name_of(row), NULL);
 }
 
+/* "run" becomes "older_run"; a table that the old version did not have is made empty. */
 static bool put_aside(struct store *s, sqlite3_stmt *row, struct err *e)
 {
     if (!has_column(s, name_of(row), NULL)) return true;
@@ -81,6 +86,7 @@ static bool list_columns(struct store *s, const char *table, const char *older, 
         const char *name = name_of(q), *comma = to->length > 0 ? ", " : "";
         const bool there = has_column(s, older, name),
                    text = sqlite3_stricmp((const char *)sqlite3_column_text(q, 1), "TEXT") == 0;
+        /* A column that may be NULL, or has a default, is left to SQLite. */
         if (!there && !sqlite3_column_int(q, 2)) continue;
         text_add(to, "%s\"%s\"", comma, name);
         if (there) text_add(from, "%s\"%s\"", comma, name);
@@ -117,16 +123,20 @@ static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int vers
 {
     static const char tables[] =
         "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite_%'",
+                      /* What is dropped in one database is listed in the other: `others` of the
+                       * schema are views and indices. */
                       others[] =
                           "SELECT name, type FROM sqlite_schema WHERE type <> 'table'"
                           " AND sql IS NOT NULL";
     char identity[64];
     snprintf(identity, sizeof identity, "PRAGMA user_version = %d", STORE_VERSION);
+    /* Order: views refer to tables, so they go first and are made with the schema. */
     return for_each(s, fresh, others, drop_object, e) && for_each(s, fresh, tables, put_aside, e) &&
            store_exec(s, schema, e) && for_each(s, fresh, tables, fill_table, e) &&
            upgrade_runs(s, version, kept, e) && store_exec(s, identity, e);
 }
 
+/* A fresh database in memory is the list of what there has to be. */
 static bool remake_from(struct store *s, int version, int64_t *kept, struct err *e)
 {
     struct store fresh = {.path = s->path};
@@ -147,6 +157,7 @@ static bool begin(struct store *s, struct err *e)
         s, "PRAGMA foreign_keys = OFF; PRAGMA legacy_alter_table = ON; BEGIN IMMEDIATE", e);
 }
 
+/* Ends the transaction either way, and puts the connection's settings back. */
 static bool end(struct store *s, bool ok, struct err *e)
 {
     ok = ok && store_exec(s, "COMMIT", e);
@@ -166,7 +177,8 @@ static void tell_kept(int64_t kept, struct text *told)
 
 /* --- the old one beside ----------------------------------------------------------------------- */
 
-/* Copy the database as it is before the transaction's first change into the new file `to`. */
+/* A copy of the database as it was before this transaction, into the new file `to`. Another
+ * connection reads it: this one holds the lock for writing and sees its own changes. */
 static bool copy_into(struct store *s, const char *to, struct err *e)
 {
     struct store reader = {.path = s->path};
@@ -181,9 +193,8 @@ static bool copy_into(struct store *s, const char *to, struct err *e)
     return ok;
 }
 
-/* Link `from` to PATH.vN, or PATH.vN.K where that is taken; *name is the one it got, for the caller
- * to free.
- */
+/* Link `from` to PATH.vN, or PATH.vN.K where that is taken: an earlier backup is never replaced.
+ * *name is the one it got, for the caller to free. */
 static bool link_free_name(struct store *s, int version, const char *from, struct text *name)
 {
     for (int k = 0; k < MOST_BACKUPS; k++) {
@@ -196,7 +207,7 @@ static bool link_free_name(struct store *s, int version, const char *from, struc
     return false;
 }
 
-/* Keep the old database: whole under its name or not there at all. */
+/* Keep the old database: whole under its name, on the disk, or not there at all. */
 static bool back_up(struct store *s, int version, struct text *name, struct err *e)
 {
     char *beside = NULL;
@@ -228,6 +239,8 @@ static bool still(struct store *s, int version, bool *same, struct err *e)
     return ok;
 }
 
+/* In the user's file. The backup exists before the first change; if the upgrade fails, the file
+ * is as it was and the backup goes. */
 bool upgrade_file(struct store *s, int version, struct text *told, struct err *e)
 {
     struct text name = {0};
@@ -249,7 +262,7 @@ bool upgrade_file(struct store *s, int version, struct text *told, struct err *e
     return ok;
 }
 
-/* Every page of s->db into a database in a temporary file. */
+/* Every page of s->db into the database `to`, with the log's pages. */
 static bool copy_pages(struct store *s, sqlite3 *to, struct err *e)
 {
     sqlite3_backup *b = sqlite3_backup_init(to, "main", s->db, "main");
@@ -261,6 +274,7 @@ static bool copy_pages(struct store *s, sqlite3 *to, struct err *e)
                    sqlite3_errstr(code));
 }
 
+/* For a reader: its file stays untouched. The copy takes the place of s->db. */
 bool upgrade_copy(struct store *s, int version, struct text *told, struct err *e)
 {
     sqlite3 *copy = NULL;

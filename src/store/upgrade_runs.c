@@ -22,6 +22,8 @@ struct work {
     int64_t *kept;
 };
 
+/* Prepared for all runs of the database: preparing six statements takes longer than running
+ * them. */
 static bool prepare(struct store *s, sqlite3_stmt **out, const char *sql, struct err *e)
 {
     return sqlite3_prepare_v2(s->db, sql, -1, out, NULL) == SQLITE_OK || store_failed(s, e);
@@ -45,6 +47,7 @@ static bool open_work(struct work *w, struct err *e)
                e);
 }
 
+/* Also after a failure half way: finalizing NULL does nothing. */
 static void close_work(struct work *w)
 {
     sqlite3_stmt *const all[] = {w->select, w->update, w->older, w->forget, w->setting, w->link};
@@ -52,6 +55,7 @@ static void close_work(struct work *w)
     identity_destroy(w->identity);
 }
 
+/* A run that this program cannot describe keeps its row, and table run_older says why. */
 static bool note_older(struct work *w, int64_t run, const char *why, struct err *e)
 {
     struct binding b = {w->older, 1};
@@ -62,7 +66,7 @@ static bool note_older(struct work *w, int64_t run, const char *why, struct err 
     return store_step(w->s, w->older, e);
 }
 
-/* The value of one setting of a stored run becomes `value`. */
+/* The value of one setting of a stored run becomes `value`: the row of run_setting is replaced. */
 static bool change_setting(struct work *w, int64_t run, const char *key, const char *value,
                            struct err *e)
 {
@@ -78,7 +82,7 @@ static bool change_setting(struct work *w, int64_t run, const char *key, const c
            store_step(w->s, w->link, e);
 }
 
-/* A run that asked for a tolerance is a run at the level that it took. */
+/* A run that asked for a tolerance is a run at the level that it took: two settings change. */
 static bool settle_level(struct work *w, int64_t run, struct run_spec *spec, const char *level,
                          struct err *e)
 {
@@ -97,7 +101,8 @@ static bool settle_level(struct work *w, int64_t run, struct run_spec *spec, con
     return ok;
 }
 
-/* The identity of a run, in its row; that of another run when both are the same run now. */
+/* The identity of a run, in its row. When two runs are the same run now, the second keeps its
+ * old identity and is noted as older. */
 static bool update_run(struct work *w, int64_t run, const struct run_spec *spec, const char *text,
                        struct err *e)
 {
@@ -108,10 +113,12 @@ static bool update_run(struct work *w, int64_t run, const struct run_spec *spec,
     const int code = sqlite3_step(w->update);
     sqlite3_reset(w->update);
     if (code == SQLITE_DONE) return true;
+    /* The unique key (config_hash, seed, rep). */
     if (code != SQLITE_CONSTRAINT) return store_failed(w->s, e);
     return note_older(w, run, "another stored run has the same settings", e);
 }
 
+/* One run: its text is read as settings, which are then identified as those of a new run. */
 static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
 {
     const int64_t run = sqlite3_column_int64(w->select, 0);
@@ -130,6 +137,7 @@ static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
     return update_run(w, run, &spec, asked ? spec.config_text : text, e);
 }
 
+/* Runs in the order of their ids: of two equal ones the older keeps the identity. */
 bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
 {
     int ntable;
