@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 #include "plan/data_dir.h"
-#include "plan/yaml_tree.h"
+#include "io/document.h"
 
 static bool ends_with(const char *name, const char *ending)
 {
@@ -26,22 +26,22 @@ static bool is_database(const char *path)
     return yes;
 }
 
-static bool has_any(const struct yaml_node *root, const char *const *key, int n)
+static bool has_any(const struct node *root, const char *const *key, int n)
 {
     for (int i = 0; i < n; i++)
-        if (yaml_node_child(root, key[i]) != NULL) return true;
+        if (document_find(root, key[i]) != NULL) return true;
     return false;
 }
 
 /* A machine file describes a machine and asks no question. One with keys of both is told of the key
  * that is wrong. */
-enum file_kind file_kind_of_tree(const struct yaml_node *root)
+enum file_kind file_kind_of_tree(const struct node *root)
 {
     static const char *const scenario_keys[] = {"question", "machine", "kernel",
                                                 "ranks",    "sweep",   "model"};
     static const char *const machine_keys[] = {"topology", "network", "node",
                                                "software", "base",    "title"};
-    if (root == NULL || root->kind != YAML_MAPPING) return FILE_UNKNOWN;
+    if (root == NULL || root->kind != NODE_MAP) return FILE_UNKNOWN;
     bool asks = has_any(root, scenario_keys, 6), describes = has_any(root, machine_keys, 6);
     if (asks == describes) return FILE_UNKNOWN;
     return asks ? FILE_SCENARIO : FILE_MACHINE;
@@ -66,7 +66,7 @@ enum file_kind file_kind_of(const char *name, struct arena *a)
         if (ends_with(name, ".urdf")) return FILE_ROBOT;
         if (ends_with(name, ".json")) return FILE_CASES;
         if (ends_with(name, ".yaml") || ends_with(name, ".yml"))
-            return file_kind_of_tree(yaml_tree_read(name, a, &ignored));
+            return file_kind_of_tree(document_read_settings(name, a, &ignored));
     }
     if (is_stem_of("scenarios", name, a)) return FILE_SCENARIO;
     return is_stem_of("machines", name, a) ? FILE_MACHINE : FILE_UNKNOWN;

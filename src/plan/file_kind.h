@@ -16,10 +16,10 @@ enum file_kind {
     FILE_CASES     /* .json: reference vectors, or cases of netcheck */
 };
 
-struct yaml_node;
+struct node;
 
 /* file_kind_of_tree: FILE_SCENARIO or FILE_MACHINE by the keys of the tree `root`, NULL or neither: FILE_UNKNOWN. */
-enum file_kind file_kind_of_tree(const struct yaml_node *root);
+enum file_kind file_kind_of_tree(const struct node *root);
 
 /* file_kind_of: what `name` (a path, or the stem of a file in scenarios/ or machines/) is; `a` is scratch. */
 enum file_kind file_kind_of(const char *name, struct arena *a);

@@ -32,10 +32,10 @@ static bool is_evidence(const char *s)
 }
 
 /* `published`: the entry is a published figure, which says what validate does with it. */
-static bool read_evidence(struct machine_value *v, const char *key, const struct yaml_node *leaf,
+static bool read_evidence(struct machine_value *v, const char *key, const struct node *leaf,
                           bool published, struct err *e)
 {
-    for (const struct yaml_node *n = leaf->child; n != NULL; n = n->next) {
+    for (const struct node *n = leaf->child; n != NULL; n = n->next) {
         static const char *const known[] = {"value", "min", "max", "class", "source", "validate"};
         bool is_known = false;
         for (int i = 0; i < 5 + published; i++)
@@ -46,7 +46,7 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
                               key, n->key,
                               published ? "class, source or validate" : "class or source");
         if (strcmp(n->key, "value") == 0) continue;
-        if (n->kind != YAML_SCALAR)
+        if (n->kind != NODE_TEXT)
             return err_set_at(e, ERR_DATA, v->file, n->line, "%s: '%s' must be a single value", key,
                               n->key);
         if (strcmp(n->key, "class") == 0) v->evidence = n->text;
@@ -63,14 +63,14 @@ static bool read_evidence(struct machine_value *v, const char *key, const struct
 
 /* The published range of a number; it has to hold the value. */
 static bool read_range(struct machine_value *v, const struct field *f, const char *key,
-                       const struct yaml_node *leaf, const struct machine_spec *spec, struct err *e)
+                       const struct node *leaf, const struct machine_spec *spec, struct err *e)
 {
     static const char *const names[] = {"min", "max"};
     double *const bound[] = {&v->min, &v->max}, value = 0;
     const void *place = (const char *)spec + f->offset;
     char why[256];
-    const struct yaml_node *range = yaml_node_child(leaf, "min");
-    if (range == NULL) range = yaml_node_child(leaf, "max");
+    const struct node *range = document_find(leaf, "min");
+    if (range == NULL) range = document_find(leaf, "max");
     if (range == NULL) return true;
     if (f->kind == FIELD_REAL) value = *(const double *)place;
     else if (f->kind == FIELD_INT64) value = (double)*(const int64_t *)place;
@@ -78,7 +78,7 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
     else return err_set_at(e, ERR_DATA, v->file, range->line, "%s: only numbers have a range", key);
     v->min = v->max = value;
     for (int i = 0; i < 2; i++) {
-        const struct yaml_node *n = yaml_node_child(leaf, names[i]);
+        const struct node *n = document_find(leaf, names[i]);
         if (n != NULL && !units_parse(n->text, f->unit, bound[i], why, (int)sizeof why))
             return err_set_at(e, ERR_DATA, v->file, n->line, "%s: %s '%.80s': %s", key, names[i],
                               n->text, why);
@@ -92,11 +92,11 @@ static bool read_range(struct machine_value *v, const struct field *f, const cha
 
 /* What one segment says of its evidence, added to *class and *source; *class names each class
  * once. */
-static bool add_evidence(const struct yaml_node *n, const char *key, const char *file,
+static bool add_evidence(const struct node *n, const char *key, const char *file,
                          struct text *class, struct text *source, struct err *e)
 {
-    const struct yaml_node *from = yaml_node_child(n, "from"), *c = yaml_node_child(n, "class");
-    const struct yaml_node *s = yaml_node_child(n, "source");
+    const struct node *from = document_find(n, "from"), *c = document_find(n, "class");
+    const struct node *s = document_find(n, "source");
     if (c != NULL && (c->text == NULL || !is_evidence(c->text)))
         return err_set_at(e, ERR_DATA, file, c->line, "%s: class '%.20s'; expected P, PR, D or E",
                           key, c->text != NULL ? c->text : "");
@@ -110,29 +110,29 @@ static bool add_evidence(const struct yaml_node *n, const char *key, const char 
 
 /* Class and source of each segment of `leaf` go to *v; returns the leaf without them, NULL when a
  * class is none. */
-static const struct yaml_node *take_evidence(struct machine_value *v, const char *key,
-                                             const struct yaml_node *leaf, const char *file,
+static const struct node *take_evidence(struct machine_value *v, const char *key,
+                                             const struct node *leaf, const char *file,
                                              struct arena *a, struct err *e)
 {
     struct text class = {0}, source = {0};
-    struct yaml_node *bare = TAKE(a, 1, struct yaml_node), **tail = &bare->child;
+    struct node *bare = TAKE(a, 1, struct node), **tail = &bare->child;
     bool fine = true;
     *bare = *leaf;
     bare->child = NULL;
-    for (const struct yaml_node *n = leaf->child; n != NULL && fine; n = n->next) {
-        struct yaml_node *copy = *tail = TAKE(a, 1, struct yaml_node), **end = &copy->child;
+    for (const struct node *n = leaf->child; n != NULL && fine; n = n->next) {
+        struct node *copy = *tail = TAKE(a, 1, struct node), **end = &copy->child;
         *copy = *n;
         copy->child = copy->next = NULL;
         tail = &copy->next;
-        for (const struct yaml_node *k = n->child; k != NULL; k = k->next) {
+        for (const struct node *k = n->child; k != NULL; k = k->next) {
             if (k->key != NULL && (strcmp(k->key, "class") == 0 || strcmp(k->key, "source") == 0))
                 continue;
-            *end = TAKE(a, 1, struct yaml_node);
+            *end = TAKE(a, 1, struct node);
             **end = *k;
             (*end)->next = NULL;
             end = &(*end)->next;
         }
-        if (n->kind == YAML_MAPPING) fine = add_evidence(n, key, file, &class, &source, e);
+        if (n->kind == NODE_MAP) fine = add_evidence(n, key, file, &class, &source, e);
     }
     v->evidence = class.s != NULL ? arena_text(a, class.s) : "";
     v->source = source.s != NULL ? arena_text(a, source.s) : "";
@@ -141,7 +141,7 @@ static const struct yaml_node *take_evidence(struct machine_value *v, const char
     return fine ? bare : NULL;
 }
 
-static bool read_leaf(void *context, const char *full, const struct yaml_node *leaf,
+static bool read_leaf(void *context, const char *full, const struct node *leaf,
                       const char *file, struct arena *a, struct err *e)
 {
     struct reader *r = context;
@@ -155,7 +155,7 @@ static bool read_leaf(void *context, const char *full, const struct yaml_node *l
         return err_set_at(e, ERR_DATA, file, leaf->line,
                           "duplicate key '%s'; first given in line %d", key, v->line);
     struct machine_value fresh = {.file = file, .line = leaf->line, .evidence = "", .source = ""};
-    if (f->kind == FIELD_SEGMENTS && leaf->kind == YAML_SEQUENCE &&
+    if (f->kind == FIELD_SEGMENTS && leaf->kind == NODE_LIST &&
         (leaf = take_evidence(&fresh, key, leaf, file, a, e)) == NULL)
         return false;
     fresh.text = setting_value(key, leaf, file, a, e);
@@ -165,19 +165,19 @@ static bool read_leaf(void *context, const char *full, const struct yaml_node *l
     char why[512];
     if (!field_set(f, &r->machine->spec, text, a, why, (int)sizeof why))
         return err_set_at(e, ERR_DATA, file, leaf->line, "%s: '%.80s': %s", key, text, why);
-    if (leaf->kind != YAML_MAPPING) return true;
+    if (leaf->kind != NODE_MAP) return true;
     if (!read_evidence(v, key, leaf, false, e)) return false;
     return read_range(v, f, key, leaf, &r->machine->spec, e);
 }
 
 /* Figures that are known of the machine and that no run uses: any name, value as text. */
-static bool read_published(struct machine_file *m, const struct yaml_node *list, const char *file,
+static bool read_published(struct machine_file *m, const struct node *list, const char *file,
                            struct arena *a, struct err *e)
 {
-    if (list->kind != YAML_MAPPING)
+    if (list->kind != NODE_MAP)
         return err_set_at(e, ERR_DATA, file, list->line,
                           "published: expected 'name: {value, class, source}' lines");
-    for (const struct yaml_node *n = list->child; n != NULL; n = n->next) {
+    for (const struct node *n = list->child; n != NULL; n = n->next) {
         int i = 0;
         while (i < m->npublished && strcmp(m->published[i].name, n->key) != 0) i++;
         if (i == MAX_PUBLISHED)
@@ -185,7 +185,7 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
         struct machine_value v = {
             .file = file, .line = n->line, .evidence = "", .source = "", .validate = ""};
         v.text = setting_value(n->key, n, file, a, e);
-        if (v.text == NULL || (n->kind == YAML_MAPPING && !read_evidence(&v, n->key, n, true, e)))
+        if (v.text == NULL || (n->kind == NODE_MAP && !read_evidence(&v, n->key, n, true, e)))
             return false;
         m->published[i] = (struct machine_published){.name = n->key, .value = v};
         if (i == m->npublished) m->npublished++;
@@ -193,9 +193,9 @@ static bool read_published(struct machine_file *m, const struct yaml_node *list,
     return true;
 }
 
-static bool check_version(const struct yaml_node *root, const char *file, struct err *e)
+static bool check_version(const struct node *root, const char *file, struct err *e)
 {
-    const struct yaml_node *n = yaml_node_child(root, "schema_version");
+    const struct node *n = document_find(root, "schema_version");
     if (n == NULL) return err_set_at(e, ERR_DATA, file, 1,
                                      "schema_version is missing; expected 'schema_version: 1'");
     if (n->text != NULL && strcmp(n->text, "1") == 0) return true;
@@ -204,7 +204,7 @@ static bool check_version(const struct yaml_node *root, const char *file, struct
                       n->text != NULL ? n->text : "");
 }
 
-static bool read_title(struct machine_file *m, const struct yaml_node *n, const char *file,
+static bool read_title(struct machine_file *m, const struct node *n, const char *file,
                        struct arena *a, struct err *e)
 {
     int row = field_find(&machine_table, "title");
@@ -218,13 +218,13 @@ static bool read_title(struct machine_file *m, const struct yaml_node *n, const 
     return true;
 }
 
-static bool read_tree(struct reader *r, struct yaml_node *root, struct arena *a, struct err *e)
+static bool read_tree(struct reader *r, struct node *root, struct arena *a, struct err *e)
 {
     static const char *const known[] = {"schema_version", "base"};
-    struct yaml_node rest = *root, **tail = &rest.child;
+    struct node rest = *root, **tail = &rest.child;
     if (!check_version(root, r->path, e)) return false;
     rest.child = NULL;
-    for (struct yaml_node *n = root->child, *next; n != NULL; n = next) {
+    for (struct node *n = root->child, *next; n != NULL; n = next) {
         next = n->next;
         bool ok = true;
         if (strcmp(n->key, known[0]) == 0 || strcmp(n->key, known[1]) == 0)
@@ -249,10 +249,10 @@ static bool read_chain(struct machine_file *m, const char *path, const char **ch
                               data_dir_stem(path, a));
     if (depth == MAX_BASES)
         return err_set_at(e, ERR_DATA, path, 0, "a chain of more than %d base files", depth);
-    struct yaml_node *root = yaml_tree_read(path, a, e);
+    struct node *root = document_read_settings(path, a, e);
     if (root == NULL) return false;
     chain[depth] = path;
-    const struct yaml_node *base = yaml_node_child(root, "base");
+    const struct node *base = document_find(root, "base");
     if (base != NULL) {
         if (base->text == NULL)
             return err_set_at(e, ERR_DATA, path, base->line, "base: expected a machine's name");

@@ -111,7 +111,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
         plan_free(&p);
         return made;
     }
-    struct yaml_node *root = yaml_tree_read(path, p.arena, e);
+    struct node *root = document_read_settings(path, p.arena, e);
     bool fine = root != NULL;
     if (fine && file_kind_of_tree(root) == FILE_MACHINE) {
         struct text as_path = {0};
@@ -207,10 +207,10 @@ static const char *title_of(const char *what, const char *name, struct arena *a)
     struct err e;
     err_clear(&e);
     const char *path = data_dir_find(what, name, NULL, a, &e);
-    struct yaml_node *root = path != NULL ? yaml_tree_read(path, a, &e) : NULL;
-    const struct yaml_node *n = NULL;
+    struct node *root = path != NULL ? document_read_settings(path, a, &e) : NULL;
+    const struct node *n = NULL;
     if (root != NULL)
-        n = yaml_node_child(root, strcmp(what, "machines") == 0 ? "title" : "question");
+        n = document_find(root, strcmp(what, "machines") == 0 ? "title" : "question");
     if (n != NULL && n->text != NULL) return n->text;
     return root != NULL ? "" : arena_text(a, e.text);
 }

@@ -47,14 +47,14 @@ bool program_file_is(const char *name)
     return is_elf(name);
 }
 
-struct yaml_node *program_file_scenario(const char *name, struct arena *a, struct err *e)
+struct node *program_file_scenario(const char *name, struct arena *a, struct err *e)
 {
     /* A quoted name of YAML: a quote in it is doubled. */
     struct text t = {0};
     text_add(&t, "schema_version: 1\nmachine: t3e-300\nranks: [1, 2, 4, 8, 16]\nprogram: '");
     for (const char *s = name; *s != '\0'; s++) text_add(&t, *s == '\'' ? "''" : "%c", *s);
     text_add(&t, "'\n");
-    struct yaml_node *root = yaml_tree_parse(t.s, t.length, name, a, e);
+    struct node *root = document_parse_settings(t.s, t.length, name, a, e);
     text_free(&t);
     return root;
 }
@@ -125,23 +125,23 @@ static bool add_program(struct collection *x, const char *name, bool typed, int 
 }
 
 /* All names below a node that says which program: a scalar, a list, a mapping with `file`. */
-static bool add_names(struct collection *x, const struct yaml_node *n)
+static bool add_names(struct collection *x, const struct node *n)
 {
-    if (n->kind == YAML_SCALAR)
+    if (n->kind == NODE_TEXT)
         return n->text[0] == '\0' || add_program(x, n->text, x->scenario->typed, n->line);
-    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
-        if ((n->kind == YAML_SEQUENCE || strcmp(c->key, "file") == 0) && !add_names(x, c))
+    for (const struct node *c = n->child; c != NULL; c = c->next)
+        if ((n->kind == NODE_LIST || strcmp(c->key, "file") == 0) && !add_names(x, c))
             return false;
     return true;
 }
 
 /* Wherever in the tree it may stand: at the top, in a sweep, in a variant. */
-static bool add_tree(struct collection *x, const struct yaml_node *n)
+static bool add_tree(struct collection *x, const struct node *n)
 {
     const bool names =
         n->key != NULL && (strcmp(n->key, "program") == 0 || strcmp(n->key, "program.file") == 0);
     if (names) return add_names(x, n);
-    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
+    for (const struct node *c = n->child; c != NULL; c = c->next)
         if (!add_tree(x, c)) return false;
     return true;
 }
@@ -155,7 +155,7 @@ static const char *set_names(const char *set)
     return NULL;
 }
 
-bool program_file_collect(struct scenario *s, struct yaml_node *root, const struct plan_options *o,
+bool program_file_collect(struct scenario *s, struct node *root, const struct plan_options *o,
                           struct arena *a, struct err *e)
 {
     static const struct plan_options none;
@@ -205,23 +205,23 @@ const char *program_file_key(const struct scenario *s, const char *key, struct a
     return full;
 }
 
-static void rename_keys(const struct scenario *s, struct yaml_node *mapping, struct arena *a)
+static void rename_keys(const struct scenario *s, struct node *mapping, struct arena *a)
 {
-    for (struct yaml_node *n = mapping->child; n != NULL; n = n->next)
+    for (struct node *n = mapping->child; n != NULL; n = n->next)
         if (n->key != NULL) n->key = program_file_key(s, n->key, a);
 }
 
-void program_file_rename(const struct scenario *s, struct yaml_node *root, struct arena *a)
+void program_file_rename(const struct scenario *s, struct node *root, struct arena *a)
 {
     if (s->nprogram == 0) return;
     rename_keys(s, root, a);
-    struct yaml_node *sweep = yaml_node_child(root, "sweep");
+    struct node *sweep = document_find(root, "sweep");
     if (sweep != NULL) rename_keys(s, sweep, a);
     /* The points of `variant` are mappings of settings, at the top or in a sweep. */
-    struct yaml_node *at[2] = {yaml_node_child(root, "variant"),
-                               sweep != NULL ? yaml_node_child(sweep, "variant") : NULL};
+    struct node *at[2] = {document_find(root, "variant"),
+                               sweep != NULL ? document_find(sweep, "variant") : NULL};
     for (int i = 0; i < 2; i++)
-        for (struct yaml_node *n = at[i] != NULL ? at[i]->child : NULL; n != NULL; n = n->next)
+        for (struct node *n = at[i] != NULL ? at[i]->child : NULL; n != NULL; n = n->next)
             rename_keys(s, n, a);
 }
 

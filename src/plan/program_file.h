@@ -17,7 +17,7 @@ bool program_file_is(const char *name);
 
 /* program_file_scenario: the scenario that program `name` makes by itself: on machine t3e-300, with
  * 1 to 16 ranks. NULL with ERR_DATA. */
-struct yaml_node *program_file_scenario(const char *name, struct arena *a, struct err *e);
+struct node *program_file_scenario(const char *name, struct arena *a, struct err *e);
 
 /* program_file_entitle: name and question of such a scenario, from its program. */
 void program_file_entitle(struct scenario *s, struct arena *a);
@@ -25,13 +25,13 @@ void program_file_entitle(struct scenario *s, struct arena *a);
 /* program_file_collect: fill s->program with all programs that `root` and --set name; s->path and
  * dir are known. False with ERR_NO_INPUT, ERR_DATA (not a program, errors in its source, outside
  * the folder). */
-bool program_file_collect(struct scenario *s, struct yaml_node *root, const struct plan_options *o,
+bool program_file_collect(struct scenario *s, struct node *root, const struct plan_options *o,
                           struct arena *a, struct err *e);
 
 /* program_file_key: the full key of `key`, in `a`, where a program of the scenario declares it;
  * else `key`. program_file_rename: the same for all keys of `root` where settings stand. */
 const char *program_file_key(const struct scenario *s, const char *key, struct arena *a);
-void program_file_rename(const struct scenario *s, struct yaml_node *root, struct arena *a);
+void program_file_rename(const struct scenario *s, struct node *root, struct arena *a);
 
 /* program_file_unknown: refuse `key` as setting_unknown does, with parameters among what may have
  * been meant. Returns false. */

@@ -51,7 +51,7 @@ static bool add_setting(struct setting_list *list, const char *key, const char *
 
 /* ---- axes */
 
-static bool add_leaf(void *context, const char *key, const struct yaml_node *leaf, const char *file,
+static bool add_leaf(void *context, const char *key, const struct node *leaf, const char *file,
                      struct arena *a, struct err *e)
 {
     const char *text = setting_value(key, leaf, file, a, e);
@@ -61,10 +61,10 @@ static bool add_leaf(void *context, const char *key, const struct yaml_node *lea
 /* One point: a value of the axis's own key, or a mapping of settings below the group that the axis
  * names. */
 static bool read_point(struct setting_list *point, const char *key, const char *group,
-                       const struct yaml_node *node, const char *file, struct arena *a,
+                       const struct node *node, const char *file, struct arena *a,
                        struct err *e)
 {
-    if (node->kind == YAML_MAPPING) {
+    if (node->kind == NODE_MAP) {
         if (group == NULL)
             return err_set_at(e, ERR_DATA, file, node->line,
                               "sweep: '%s' takes values, not settings", key);
@@ -73,7 +73,7 @@ static bool read_point(struct setting_list *point, const char *key, const char *
     if (key == NULL)
         return err_set_at(e, ERR_DATA, file, node->line,
                           "sweep: each variant is a mapping such as {kernel.solver: cr}");
-    if (node->kind == YAML_SEQUENCE && !is_list_field(key))
+    if (node->kind == NODE_LIST && !is_list_field(key))
         return err_set_at(e, ERR_DATA, file, node->line, "%s: a list within a list", key);
     const char *text = setting_value(key, node, file, a, e);
     return text != NULL && add_setting(point, key, text, file, node->line, a, e);
@@ -90,26 +90,26 @@ static const char *axis_group(const char *name)
     return group ? name : NULL;
 }
 
-static bool add_axis(struct scenario *s, const char *name, const struct yaml_node *list,
+static bool add_axis(struct scenario *s, const char *name, const struct node *list,
                      struct arena *a, struct err *e)
 {
     const char *group = axis_group(name), *full = setting_key(name),
                *key = setting_is_key(full) ? full : NULL;
     if (key == NULL && group == NULL) return program_file_unknown(s, name, s->path, list->line, e);
-    if (list->kind != YAML_SEQUENCE || list->nchild == 0)
+    if (list->kind != NODE_LIST || list->count == 0)
         return err_set_at(e, ERR_DATA, s->path, list->line,
                           "sweep: '%s' needs a list such as [2, 4, 8]", name);
     for (int i = 0; i < s->naxis; i++)
         if (strcmp(s->axis[i].key, full) == 0)
             return err_set_at(e, ERR_DATA, s->path, list->line,
                               "duplicate key '%s'; first swept in line %d", full, s->axis[i].line);
-    if (s->naxis == SCENARIO_MAX_AXES || list->nchild > SCENARIO_MAX_POINTS)
+    if (s->naxis == SCENARIO_MAX_AXES || list->count > SCENARIO_MAX_POINTS)
         return err_set_at(e, ERR_DATA, s->path, list->line, "too large a sweep");
     struct axis *x = &s->axis[s->naxis++];
-    *x = (struct axis){.key = full, .line = list->line, .npoint = list->nchild};
-    x->point = TAKE(a, list->nchild, struct setting_list);
+    *x = (struct axis){.key = full, .line = list->line, .npoint = list->count};
+    x->point = TAKE(a, list->count, struct setting_list);
     int i = 0;
-    for (const struct yaml_node *n = list->child; n != NULL; n = n->next)
+    for (const struct node *n = list->child; n != NULL; n = n->next)
         if (!read_point(&x->point[i++], key, group, n, s->path, a, e)) return false;
     return true;
 }
@@ -122,26 +122,26 @@ struct top {
     struct err *err;
 };
 
-static bool refuse(struct top *t, const struct yaml_node *n, const char *expected)
+static bool refuse(struct top *t, const struct node *n, const char *expected)
 {
     return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "%s: '%.80s': %s", n->key,
                       n->text != NULL ? n->text : "a list or mapping", expected);
 }
 
-static bool read_version(struct top *t, const struct yaml_node *n)
+static bool read_version(struct top *t, const struct node *n)
 {
     return (n->text != NULL && strcmp(n->text, "1") == 0) ||
            refuse(t, n, "this program reads version 1");
 }
 
-static bool read_question(struct top *t, const struct yaml_node *n)
+static bool read_question(struct top *t, const struct node *n)
 {
     if (n->text == NULL) return refuse(t, n, "expected one line of text");
     t->scenario->question = n->text;
     return true;
 }
 
-static bool read_repetitions(struct top *t, const struct yaml_node *n)
+static bool read_repetitions(struct top *t, const struct node *n)
 {
     static const struct field count = {
         .key = "repetitions", .kind = FIELD_INT, .min = 1, .max = 100000};
@@ -152,12 +152,12 @@ static bool read_repetitions(struct top *t, const struct yaml_node *n)
     return refuse(t, n, why);
 }
 
-static bool read_figures(struct top *t, const struct yaml_node *n)
+static bool read_figures(struct top *t, const struct node *n)
 {
     struct scenario *s = t->scenario;
-    if (n->kind != YAML_SEQUENCE) return refuse(t, n, "expected a list such as [fig5, fig6]");
-    s->figure = TAKE(t->arena, n->nchild + 1, const char *);
-    for (const struct yaml_node *f = n->child; f != NULL; f = f->next) {
+    if (n->kind != NODE_LIST) return refuse(t, n, "expected a list such as [fig5, fig6]");
+    s->figure = TAKE(t->arena, n->count + 1, const char *);
+    for (const struct node *f = n->child; f != NULL; f = f->next) {
         if (f->text == NULL || f->text[0] == '\0')
             return refuse(t, n, "expected a list such as [fig5, fig6]");
         if (!data_dir_has_figure(f->text, s->path, f->line, t->arena, t->err)) return false;
@@ -166,7 +166,7 @@ static bool read_figures(struct top *t, const struct yaml_node *n)
     return true;
 }
 
-static bool read_condition(struct top *t, const struct yaml_node *n, const char *text)
+static bool read_condition(struct top *t, const struct node *n, const char *text)
 {
     if (text != NULL && strcmp(text, "n >= ranks") == 0)
         return t->scenario->only_bodies_for_all = true;
@@ -175,23 +175,23 @@ static bool read_condition(struct top *t, const struct yaml_node *n, const char 
     return refuse(t, n, "expected 'n >= ranks' or 'ranks <= processors', or a list of both");
 }
 
-static bool read_only(struct top *t, const struct yaml_node *n)
+static bool read_only(struct top *t, const struct node *n)
 {
-    if (n->kind == YAML_SCALAR) return read_condition(t, n, n->text);
-    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
+    if (n->kind == NODE_TEXT) return read_condition(t, n, n->text);
+    for (const struct node *c = n->child; c != NULL; c = c->next)
         if (!read_condition(t, n, c->text)) return false;
-    return n->kind == YAML_SEQUENCE || refuse(t, n, "expected a list of conditions");
+    return n->kind == NODE_LIST || refuse(t, n, "expected a list of conditions");
 }
 
-static bool read_sweep(struct top *t, const struct yaml_node *n)
+static bool read_sweep(struct top *t, const struct node *n)
 {
-    if (n->kind != YAML_MAPPING) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
-    for (const struct yaml_node *c = n->child; c != NULL; c = c->next)
+    if (n->kind != NODE_MAP) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
+    for (const struct node *c = n->child; c != NULL; c = c->next)
         if (!add_axis(t->scenario, c->key, c, t->arena, t->err)) return false;
     return true;
 }
 
-typedef bool top_fn(struct top *t, const struct yaml_node *n);
+typedef bool top_fn(struct top *t, const struct node *n);
 static const struct top_key {
     const char *name;
     top_fn *read;
@@ -202,7 +202,7 @@ static const struct top_key {
 enum { NTOP = sizeof top_keys / sizeof *top_keys };
 
 /* A key that is no setting: the nearest of this file's own keys before any other. */
-static bool unknown_top(struct top *t, const struct yaml_node *n)
+static bool unknown_top(struct top *t, const struct node *n)
 {
     const char *names[NTOP + 9] = {"machine", "model",  "kernel", "ranks",   "seed",
                                    "record",  "n",      "n_over_p", "program"};
@@ -214,19 +214,19 @@ static bool unknown_top(struct top *t, const struct yaml_node *n)
                       "unknown key '%.120s'; did you mean '%s'?", n->key, near);
 }
 
-static bool read_setting(struct top *t, const struct yaml_node *n)
+static bool read_setting(struct top *t, const struct node *n)
 {
     struct scenario *s = t->scenario;
     const char *key = setting_key(n->key);
-    struct yaml_node only = *n, parent = {.kind = YAML_MAPPING, .nchild = 1, .child = &only};
+    struct node only = *n, parent = {.kind = NODE_MAP, .count = 1, .child = &only};
     if (!setting_is_key(key) && !setting_is_group(n->key)) return unknown_top(t, n);
-    if (n->kind == YAML_SEQUENCE && !is_list_field(key))
+    if (n->kind == NODE_LIST && !is_list_field(key))
         return add_axis(s, n->key, n, t->arena, t->err);
     only.next = NULL;
     return setting_walk(&parent, "", s->path, add_leaf, &s->base, t->arena, t->err);
 }
 
-static bool read_top(struct top *t, const struct yaml_node *n)
+static bool read_top(struct top *t, const struct node *n)
 {
     for (int i = 0; i < NTOP; i++)
         if (strcmp(n->key, top_keys[i].name) == 0) return top_keys[i].read(t, n);
@@ -272,13 +272,13 @@ static bool set_axis(struct scenario *s, const char *key, const char *list, int 
     err_clear(&why);
     char *line = TAKE(a, strlen(list) + 6, char);
     sprintf(line, list[0] == '[' ? "v: %s" : "v: [%s]", list);
-    struct yaml_node *root = yaml_tree_parse(line, strlen(line), "--set", a, &why);
+    struct node *root = document_parse_settings(line, strlen(line), "--set", a, &why);
     const char *path = s->path;
-    if (root == NULL || root->child->kind != YAML_SEQUENCE)
+    if (root == NULL || root->child->kind != NODE_LIST)
         return err_set_at(e, ERR_DATA, "--set", 0,
                           "%s: '%.80s' is not a list; write a sweep as %s=2,4,8", key, list,
                           key);
-    for (struct yaml_node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
+    for (struct node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
     root->child->line = 0;
     s->path = "--set";
     bool fine = add_axis(s, key, root->child, a, e);
@@ -322,7 +322,7 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     if (strcmp(name, "repetitions") == 0) {
         struct scenario named = {.path = "--set", .repetitions = s->repetitions};
         struct top t = {.scenario = &named, .arena = a, .err = e};
-        struct yaml_node n = {.key = name, .text = equals + 1};
+        struct node n = {.key = name, .text = equals + 1};
         bool fine = read_repetitions(&t, &n);
         s->repetitions = named.repetitions;
         return fine;
@@ -365,7 +365,7 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     return add_setting(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
 }
 
-bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *path,
+bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
                         const struct plan_options *o, struct arena *a, struct err *e)
 {
     struct top t = {.scenario = s, .arena = a, .err = e};
@@ -373,14 +373,14 @@ bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *
     s->typed = program_file_is(path);
     s->stem = data_dir_stem(path, a);
     s->dir = data_dir_of(path, a);
-    if (yaml_node_child(root, "schema_version") == NULL)
+    if (document_find(root, "schema_version") == NULL)
         return err_set_at(e, ERR_DATA, path, 1,
                           "schema_version is missing; expected 'schema_version: 1'");
     /* What programs declare are keys, too. */
     if (!program_file_collect(s, root, o, a, e)) return false;
     program_file_rename(s, root, a);
     if (s->typed) program_file_entitle(s, a);
-    for (const struct yaml_node *n = root->child; n != NULL; n = n->next)
+    for (const struct node *n = root->child; n != NULL; n = n->next)
         if (!read_top(&t, n)) return false;
     return check_axes(s, e) && read_options(s, o, a, e);
 }
@@ -390,7 +390,7 @@ bool scenario_file_read(struct scenario *s, const char *name, const struct plan_
 {
     const bool program = program_file_is(name);
     const char *path = program ? name : data_dir_find("scenarios", name, NULL, a, e);
-    struct yaml_node *root = NULL;
-    if (path != NULL) root = program ? program_file_scenario(name, a, e) : yaml_tree_read(path, a, e);
+    struct node *root = NULL;
+    if (path != NULL) root = program ? program_file_scenario(name, a, e) : document_read_settings(path, a, e);
     return root != NULL && scenario_file_tree(s, root, path, o, a, e);
 }

@@ -46,7 +46,7 @@ bool scenario_file_read(struct scenario *s, const char *name, const struct plan_
                         struct err *e);
 
 /* scenario_file_tree: the same from a tree already read, whose keys may be renamed. */
-bool scenario_file_tree(struct scenario *s, struct yaml_node *root, const char *path,
+bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
                         const struct plan_options *o, struct arena *a, struct err *e);
 
 #endif

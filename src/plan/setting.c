@@ -180,14 +180,14 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     return false;
 }
 
-const char *setting_value(const char *key, const struct yaml_node *leaf, const char *file,
+const char *setting_value(const char *key, const struct node *leaf, const char *file,
                           struct arena *a, struct err *e)
 {
-    const struct yaml_node *value = leaf;
-    if (leaf->kind == YAML_MAPPING) value = yaml_node_child(leaf, "value");
-    bool maps = value != NULL && value->child != NULL && value->child->kind == YAML_MAPPING;
-    if (maps && value->kind == YAML_SEQUENCE && setting_takes_maps(key)) {
-        const char *text = yaml_node_flow_maps(value, a);
+    const struct node *value = leaf;
+    if (leaf->kind == NODE_MAP) value = document_find(leaf, "value");
+    bool maps = value != NULL && value->child != NULL && value->child->kind == NODE_MAP;
+    if (maps && value->kind == NODE_LIST && setting_takes_maps(key)) {
+        const char *text = document_flow_maps(value, a);
         if (text == NULL)
             err_set_at(
                 e, ERR_DATA, file, leaf->line,
@@ -195,28 +195,28 @@ const char *setting_value(const char *key, const struct yaml_node *leaf, const c
                 key);
         return text;
     }
-    if (value != NULL && value->kind != YAML_MAPPING) return yaml_node_flow(value, key, file, a, e);
+    if (value != NULL && value->kind != NODE_MAP) return document_flow(value, key, file, a, e);
     err_set_at(e, ERR_DATA, file, leaf->line,
                "%s: expected a value or {value: ..., class: ..., source: ...}", key);
     return NULL;
 }
 
-bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file,
+bool setting_walk(const struct node *mapping, const char *prefix, const char *file,
                   setting_leaf_fn *leaf, void *context, struct arena *a, struct err *e)
 {
     char key[KEY_LENGTH];
-    for (const struct yaml_node *n = mapping->child; n != NULL; n = n->next) {
+    for (const struct node *n = mapping->child; n != NULL; n = n->next) {
         int length =
             snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
         if (length >= (int)sizeof key) return setting_unknown(prefix, n->key, file, n->line, e);
         bool may_be_short =
-            prefix[0] == '\0' && (n->kind != YAML_MAPPING || !setting_is_group(key));
+            prefix[0] == '\0' && (n->kind != NODE_MAP || !setting_is_group(key));
         const char *full = may_be_short ? setting_key(key) : key;
         bool ok;
         if (setting_is_key(full))
             ok = leaf(context, full == key ? arena_text(a, key) : full, n, file, a, e);
         else if (!setting_is_group(key)) ok = setting_unknown(prefix, n->key, file, n->line, e);
-        else if (n->kind != YAML_MAPPING)
+        else if (n->kind != NODE_MAP)
             ok = err_set_at(e, ERR_DATA, file, n->line,
                             "'%s' is a group of settings; expected keys below it", key);
         else ok = setting_walk(n, key, file, leaf, context, a, e);

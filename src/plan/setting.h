@@ -6,7 +6,7 @@
 
 #include "base/arena.h"
 #include "base/err.h"
-#include "plan/yaml_tree.h"
+#include "io/document.h"
 #include "spec/field.h"
 
 enum setting_kind {
@@ -52,16 +52,16 @@ void setting_apply(const struct setting *s, struct run_spec *run, struct arena *
 bool setting_unknown(const char *group, const char *key, const char *file, int line, struct err *e);
 
 /* Called for every value below a mapping with its full key. */
-typedef bool setting_leaf_fn(void *context, const char *key, const struct yaml_node *leaf, const char *file,
+typedef bool setting_leaf_fn(void *context, const char *key, const struct node *leaf, const char *file,
                              struct arena *a, struct err *e);
 
 /* setting_walk: visit every value below `mapping`, whose keys continue `prefix` ("machine"); unknown keys are refused.
  */
-bool setting_walk(const struct yaml_node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,
+bool setting_walk(const struct node *mapping, const char *prefix, const char *file, setting_leaf_fn *leaf,
                   void *context, struct arena *a, struct err *e);
 
 /* setting_value: the text of a value given plainly, as a list, or as {value: ...}; NULL with ERR_DATA. */
-const char *setting_value(const char *key, const struct yaml_node *leaf, const char *file, struct arena *a,
+const char *setting_value(const char *key, const struct node *leaf, const char *file, struct arena *a,
                           struct err *e);
 
 #endif

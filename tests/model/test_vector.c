@@ -64,11 +64,13 @@ static void bad_documents_are_refused_at_their_line(void **state)
     (void)state;
     static const struct { const char *text; int line; const char *why; } bad[] = {
         {"", 1, "empty"},
-        {"{\"a\": 1,\n\"a\": 2}", 2, "given twice"},
+        {"{\"a\": 1,\n\"a\": 2}", 2, "duplicate key 'a'; first given in line 1"},
         {"{\"a\": [1, 2\n", 2, ""},
-        {"{\"a\": &x 1,\n \"b\": *x}", 2, "aliases"},
-        {"{\"a\": 1}\n---\n{\"b\": 2}\n", 3, "more than one document"},
-        {"{[1]: 2}", 1, "cannot be a key"},
+        {"{\"a\": &x 1}", 1, "anchors"},
+        {"{\"a\": 1,\n \"b\": *x}", 2, "aliases"},
+        {"{\"a\": 1,\n \"b\": !!float 2}", 2, "tags"},
+        {"{\"a\": 1}\n---\n{\"b\": 2}\n", 2, "a second document"},
+        {"{[1]: 2}", 1, "a key has to be a name"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct fixture f = fixture_make(bad[i].text);
