@@ -1,13 +1,14 @@
 /* document.h - a JSON or YAML file as a tree of nodes that know their lines.
  *
- * One document of mappings, lists and scalars. JSON is read as the subset of YAML that it is. Anchors,
- * aliases, tags, several documents, duplicate keys and files beyond the limits are refused, so that
- * reading costs time and memory in proportion to the file. Two ways to read the same tree:
+ * One document of mappings, lists and scalars. JSON is read as the subset of YAML that it is.
+ * Anchors, aliases, tags, several documents, duplicate keys and files beyond the limits are
+ * refused, so that reading costs time and memory in proportion to the file. Two ways to read the
+ * same tree:
  *
  *   data      files of programs: numbers are converted by strtod, so that a double written with 17
  *             digits comes back bit by bit; up to 512 MiB
- *   settings  files of people: every scalar stays the text that was written, units and all; the root
- *             is a mapping; up to 4 MiB */
+ *   settings  files of people: every scalar stays the text that was written, units and all; the
+ * root is a mapping; up to 4 MiB */
 #ifndef IO_DOCUMENT_H
 #define IO_DOCUMENT_H
 
@@ -35,15 +36,16 @@ struct node {
 
 /* document_read: the tree of the data file `path`, in arena `a`.
  *
- *   Returns NULL with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): syntax, a repeated key, more
- *   than 64 levels, 4096 keys in a mapping or 512 MiB. */
+ *   Returns NULL with ERR_NO_INPUT, ERR_IO or ERR_DATA (file and line): syntax, a repeated key,
+ * more than 64 levels, 4096 keys in a mapping or 512 MiB. */
 struct node *document_read(const char *path, struct arena *a, struct err *e);
 
-/* document_read_settings: the same of a file of settings; at most 17 levels, 2000 keys in a mapping,
- * 400000 nodes, 4 MiB. document_parse_settings: from memory; `path` is what messages call it. */
+/* document_read_settings: the same of a file of settings; at most 17 levels, 2000 keys in a
+ * mapping, 400000 nodes, 4 MiB. document_parse_settings: from memory; `path` is what messages call
+ * it. */
 struct node *document_read_settings(const char *path, struct arena *a, struct err *e);
-struct node *document_parse_settings(const char *data, size_t size, const char *path, struct arena *a,
-                                     struct err *e);
+struct node *document_parse_settings(const char *data, size_t size, const char *path,
+                                     struct arena *a, struct err *e);
 
 /* document_find: the child of `map` called `key`, or NULL; also when `map` is NULL or no map. */
 struct node *document_find(const struct node *map, const char *key);
@@ -67,8 +69,8 @@ int64_t document_count(const struct node *node);
 
 /* document_flat: all n numbers of the nested lists under `node`, in the order written, into x (n).
  * Returns false with ERR_DATA when there are more or fewer, or one is no finite number. */
-bool document_flat(const struct node *node, const char *what, const char *path, double *x, int64_t n,
-                   struct err *e);
+bool document_flat(const struct node *node, const char *what, const char *path, double *x,
+                   int64_t n, struct err *e);
 
 /* document_integer: the integer `key` of `map` in lo .. hi into *i. Returns false with ERR_DATA. */
 bool document_integer(const struct node *map, const char *key, const char *path, int lo, int hi,
@@ -77,11 +79,11 @@ bool document_integer(const struct node *map, const char *key, const char *path,
 /* document_text: the text `key` of `map`, "" when it is missing or no text. */
 const char *document_text(const struct node *map, const char *key);
 
-/* document_flow: of settings: a scalar's text, or a list of scalars and lists as "[a, b, [c, d]]", in
- * `a`. When there is a mapping in it, returns NULL with ERR_DATA at its line; `key` and `file` are
- * what the message calls the place. */
-const char *document_flow(const struct node *node, const char *key, const char *file, struct arena *a,
-                          struct err *e);
+/* document_flow: of settings: a scalar's text, or a list of scalars and lists as "[a, b, [c, d]]",
+ * in `a`. When there is a mapping in it, returns NULL with ERR_DATA at its line; `key` and `file`
+ * are what the message calls the place. */
+const char *document_flow(const struct node *node, const char *key, const char *file,
+                          struct arena *a, struct err *e);
 
 /* document_flow_maps: the same of a list of mappings of scalars: "[{a: 1, b: 2}, {a: 3}]"; NULL for
  * others. */
