@@ -1,4 +1,7 @@
-/* arguments.c - see arguments.h. */
+/* arguments.c - see arguments.h.
+ *
+ * People mix up what they have: a scenario where a database belongs, or both in the wrong order.
+ * Each of these has a message that says what was given and writes the right command. */
 #include "app/arguments.h"
 
 #include <stdlib.h>
@@ -17,6 +20,7 @@ static int database_behind(const struct common *c)
     return at;
 }
 
+/* The command as it should have been written, with quotes where a shell needs them. */
 static void say_order(const struct common *c, int at, struct err *e)
 {
     struct text t = {0};
@@ -36,6 +40,7 @@ static struct store *with_remark(const struct common *c, struct store *s)
     return s;
 }
 
+/* For writing: made where there is none, upgraded where it is older. */
 struct store *arguments_store(const struct common *c, const char *path, struct err *e)
 {
     return with_remark(c, store_open(path, STORE_WRITE, e));
@@ -46,6 +51,8 @@ struct store *arguments_database(const struct common *c, const char *otherwise, 
     return with_remark(c, arguments_look(c, otherwise, e));
 }
 
+/* For reading. Only when it cannot be opened it is asked what else the argument may be: that
+ * reads files. */
 struct store *arguments_look(const struct common *c, const char *otherwise, struct err *e)
 {
     const char *path = c->narg > 0 ? c->arg[0] : otherwise;
@@ -58,6 +65,7 @@ struct store *arguments_look(const struct common *c, const char *otherwise, stru
     return NULL;
 }
 
+/* Digits only: "12x" is no run, and neither is "-1". */
 bool arguments_run_number(const char *text, struct err *e)
 {
     char *end;

@@ -21,13 +21,14 @@ static const char doc[] =
     "\v--within X: the permitted relative error, such as 2% or 1e-6. The default is 2% for "
     "simulated times, 1e-10 for accelerations and 1e-6 for states.";
 
-/* "--within X": X is a number or a percentage; NULL: not asked for. */
+/* "--within X": X is a number or a percentage. Without the option *within stays as it is. */
 static bool read_within(const char *text, double *within, struct err *e)
 {
     char *end;
     if (!text) return true;
     *within = strtod(text, &end);
     bool number = end != text;
+    /* "2%" and "2 %" differ by the shell's word limits only: no blank is accepted. */
     if (strcmp(end, "%") == 0) *within /= 100, end++;
     if (!number || *end || !(*within > 0) || !isfinite(*within))
         return err_set(e, ERR_USAGE, "--within: '%s' is not a positive number such as 2%% or 1e-6",
@@ -35,6 +36,7 @@ static bool read_within(const char *text, double *within, struct err *e)
     return true;
 }
 
+/* Rows first, the figure from them: what is drawn is what is stored. */
 static bool keep_and_draw(const struct common *c, const struct accuracy_report *r, struct err *e)
 {
     struct store *s = arguments_store(c, c->database, e);
@@ -52,6 +54,8 @@ int cmd_accuracy(int argc, char **argv)
     struct common c;
     struct err e;
     err_clear(&e);
+    /* The option is taken before argp sees the rest; a wrong value is told after the verb's own
+     * errors. */
     double within = 0;
     bool ok = read_within(take_value(&argc, argv, "--within"), &within, &e);
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR, "SCENARIO", doc, 1, 1);
@@ -61,6 +65,8 @@ int cmd_accuracy(int argc, char **argv)
     struct accuracy_report r;
     ok = ok && plan_read(&p, c.arg[0], &o, &e) &&
          accuracy_measure(p.run, p.nrun, within, c.quiet, a, &r, &e);
+    /* People see the table before drawing, which takes a second; a document must be the last
+     * output. */
     if (ok && !c.json) accuracy_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);
     if (ok && c.json) accuracy_print_json(stdout, &r);

@@ -27,7 +27,7 @@ static const char doc[] =
     "(default 1), and compares every stored number that does not depend on this computer, bit by "
     "bit. Each contradiction is printed with its run and rule; the exit status is then 1.";
 
-/* The contradictions that were found, as an array. */
+/* The contradictions that were found, as an array; at most AUDIT_KEPT of them. */
 static void print_findings(struct json *j, const struct audit_report *r)
 {
     json_key(j, "findings");
@@ -42,8 +42,8 @@ static void print_findings(struct json *j, const struct audit_report *r)
     json_end(j);
 }
 
-/* The entry of a database that could be read: what common_error_json tells of any file, and what
- * was found. */
+/* The entry of a database that could be read: the keys that common_error_json has for any file,
+ * and what was found. Keys are in the order of the alphabet. */
 static void print_database(struct json *j, const char *file, const struct err *e,
                            const struct audit_report *r)
 {
@@ -61,8 +61,8 @@ static void print_database(struct json *j, const char *file, const struct err *e
     json_end(j);
 }
 
-/* Steps of the message software that go down: they may be meant, as where a protocol is switched
- * too late. */
+/* Steps of the message software that go down: a message that is faster than one a byte smaller.
+ * They may be meant, as where a protocol is switched too late, so this is a warning. */
 static void tell_steps_down(const char *file)
 {
     struct machine_spec m;
@@ -72,10 +72,12 @@ static void tell_steps_down(const char *file)
     struct text path = {0};
     err_clear(&e);
     text_add(&path, "%s%s", strchr(file, '/') == NULL ? "./" : "", file);
+    /* Only machine files have segments; of a scenario n is 0. */
     const int n = plan_machine(&m, path.s, NULL, a, NULL, NULL, &e)
                       ? software_segments(&m.software, list)
                       : 0;
     for (int i = 1; i < n; i++) {
+        /* The last size of one segment and the first of the next. */
         double below, at, size = (double)list[i].from;
         if (!probe_measure(&m, PROBE_ONE_WAY, size - 1, 0, &below, &e) ||
             !probe_measure(&m, PROBE_ONE_WAY, size, 0, &at, &e))
@@ -90,9 +92,11 @@ static void tell_steps_down(const char *file)
     arena_destroy(a);
 }
 
+/* Contradictions on the terminal; all are in the document. */
 enum { SHOWN = 50 };
 
-/* The first contradictions on stderr; which are an error when there is one. */
+/* The first contradictions on standard error. Any of them makes the file invalid: *e is set, and
+ * the return value false. */
 static bool tell_findings(const char *file, const struct audit_report *r, struct err *e)
 {
     const int n = r->nfinding < SHOWN ? (int)r->nfinding : SHOWN;
@@ -107,6 +111,7 @@ static bool tell_findings(const char *file, const struct audit_report *r, struct
                                        (long long)r->nfinding, (long long)r->nrun);
 }
 
+/* One line of a database in order, with how many of its runs were made again. */
 static void tell_database(const char *file, const struct audit_report *r)
 {
     printf("%s: ok: %lld runs, %d rules", file, (long long)r->nrun, r->nrule);
@@ -119,6 +124,7 @@ static void tell_database(const char *file, const struct audit_report *r)
 static bool check_database(const char *file, const struct audit_options *o, struct arena *a,
                            struct audit_report **report, struct err *e)
 {
+    /* The report has room for AUDIT_KEPT findings: too large for the stack. */
     struct audit_report *r = TAKE(a, 1, struct audit_report);
     struct store *s = store_open(file, STORE_READ, e);
     if (s && store_remark(s) && !o->quiet) fprintf(stderr, "mimdsim: %s\n", store_remark(s));
@@ -128,7 +134,8 @@ static bool check_database(const char *file, const struct audit_options *o, stru
     return ok && tell_findings(file, r, e);
 }
 
-/* One file of any kind; *report stays NULL where it is no database. */
+/* One file of any kind; *report stays NULL where it is no database. Returns whether it is valid;
+ * *e has the reason. */
 static bool check_file(const struct common *c, const char *file, const struct audit_options *audit,
                        struct arena *a, struct audit_report **report, struct err *e)
 {
@@ -139,6 +146,7 @@ static bool check_file(const struct common *c, const char *file, const struct au
         return fine;
     }
     const bool model = model_file_is(file);
+    /* Models are built, scenarios and machines read: nothing is run in either case. */
     const bool fine =
         model ? model_file_check(file, c->quiet ? NULL : stderr, e) : plan_check_file(file, &o, e);
     if (fine && !c->quiet && !c->json) printf("%s: ok\n", file);
@@ -146,7 +154,7 @@ static bool check_file(const struct common *c, const char *file, const struct au
     return fine;
 }
 
-/* --again K and --seed S. */
+/* --again K and --seed S. Returns false with *e set for what is no number. */
 static bool read_options(const char *again, const char *seed, struct audit_options *o,
                          struct err *e)
 {
@@ -160,6 +168,7 @@ static bool read_options(const char *again, const char *seed, struct audit_optio
     }
     if (!seed) return true;
     o->seed = strtoull(seed, &end, 10);
+    /* strtoull would take "-1" for a large number. */
     return (end != seed && !*end && *seed != '-') ||
            err_set(e, ERR_USAGE, "--seed: '%s' is not a whole number", seed);
 }

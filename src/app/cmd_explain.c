@@ -32,6 +32,7 @@ struct totals {
     double host_s, host_bytes;
 };
 
+/* Runs go one after the other: their times add up, but the memory needed is that of the largest. */
 static void add(struct totals *t, const struct run_estimate *r)
 {
     t->host_s += r->host_s;
@@ -47,7 +48,8 @@ struct kinds {
     } kind[MOST_KINDS];
 };
 
-/* The first run, when what its file makes idle is so in all runs; NULL otherwise. */
+/* The first run, when all runs have the same idle settings, which are then said once; NULL
+ * otherwise. */
 static const struct run_estimate *unused_by_all(const struct plan *p, const struct run_estimate *r)
 {
     for (int i = 1; i < p->nrun; i++) {
@@ -58,6 +60,8 @@ static const struct run_estimate *unused_by_all(const struct plan *p, const stru
     return p->nrun > 0 ? r : NULL;
 }
 
+/* Each kind of omission once, by what and why, with the number of runs that have it and its
+ * largest bound. To be freed. */
 static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r)
 {
     struct kinds *k = calloc(1, sizeof *k);
@@ -69,6 +73,7 @@ static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r
             while (at < k->n && (strcmp(k->kind[at].omission.what, o->what) != 0 ||
                                  strcmp(k->kind[at].omission.why, o->why) != 0))
                 at++;
+            /* More kinds than there is room for cannot be listed; the runs are the same. */
             if (at == MOST_KINDS) continue;
             if (at == k->n) k->kind[k->n++].omission = *o;
             k->kind[at].runs++;
@@ -88,6 +93,7 @@ static struct text choice_of(const struct run_spec *s, const char *key)
     return t;
 }
 
+/* One line of the table. Without a model there is no formulation. */
 static void print_run(const struct run_spec *s, const struct run_estimate *r)
 {
     struct text level = choice_of(s, "machine.network.level"),
@@ -99,6 +105,7 @@ static void print_run(const struct run_spec *s, const struct run_estimate *r)
     text_free(&form);
 }
 
+/* For people: the table, what is not decided yet, units, cost, then omissions and idle settings. */
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
     struct totals t = {0};
@@ -120,6 +127,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
+        /* Whether the omission can change a result at all comes first. */
         const struct omission *o = &k->kind[i].omission;
         printf("left out (");
         if (o->bound > 0) printf("bounded by %.1e", o->bound);
@@ -134,6 +142,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     for (int i = 0; all && i < all->nunused; i++) printf("unused: %s\n", all->unused[i]);
 }
 
+/* A text of the row or a constant as a column's value. */
 static void set_text(struct column_value *v, const char *s)
 {
     v->kind = VALUE_TEXT;
@@ -163,6 +172,7 @@ struct planned {
     const struct run_estimate *estimate;
 };
 
+/* The value of the setting named by `more`, as scenario files write it. */
 static void read_level(const struct column *c, const void *row, struct column_value *v)
 {
     struct text level = choice_of(((const struct planned *)row)->spec, c->more);
@@ -189,7 +199,7 @@ static const struct column planned_column[] = {
 };
 static const struct column_table planned_columns = COLUMNS(planned_column);
 
-/* `measured` NULL: without --measure. */
+/* The same as one document. `measured` NULL: without --measure. */
 static void print_json(const struct plan *p, const struct run_estimate *r,
                        const struct savings *measured)
 {
@@ -216,7 +226,7 @@ static void print_json(const struct plan *p, const struct run_estimate *r,
     json_finish(&j);
 }
 
-/* The rows and the picture of what was measured. */
+/* The rows and the picture of what was measured; a scenario without omissions has no picture. */
 static bool keep_and_draw(const struct common *c, const struct savings *all, struct err *e)
 {
     struct text figure = {0};
@@ -229,6 +239,7 @@ static bool keep_and_draw(const struct common *c, const struct savings *all, str
     return ok;
 }
 
+/* Points that cannot run have no estimate; they are counted and the first reason is told. */
 static bool estimate_all(const struct plan *p, struct run_estimate *r, struct err *e)
 {
     for (int i = 0; i < p->nrun; i++)
@@ -250,10 +261,12 @@ int cmd_explain(int argc, char **argv)
     struct plan_options o = common_plan(&c);
     bool ok = plan_read(&p, c.arg[0], &o, &e);
     struct run_estimate *r = calloc(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
+    /* calloc of 1: an empty plan still has an array. */
     ok = ok && r && estimate_all(&p, r, &e);
     struct savings *all = calloc(1, sizeof *all);
     CHECK(all);
     if (ok && !c.json) print_text(&p, r);
+    /* The table first: measuring takes seconds to minutes. */
     ok = ok && (!measure || savings_measure(&p, r, all, &e));
     if (ok && measure && !c.json) savings_print(stdout, all);
     ok = ok && (!measure || keep_and_draw(&c, all, &e));

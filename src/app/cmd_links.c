@@ -16,10 +16,13 @@ static const char doc[] =
     "into the network, an "
     "ejection port out of it.";
 
+/* The run in which messages waited longest for links: the one that a user most likely asks
+ * about. */
 static const char choose_sql[] =
     "SELECT run_id FROM link_load GROUP BY run_id ORDER BY sum(queue_ps) DESC, sum(busy_ps) DESC, "
     "run_id LIMIT 1";
 
+/* Whether the run that was asked for has any link loads. */
 static const char any_sql[] = "SELECT 1 FROM link_load WHERE run_id = CAST(?1 AS INTEGER) LIMIT 1";
 
 /* LIMIT in each half, so that SQLite keeps ten rows while it reads, and sorts no table. */
@@ -42,6 +45,7 @@ static const char links_sql[] =
     "queue_us"
     " FROM named l JOIN run r ON r.id = l.run_id ORDER BY l.port, place";
 
+/* One value is enough. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn, (void)name;
@@ -49,7 +53,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
     return false;
 }
 
-/* Nothing recorded is the user's mistake, not an empty table. */
+/* Nothing recorded is the user's mistake, not an empty table: the message says how to record it. */
 static bool print_links(const struct common *c, struct store *s, struct err *e)
 {
     const char *wanted = c->narg > 1 ? c->arg[1] : NULL;

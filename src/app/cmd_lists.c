@@ -36,7 +36,8 @@ static const char keys_of_files[] =
     "the machine that it "
     "starts from.\n\n";
 
-/* Every key with its meaning, in the order of the manual. */
+/* Every key with its meaning, in the order of the manual: Markdown for people, pairs for
+ * programs. */
 static void print_keys(const struct common *c)
 {
     if (!c->json) {
@@ -47,6 +48,7 @@ static void print_keys(const struct common *c)
     struct arena *a = arena_create();
     int ntable, n = 0, most = 0;
     const struct field_table *const *table = field_tables(&ntable);
+    /* Room for all keys of all tables. */
     for (int i = 0; i < ntable; i++) most += table[i]->nfield;
     const char **key = TAKE(a, most, const char *);
     const char **meaning = TAKE(a, most, const char *);
@@ -84,6 +86,7 @@ int cmd_scenarios(int argc, char **argv)
     return status;
 }
 
+/* Only the built-in ones: programs of your own are files. */
 int cmd_kernels(int argc, char **argv)
 {
     struct common c;

@@ -13,12 +13,14 @@ static const char doc[] =
     "Example: mimdsim machines t3e-300\n"
     "         mimdsim machines --compare t3e-300 t3e-300-mpt\n";
 
+/* A machine, and where each of its values comes from. */
 struct shown {
     struct machine_spec spec;
     struct origin *origin;
     int n;
 };
 
+/* Every machine with its title. */
 static int list_machines(const struct common *c, struct arena *a)
 {
     struct err e;
@@ -32,6 +34,8 @@ static int list_machines(const struct common *c, struct arena *a)
 
 #define ORIGIN(member) .offset = offsetof(struct origin, member)
 
+/* One value with its origin. Values are texts with units, as in the file; ranges are numbers in
+ * SI. */
 static const struct column origin_column[] = {
     {"evidence", COLUMN_STRING, ORIGIN(evidence), .doc = "P, PR, D or E"},
     {"file", COLUMN_STRING, ORIGIN(file), .doc = "where it is given"},
@@ -45,13 +49,14 @@ static const struct column origin_column[] = {
 };
 static const struct column_table origin_columns = COLUMNS(origin_column);
 
-/* A list of segments, one a line, follows its key. */
+/* A list of segments is long: one on a line, below its key. */
 static void print_segments(const char *list)
 {
     for (const char *s = strchr(list, '{'); s != NULL; s = strchr(s + 1, '{'))
         printf("    %.*s\n", (int)strcspn(s, "}") + 1, s);
 }
 
+/* Value, range, evidence and place in columns; the source, of any length, at the end. */
 static void print_origin(const struct origin *o, struct arena *a)
 {
     const char *slash = strrchr(o->file, '/');
@@ -67,6 +72,7 @@ static void print_origin(const struct origin *o, struct arena *a)
     if (segments) print_segments(o->value);
 }
 
+/* NULL: this machine has no such value. */
 static const struct origin *value_of(const struct shown *m, const char *key)
 {
     for (int i = 0; i < m->n; i++)
@@ -74,12 +80,14 @@ static const struct origin *value_of(const struct shown *m, const char *key)
     return NULL;
 }
 
-/* How far the rate of small dense code is known, and the LINPACK benchmark of order 100 with it: at
- * the least, the stated and the largest rate of the file [flop/s]. */
+/* How far the rate of small dense code is known, and with it the LINPACK benchmark of order 100:
+ * at the least, the stated and the largest rate of the file [flop/s]. A published LINPACK result
+ * is the one number of many old machines, so it is compared here. */
 struct sustained {
     double rate[3], linpack[3];
 };
 
+/* LINPACK's operations are counted once and priced three times. */
 static struct sustained sustained_rate(const struct shown *m)
 {
     const struct origin *o = value_of(m, "node.flop_rate");
@@ -95,6 +103,7 @@ static struct sustained sustained_rate(const struct shown *m)
     return s;
 }
 
+/* One line on top of a machine: the parameter that decides most predictions. */
 static void print_sustained(const struct shown *m)
 {
     struct sustained s = sustained_rate(m);
@@ -111,6 +120,7 @@ static void print_sustained(const struct shown *m)
     putchar('\n');
 }
 
+/* low, value and high; `sorted` has the keys in the order of the alphabet. */
 static void json_sustained(struct json *j, const struct shown *m)
 {
     static const char *const name[] = {"low", "value", "high"};
@@ -129,6 +139,7 @@ static void json_sustained(struct json *j, const struct shown *m)
     json_end(j);
 }
 
+/* A machine for people, or as one document. */
 static void show_one(const struct common *c, const struct shown *m, struct arena *a)
 {
     if (!c->json) {
@@ -151,8 +162,8 @@ static void show_one(const struct common *c, const struct shown *m, struct arena
     json_finish(&j);
 }
 
-/* A key with its two values, keys of the object sorted; a machine compared with one of its own name
- * is "NAME (2)". */
+/* A key with its two values, keys of the object sorted by name: the machines' names are keys, so
+ * their order depends on them. A machine compared with one of its own name is "NAME (2)". */
 static void difference_json(struct json *j, const char *key, const struct shown *x,
                             const char *xvalue, const struct shown *y, const char *yvalue)
 {
@@ -162,6 +173,7 @@ static void difference_json(struct json *j, const char *key, const struct shown 
     const char *name[] = {"key", x->spec.name, second}, *value[] = {key, xvalue, yvalue};
     bool swap = strcmp(name[1], name[2]) > 0;
     int order[] = {0, swap ? 2 : 1, swap ? 1 : 2};
+    /* Two steps of insertion are enough for three. */
     for (int i = 0; i < 2 && strcmp(name[order[i]], name[order[i + 1]]) > 0; i++) {
         int first = order[i];
         order[i] = order[i + 1];
@@ -174,6 +186,7 @@ static void difference_json(struct json *j, const char *key, const struct shown 
     json_end(j);
 }
 
+/* Only what differs; "-" stands for what one of them does not have. */
 static void print_difference(const struct common *c, struct json *j, const char *key,
                              const struct shown *m, const struct origin *const o[2])
 {
@@ -183,8 +196,8 @@ static void print_difference(const struct common *c, struct json *j, const char 
     else printf("%-36s %-26s %s\n", key, x, y);
 }
 
-/* Values are paired by their names: every machine has the keys of the table, and published figures
- * of its own. */
+/* Values are paired by their names: every machine has the keys of the table, and published
+ * figures of its own. The second pass finds those that only the second machine has. */
 static void compare(const struct common *c, const struct shown m[2])
 {
     struct json j = json_make(stdout);
@@ -202,6 +215,7 @@ static void compare(const struct common *c, const struct shown m[2])
     }
 }
 
+/* One machine is shown, two are compared; --set changes both. */
 static int show(const struct common *c, struct arena *a)
 {
     struct shown m[2] = {0};
@@ -222,6 +236,7 @@ int cmd_machines(int argc, char **argv)
     struct common c;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_COMPARE, "[NAME]\n--compare NAME OTHER", doc, 0,
                  2);
+    /* argp counts arguments without knowing --compare. */
     if (c.compare && c.narg != 2) {
         struct err e;
         err_clear(&e);

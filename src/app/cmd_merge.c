@@ -13,7 +13,7 @@ static const char doc[] =
     "Verdicts on claims and explanations are not merged, because they judge all runs together: make them again with "
     "`mimdsim claims`.";
 
-/* One line, or one row of the document, for a database that was merged. */
+/* One line, or one object, for a database that was merged. */
 static void tell(const struct common *c, struct json *j, const char *from, const struct store_merged *m)
 {
     if (c->json) {
@@ -41,6 +41,7 @@ int cmd_merge(int argc, char **argv)
     struct store *s = arguments_store(&c, c.arg[0], &e);
     bool ok = s != NULL;
     struct json j = json_make(stdout);
+    /* Databases are merged one by one; those before the first that is refused stay merged. */
     if (ok && c.json) json_array(&j);
     for (int i = 1; ok && i < c.narg; i++) {
         struct store_merged m;

@@ -25,6 +25,7 @@ static const char doc[] =
     "if a file has an unknown form "
     "or none of its cases can be run.";
 
+/* One word, or the nearest one in the message. */
 static bool level_of(const char *word, enum network_level *level, struct err *e)
 {
     const char *name[LEVELS];
@@ -39,6 +40,7 @@ static bool level_of(const char *word, enum network_level *level, struct err *e)
                           "there is no level '%s'; known: loggp, link, packet, flit, auto", word);
 }
 
+/* Several files are told apart by their names. */
 static void print_one(const struct netcheck *n, const struct common *c, double within,
                       struct json *j)
 {
@@ -51,7 +53,8 @@ static void print_one(const struct netcheck *n, const struct common *c, double w
     if (c->narg > 1) putchar('\n');
 }
 
-/* Every file is read before anything is printed, so that a wrong one leaves no half answer. */
+/* Every file is read and run before anything is printed, so that a wrong one leaves no half
+ * answer. */
 static bool check_files(const struct common *c, const bool *wanted, double within, bool *pass,
                         struct arena *a, struct err *e)
 {
@@ -59,6 +62,7 @@ static bool check_files(const struct common *c, const bool *wanted, double withi
     for (int i = 0; i < c->narg; i++)
         if (!netcheck_run(&n[i], c->arg[i], wanted, NULL, c->quiet, a, e)) return false;
     struct json j = json_make(stdout);
+    /* One file is one object, several are a list: a script for one file need not unpack a list. */
     if (c->json && c->narg > 1) json_array(&j);
     for (int i = 0; i < c->narg; i++) print_one(&n[i], c, within, &j);
     if (c->json && c->narg > 1) json_end(&j);
@@ -68,7 +72,7 @@ static bool check_files(const struct common *c, const bool *wanted, double withi
     return true;
 }
 
-/* "5" or "5%" as a fraction; -1 without the option */
+/* "5" or "5%" as a fraction; -1 without the option, which stands for the stated accuracy. */
 static bool within_of(const char *word, double *within, struct err *e)
 {
     char *end;
@@ -99,6 +103,7 @@ int cmd_netcheck(int argc, char **argv)
     enum network_level level = LEVEL_LOGGP;
     bool wanted[LEVELS] = {false};
     bool ok = within_of(limit, &within, &e) && (!c.level || level_of(c.level, &level, &e));
+    /* NULL, not an array of true: without --level every level is wanted. */
     if (ok && c.level) wanted[level] = true;
     struct arena *a = arena_create();
     ok = ok && check_files(&c, c.level ? wanted : NULL, within, &pass, a, &e);

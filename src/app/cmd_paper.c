@@ -30,6 +30,8 @@ static const char doc[] =
 
 enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
 
+/* What the stages of the study share. A stage returns false with *e set; what was stored before
+ * stays. */
 struct paper {
     const struct common *common;
     const char *database;
@@ -45,6 +47,7 @@ struct paper {
     struct plan plan[MOST_PLANS];
 };
 
+/* --set applies to all scenarios: a study with a changed machine. */
 static bool add_plan(struct paper *p, const char *name)
 {
     CHECK(p->nplan < MOST_PLANS);
@@ -52,7 +55,7 @@ static bool add_plan(struct paper *p, const char *name)
     return plan_read(&p->plan[p->nplan++], name, &o, p->e);
 }
 
-/* All scenarios of the paper, or those asked for. */
+/* All scenarios of the paper, by their names, or those asked for. */
 static bool add_plans(struct paper *p)
 {
     for (int i = 0; i < p->common->narg; i++)
@@ -69,6 +72,7 @@ static bool add_plans(struct paper *p)
     return ok;
 }
 
+/* A run that failed is stored with its reason and told; the others go on. */
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct paper *p = context;
@@ -79,7 +83,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     return store_put(p->store, spec, &p->order[spec - p->run], r, p->e);
 }
 
-/* The runs of all scenarios as one campaign. */
+/* The runs of all scenarios as one campaign, so that workers are busy until the last run of all,
+ * not of each scenario. */
 static bool run_plans(struct paper *p)
 {
     int n = 0, at = 0;
@@ -94,7 +99,9 @@ static bool run_plans(struct paper *p)
             p->order[at] = (struct run_order){0};
         }
     p->run = spec;
+    /* Levels first: they decide which run is the same as a stored one. */
     bool ok = levels_settle(p->store, spec, p->order, n, p->common->quiet, a, p->e);
+    /* What is stored is left out, but for --force. */
     for (int i = 0; i < n && ok; i++) skip[i] = !p->common->force && store_has(p->store, &spec[i]);
     ok = ok && run_campaign(spec, p->order, n, skip, p->common->jobs, p->common->quiet, keep_result,
                             p, p->e);
@@ -104,13 +111,15 @@ static bool run_plans(struct paper *p)
     return ok;
 }
 
+/* Figures with a section of their own in the report. */
 static bool has_section(const char *figure)
 {
     return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 ||
            strcmp(figure, "omissions") == 0 || strcmp(figure, "explain") == 0;
 }
 
-/* A figure that cannot be drawn for want of gnuplot has its CSV; the others go on. */
+/* One figure. Without gnuplot its CSV is there and the others go on; without rows a figure of a
+ * section was not measured, which is no error. */
 static bool draw(struct paper *p, const char *name)
 {
     struct err e;
@@ -125,6 +134,7 @@ static bool draw(struct paper *p, const char *name)
     return false;
 }
 
+/* Figures of the scenarios, then those of the whole study. */
 static bool draw_all(struct paper *p, struct progress *progress)
 {
     int done = 0;
@@ -147,6 +157,8 @@ static bool draw_figures(struct paper *p)
     return ok;
 }
 
+/* Samples before verdicts, which quote them; then the search for what would make failed claims
+ * hold. */
 static bool judge(struct paper *p)
 {
     return claims_read(&p->rules, plan_data_dir(), p->e) &&
@@ -155,7 +167,7 @@ static bool judge(struct paper *p)
            explain_claims(p->common, &p->rules, EXPLAIN_SEED, p->store, p->e);
 }
 
-/* All figures that the plans ask for, in order, and the claims. */
+/* All figures that the plans ask for, in the order of the report, after the chart of claims. */
 static int figure_names(const struct paper *p, const char **name)
 {
     int n = 0;
@@ -166,6 +178,7 @@ static int figure_names(const struct paper *p, const char **name)
     return n;
 }
 
+/* paper.md and paper.html beside the folder of figures. */
 static bool write_documents(struct paper *p, double began)
 {
     const char *name[MOST_FIGURES];
@@ -179,6 +192,7 @@ static bool write_documents(struct paper *p, double began)
                          .figures = p->common->directory,
                          .figure = name};
     d.nfigure = figure_names(p, name);
+    /* Parameters are those of the machines that were run. */
     bool ok = parameters_gather(p->plan, p->nplan, a, &d.parameter, &d.nparameter, p->e);
     d.host_s = host_seconds() - began;
     ok = ok && document_write(&d, p->e);
@@ -186,6 +200,7 @@ static bool write_documents(struct paper *p, double began)
     return ok;
 }
 
+/* Asked for by figure, only the runs and the figures are made: claims need all runs. */
 static bool answer(struct paper *p, double began)
 {
     bool whole = p->common->narg == 0;
@@ -219,6 +234,7 @@ int cmd_paper(int argc, char **argv)
         fprintf(stderr, "mimdsim: %d runs failed; each is stored with its reason, and tried again "
                         "next time\n",
                 p.failed);
+    /* Failed runs are a finding: everything was written, but the exit status says so. */
     if (ok) return p.failed > 0 ? err_exit_status(ERR_CHECK) : 0;
     return common_fail(&c, &e);
 }

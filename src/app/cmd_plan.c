@@ -1,4 +1,7 @@
-/* cmd_plan.c - mimdsim plan: the runs of a scenario, one a line, for engines that hand out work. */
+/* cmd_plan.c - mimdsim plan: the runs of a scenario, one a line, for engines that hand out work.
+ *
+ * The first column names a run for `mimdsim run SCENARIO --point`: hash of the settings and
+ * repetition. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,6 +18,7 @@ static const char doc[] =
     "separated by tabs, and the first line names them. --json writes one document. `mimdsim run SCENARIO --point ID` "
     "makes one of these runs, and `mimdsim merge` joins the databases.";
 
+/* One run, columns separated by tabs; the reason of a point that cannot run comes last. */
 static void line(const struct run_spec *r, int shards)
 {
     printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name, r->machine.name, r->model.nbody,
@@ -23,6 +27,7 @@ static void line(const struct run_spec *r, int shards)
     printf("%s%s\n", r->refused != NULL ? "\trefused: " : "", r->refused != NULL ? r->refused : "");
 }
 
+/* The same as an object. */
 static void row(struct json *j, const struct run_spec *r, int shards)
 {
     char id[sizeof r->config_hash + 16];
@@ -41,6 +46,7 @@ static void row(struct json *j, const struct run_spec *r, int shards)
     json_end(j);
 }
 
+/* A head and a line per run, or one list. */
 static void list(const struct common *c, const struct plan *p, int shards)
 {
     struct json j = json_make(stdout);
@@ -52,7 +58,7 @@ static void list(const struct common *c, const struct plan *p, int shards)
     if (c->json) json_end(&j), json_finish(&j);
 }
 
-/* --shards N, 0 without it. */
+/* --shards N, 0 without it; checked by the parser of --shard. */
 static bool read_shards(const char *text, int *shards, struct err *e)
 {
     char whole[64];

@@ -15,7 +15,7 @@ static const char doc[] =
     "\vWithout FIGURE: list the available figures, what each shows, and the command that makes "
     "the runs it needs.";
 
-/* The pictures that figure `name` stands for. */
+/* The pictures that figure `name` stands for, as paths: a script can pick them up. */
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j,
                           struct err *e)
 {
@@ -46,6 +46,7 @@ static bool print_pictures(const struct common *c, struct store *s, struct err *
     return ok;
 }
 
+/* A figure, what it shows, and the command that fills a database for it. */
 static void print_figure(const struct common *c, struct json *j, const char *name)
 {
     struct text title = {0}, needs = {0};
@@ -64,6 +65,7 @@ static void print_figure(const struct common *c, struct json *j, const char *nam
     text_free(&needs);
 }
 
+/* All figures that plots/ has. */
 static void list_figures(const struct common *c)
 {
     char **name;
@@ -80,6 +82,7 @@ static void list_figures(const struct common *c)
     json_finish(&j);
 }
 
+/* Only asked when the database is missing on the command line. */
 static bool is_figure(const char *word)
 {
     char **name;
@@ -93,7 +96,8 @@ static bool is_figure(const char *word)
     return found;
 }
 
-/* A figure alone lacks its database; the rest is as everywhere. */
+/* A figure alone lacks its database: the message writes the command. The rest is as for all
+ * verbs. */
 static struct store *open_database(const struct common *c, struct err *e)
 {
     if (c->narg > 1 || !is_figure(c->arg[0]) || access(c->arg[0], F_OK) == 0)
@@ -114,6 +118,7 @@ int cmd_plot(int argc, char **argv)
     bool ok = s != NULL || c.narg == 0;
     for (int i = 1; ok && i < c.narg; i++)
         ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);
+    /* A database alone lists figures as well: the user wants to choose one. */
     if (ok && c.narg < 2) list_figures(&c);
     else if (ok && (c.json || !c.quiet)) ok = print_pictures(&c, s, &e);
     store_close(s);

@@ -17,7 +17,8 @@ static const char doc[] =
     "database read a temporary upgraded copy; verbs that write to one upgrade it as --upgrade "
     "does.";
 
-/* Upgrade the database, and say what was done: to people, or as a document when no rows follow. */
+/* Upgrade the database and say what was done: to people on standard output, as a document when
+ * no rows follow, else as a remark on standard error. */
 static bool upgrade(const struct common *c, struct err *e)
 {
     struct text told = {0};
@@ -40,6 +41,7 @@ int cmd_query(int argc, char **argv)
     struct common c;
     const bool upgrades = take_flag(&argc, argv, "--upgrade");
     const bool schema = take_flag(&argc, argv, "--schema");
+    /* How many arguments there are depends on the options, so they are taken first. */
     common_parse(&c, argc, argv, 0, upgrades ? "DB [SQL]" : "DB SQL\n--upgrade DB [SQL]\n--schema",
                  doc,
                  schema     ? 0
@@ -51,6 +53,7 @@ int cmd_query(int argc, char **argv)
     if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE,
                                                 "--schema stands alone: it writes Markdown");
     if (schema) return e.kind == ERR_NONE && store_document(stdout, &e) ? 0 : common_fail(&c, &e);
+    /* Upgrading opens for writing and closes: the query then reads an upgraded database. */
     bool ok = !upgrades || upgrade(&c, &e);
     struct store *s = ok && c.narg == 2 ? arguments_database(&c, "", &e) : NULL;
     if (ok && c.narg == 2) ok = s && report_query(s, c.arg[1], 0, NULL, c.json, stdout, &e);

@@ -23,6 +23,7 @@ static const char doc[] =
 
 enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
 
+/* What is gathered before the document can be written. */
 struct report {
     const struct common *common;
     struct store *store;
@@ -33,13 +34,14 @@ struct report {
     struct plan plan[MOST_SCENARIOS];
 };
 
+/* Their figures appear there, not in the chapter of figures. */
 static bool has_section(const char *figure)
 {
     return strcmp(figure, "accuracy") == 0 || strcmp(figure, "stability") == 0 ||
            strcmp(figure, "omissions") == 0 || strcmp(figure, "explain") == 0;
 }
 
-/* Draw `name`, taken over, if there are rows for it. */
+/* Draw `name`, taken over, if there are rows for it: most databases have rows for a few figures. */
 static bool draw(struct report *r, char *name)
 {
     struct err e;
@@ -55,6 +57,7 @@ static bool draw(struct report *r, char *name)
     return drawn || e.kind == ERR_NO_INPUT;
 }
 
+/* Every figure that plots/ has: a new one needs no line here. */
 static bool draw_all(struct report *r)
 {
     char **name;
@@ -68,8 +71,8 @@ static bool draw_all(struct report *r)
     return ok;
 }
 
-/* The plan of a scenario, for the numbers of its machine; a file that is not there any more tells
- * nothing. */
+/* The plan of a scenario, for the numbers of its machine. A file that does not exist any more,
+ * or has changed, is left out: the report is about what is stored. */
 static bool add_plan(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     struct report *r = context;
@@ -84,7 +87,7 @@ static bool add_plan(void *context, int ncolumn, const char *const *name, const 
     return true;
 }
 
-/* "a/paper.db": "paper". */
+/* "a/paper.db": "paper"; a dot in front is part of the name. */
 static char *stem_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -95,6 +98,7 @@ static char *stem_of(const char *path)
     return stem;
 }
 
+/* The report is named after the database and lies beside the folder of figures. */
 static bool write_document(struct report *r, const char *path, const char *stem)
 {
     struct arena *a = arena_create();
@@ -116,6 +120,7 @@ static bool write_document(struct report *r, const char *path, const char *stem)
     return ok;
 }
 
+/* Which files were written: paths, or a list of them. */
 static void tell(const struct common *c, const char *stem)
 {
     static const char *const ending[] = {"md", "html"};
@@ -143,6 +148,7 @@ int cmd_report(int argc, char **argv)
     char *stem = stem_of(path);
     struct err e;
     err_clear(&e);
+    /* Too large for the stack: plans are kept until the document is written. */
     struct report *r = calloc(1, sizeof *r);
     CHECK(r);
     *r = (struct report){.common = &c, .e = &e};

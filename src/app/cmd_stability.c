@@ -16,6 +16,7 @@ static const char doc[] =
     "and .svg, or stability-SCENARIO.png and .svg.\n\n"
     "Example: mimdsim stability\n";
 
+/* A scenario's chart has the scenario's name; the built-in suite's has none. */
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
 {
     struct store *s = arguments_store(c, c->database, e);
@@ -28,6 +29,7 @@ static bool keep_and_draw(const struct common *c, const struct stability_report 
     return ok;
 }
 
+/* Without SCENARIO the built-in suite; a scenario gives its points as scenes. */
 int cmd_stability(int argc, char **argv)
 {
     struct common c;
@@ -40,6 +42,7 @@ int cmd_stability(int argc, char **argv)
     struct stability_report r;
     bool ok = c.narg == 0 || plan_read(&p, c.arg[0], &o, &e);
     ok = ok && stability_measure(p.run, p.nrun, 0, c.quiet, a, &r, &e);
+    /* The table before the drawing; a document last. */
     if (ok && !c.json) stability_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);
     if (ok && c.json) stability_print_json(stdout, &r);

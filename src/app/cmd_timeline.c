@@ -25,6 +25,7 @@ static const char doc[] =
 
 enum { PICTURE_SPANS = 20000 };
 
+/* The run that is shown, wherever it came from. */
 struct shown {
     const struct common *common;
     struct err *e;
@@ -36,6 +37,7 @@ struct shown {
     char title[160];
 };
 
+/* By content: a database may have any name. */
 static bool is_database(const char *path)
 {
     struct arena *a = arena_create();
@@ -44,6 +46,8 @@ static bool is_database(const char *path)
     return yes;
 }
 
+/* The run's title and status. A run that did not end well is shown all the same, with its
+ * reason. */
 static bool take_first(void *context, int ncolumn, const char *const *name,
                        const struct store_value *value)
 {
@@ -59,6 +63,7 @@ static bool take_first(void *context, int ncolumn, const char *const *name,
     return false;
 }
 
+/* A stored run: the one asked for, or the first that has spans. */
 static bool from_database(struct shown *t)
 {
     const char *wanted = t->common->narg > 1 ? t->common->arg[1] : NULL;
@@ -80,13 +85,15 @@ static bool from_database(struct shown *t)
     return trace_read(t->store, t->run_id, t->arena, &t->result, t->e);
 }
 
-/* The first point of a scenario, with its spans, into a passing store. */
+/* The first point of a scenario, run now with its spans, into a database in memory: the picture
+ * is drawn by a query. */
 static bool from_scenario(struct shown *t)
 {
     struct plan plan = {0};
     struct plan_options o = common_plan(t->common);
     if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
     struct run_spec spec = plan.run[0];
+    /* Recording is switched on whatever the scenario says. */
     spec.record.spans = true;
     snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name,
              spec.machine.name, spec.model.nbody, spec.nrank);
@@ -102,6 +109,7 @@ static bool from_scenario(struct shown *t)
     return ok;
 }
 
+/* One format, to a file in the folder, or to standard output. */
 static bool write_trace(struct shown *t, enum trace_format format, const char *ending)
 {
     char path[512] = "standard output";
@@ -117,6 +125,7 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     bool ok = trace_write(&t->result, format, &o, out, &left_out, t->e);
     if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
+    /* What was cut is said: a trace that ends early would be misread. */
     if (ok && left_out > 0)
         fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers "
                         "fail on more than %d\n",
@@ -124,6 +133,8 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     return ok;
 }
 
+/* The picture is figure fig8 of this one run. Reasons not to draw are remarks: the other formats
+ * are written. */
 static bool draw_picture(struct shown *t)
 {
     if (t->status == RUN_DEADLOCK) {
@@ -142,6 +153,7 @@ static bool draw_picture(struct shown *t)
     return ok;
 }
 
+/* Without --format everything that people can open; with --json the Chrome trace, which is JSON. */
 static bool show(struct shown *t)
 {
     static const char *const ending[] = {
@@ -167,6 +179,8 @@ int cmd_timeline(int argc, char **argv)
     struct err e;
     err_clear(&e);
     struct shown t = {.common = &c, .e = &e, .arena = arena_create()};
+    /* Two arguments are a database and a run, even if the file is none: then that is the mistake
+     * to tell. */
     bool ok =
         (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) && show(&t);
     store_close(t.store);

@@ -33,6 +33,8 @@ static const char doc[] =
     "among 16 ranks are also "
     "measured at every level of the network.";
 
+/* One published figure: value, range, simulated value, error, evidence, whether it was used in
+ * calibration, and the verdict with its reason. Numbers are in the file's own unit. */
 static void print_row(const struct published *p, const struct outcome *o)
 {
     char published[48];
@@ -48,7 +50,8 @@ static void print_row(const struct published *p, const struct outcome *o)
            *p->cause ? ": " : "", o->measured && *o->why ? o->why : p->cause);
 }
 
-/* Where ranks meet on the wires, what every level of the network makes of it. */
+/* Where ranks meet on the wires, what every level of the network makes of it: the difference
+ * between levels is the cost of ignoring contention. */
 static void print_levels(const struct published *p, const struct outcome *o)
 {
     if (!o->contended) return;
@@ -63,7 +66,7 @@ static void print_levels(const struct published *p, const struct outcome *o)
     putchar('\n');
 }
 
-/* A published figure and what became of it. */
+/* A published figure and what became of it: one row of the table. */
 struct point {
     const struct published *published;
     const struct outcome *outcome;
@@ -71,6 +74,7 @@ struct point {
 
 static const struct point *point(const void *row) { return row; }
 
+/* A constant or a text of the row. */
 static void set_text(struct column_value *v, const char *s)
 {
     v->kind = VALUE_TEXT;
@@ -89,7 +93,8 @@ static void read_quantity(const struct column *c, const void *row, struct column
     set_text(v, probe_name(point(row)->published->quantity));
 }
 
-/* Where it holds, with the row of the file: one place may have several figures. */
+/* Where it holds, with the row of the file, since one place may have several figures: together
+ * they are a key of table check_point. */
 static void read_place(const struct column *c, const void *row, struct column_value *v)
 {
     const struct published *p = point(row)->published;
@@ -99,7 +104,8 @@ static void read_place(const struct column *c, const void *row, struct column_va
     set_text(v, v->buffer);
 }
 
-/* A figure in the unit of the file: the real at the column's place over the unit. */
+/* A figure in the unit of the file: the real at the column's place over the unit. Not finite:
+ * absent. */
 static void read_in_unit(const struct column *c, const void *row, struct column_value *v)
 {
     const char *base = c->part == PART(struct point, outcome) ? (const char *)point(row)->outcome
@@ -126,6 +132,8 @@ static bool is_measured(const void *row) { return point(row)->outcome->measured;
 #define OUTCOME(member)                                                                            \
     .part = PART(struct point, outcome), .offset = offsetof(struct outcome, member)
 
+/* The columns for the database (suite, subject, ...) and for JSON, where names are shorter.
+ * Ranges are in JSON only. */
 static const struct column point_column[] = {
     {"at", COLUMN_STRING, PUBLISHED(at_text), .flags = COLUMN_NO_SQL,
      .doc = "as written in the file"},
@@ -160,6 +168,7 @@ static const struct column point_column[] = {
 };
 static const struct column_table point_columns = COLUMNS(point_column);
 
+/* One row of table check_point; a row of the same place is replaced. */
 static bool keep(struct store *s, const struct published *p, const struct outcome *o, struct err *e)
 {
     static const char *const name[] = {"suite"};
@@ -168,7 +177,7 @@ static bool keep(struct store *s, const struct published *p, const struct outcom
                             e);
 }
 
-/* The points shown so far. */
+/* The points shown so far, with their outcomes, for the summary. */
 struct table {
     int n;
     const struct published **row;
@@ -179,6 +188,7 @@ static bool has_points(const void *row) { return ((const struct validation_group
 
 #define GROUP(member) .offset = offsetof(struct validation_group, member)
 
+/* Statistics of the points of one use. */
 static const struct column group_column[] = {
     {"above_30_percent", COLUMN_INT, GROUP(above), .doc = "points whose error is larger"},
     {"mean_error", COLUMN_REAL, GROUP(mean), .known = has_points, .doc = "of its size"},
@@ -190,6 +200,7 @@ static const struct column group_column[] = {
 };
 static const struct column_table group_columns = COLUMNS(group_column);
 
+/* A group inside the summary, by the column's offset. */
 static void write_group(const struct column *c, const void *row, struct json *j)
 {
     columns_json(&group_columns, (const char *)row + c->offset, j);
@@ -197,6 +208,7 @@ static void write_group(const struct column *c, const void *row, struct json *j)
 
 #define SUMMARY(member) .offset = offsetof(struct validation_summary, member)
 
+/* Calibrated and other points apart: a value that was fitted proves nothing about the model. */
 static const struct column summary_column[] = {
     {"calibrated", COLUMN_STRING, SUMMARY(calibrated), .json = write_group, .doc = "points used for calibration"},
     {"estimated", COLUMN_INT, SUMMARY(estimated), .doc = "points of class E, which are in no group"},
@@ -208,6 +220,7 @@ static const struct column summary_column[] = {
 };
 static const struct column_table summary_columns = COLUMNS(summary_column);
 
+/* Nothing to say of an empty group. */
 static void print_group(const char *name, const struct validation_group *g)
 {
     if (g->n == 0) return;
@@ -226,7 +239,8 @@ static void print_summary(const struct validation_summary *s)
     print_group("not used for calibration", &s->held);
 }
 
-/* The points, contention where a single machine was asked for, and the summary. */
+/* The points, contention where a single machine was asked for, and the summary; as tables or as
+ * one document. */
 static void print_table(const struct common *c, const struct table *t, const struct contention *row,
                         int nrow, const struct validation_summary *s)
 {
@@ -273,8 +287,8 @@ static bool go_through(const struct common *c, const struct published *p, int n,
     return true;
 }
 
-/* A machine without published figures is said to have none; a name that is no machine is refused by
- * plan_machine. */
+/* Whether there is anything to validate: a machine without published figures is said to have
+ * none; a name that is no machine is refused by plan_machine. */
 static bool known_machine(const char *name, const struct published *p, int n, struct arena *a,
                           struct err *e)
 {
@@ -287,6 +301,7 @@ static bool known_machine(const char *name, const struct published *p, int n, st
            err_set(e, ERR_NO_INPUT, "machines/published.csv has no figures of machine '%s'", name);
 }
 
+/* All rows in one transaction: the table of check points is of one program. */
 static bool validate_machines(const struct common *c, struct arena *a, int *failed, struct err *e)
 {
     struct published *p;
@@ -304,6 +319,7 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     if (!ok) return false;
     struct validation_summary sum = validation_summarize(t.row, t.outcome, t.n);
     struct contention row[CONTENTION_ROWS];
+    /* Contention is shown for one machine only: it takes seconds for each. */
     int nrow = strcmp(c->arg[0], "all") == 0 ? 0 : contention_measure(c->arg[0], row, a, e);
     if (nrow < 0) return false;
     print_table(c, &t, row, nrow, &sum);
@@ -311,8 +327,8 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     return true;
 }
 
-/* One table a file: mean of |error| in percent, in brackets the worst with its sign, and how many
- * cases the level could run where not all; a dash where none. */
+/* One table a file, in Markdown: mean of |error| in per cent, in brackets the worst with its
+ * sign, and how many cases the level could run where not all; a dash where none. */
 static void network_table(const struct netcheck *n)
 {
     const char *slash = strrchr(n->path, '/');
@@ -321,6 +337,7 @@ static void network_table(const struct netcheck *n)
     printf("\n| --- | --- |");
     for (int l = 0; l < LEVELS; l++) printf(" --- |");
     putchar('\n');
+    /* Groups in the order of the file, each once, then all cases together. */
     for (int g = 0; g <= n->nrow; g++) {
         const char *group = g < n->nrow ? n->row[g].group : NULL;
         bool seen = group && !n->row[g].counted;

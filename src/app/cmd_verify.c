@@ -34,6 +34,8 @@ enum {
     KEY_STRICT
 };
 
+/* Options of this verb alone: it takes no scenario and no database, so it has a parser of its
+ * own. */
 static const struct argp_option options[] = {
     {"tolerance", KEY_TOLERANCE, "X[,Y]", 0,
      "relative tolerance of inverse (X) and forward (Y, default 100 X) dynamics", 0},
@@ -48,6 +50,7 @@ static const struct argp_option options[] = {
     {0},
 };
 
+/* The command line. */
 struct request {
     struct verify_options options;
     struct common common; /* json, quiet */
@@ -56,6 +59,8 @@ struct request {
     int nfile;
 };
 
+/* "X" or "X,Y". Y is 100 X where it is not given, as in the defaults: accelerations come from a
+ * linear system. */
 static void set_tolerance(struct request *r, const char *arg, struct argp_state *state)
 {
     char *end;
@@ -67,6 +72,7 @@ static void set_tolerance(struct request *r, const char *arg, struct argp_state 
     r->options.tolerance_forward = y;
 }
 
+/* Precisions are counted as in enum precision. */
 static void set_precision(struct request *r, const char *arg, struct argp_state *state)
 {
     static const char *const word[] = {"double", "float", "quad"};
@@ -78,6 +84,7 @@ static void set_precision(struct request *r, const char *arg, struct argp_state 
     argp_error(state, "--precision: '%s' is not double, float or quad", arg);
 }
 
+/* One key of argp; errors end the process with the usage status. */
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
@@ -121,6 +128,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
+/* Three forms, one at a time: a document, a matrix in Markdown, tables. */
 static void print_all(const struct request *r, const struct verify_report *report)
 {
     if (r->common.json) {
@@ -135,8 +143,8 @@ static void print_all(const struct request *r, const struct verify_report *repor
     verify_print_summary(stdout, report, r->nfile);
 }
 
-/* A file that cannot be used is a failed case without rows; the others are verified all the same.
- * Returns the exit status of the first such file, 0: none. */
+/* Verifies every file. One that cannot be used is a failed case without rows; the others are
+ * verified all the same. Returns the exit status of the first such file, 0: none. */
 static int verify_all(const struct request *r, struct verify_report *report, struct arena *a)
 {
     struct progress p = progress_make("cases", r->nfile, r->common.quiet);
@@ -145,6 +153,7 @@ static int verify_all(const struct request *r, struct verify_report *report, str
         struct err e;
         err_clear(&e);
         if (!verify_file(r->file[i], &r->options, a, &report[i], &e)) {
+            /* err_print and the text: *e lives only in this loop. */
             const char *text = arena_text(a, e.text);
             err_print(&e);
             report[i] = (struct verify_report){.path = r->file[i],
@@ -165,7 +174,7 @@ static int verify_all(const struct request *r, struct verify_report *report, str
     return status;
 }
 
-/* Does any row fail the case, or, when asked to be strict, show an algorithm that fails? */
+/* Whether any row fails its case or, with --strict, shows an algorithm that fails. */
 static bool any_failed(const struct request *r, const struct verify_report *report)
 {
     for (int i = 0; i < r->nfile; i++) {
@@ -191,5 +200,6 @@ int cmd_verify(int argc, char **argv)
     print_all(&r, report);
     arena_destroy(a);
     free(r.file);
+    /* A file that cannot be read is worse than a failed case. */
     return status ? status : failed ? err_exit_status(ERR_CHECK) : 0;
 }

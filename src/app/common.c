@@ -1,4 +1,8 @@
-/* common.c - the options that verbs share, by argp. */
+/* common.c - the options that verbs share, by argp.
+ *
+ * An option has one meaning in all verbs that take it. A verb says which groups it takes
+ * (TAKES_*); the others do not exist for it, neither in --help nor on the command line. With
+ * --json a failure is a document, too, so that a program reads one form. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +11,10 @@
 #include "base/check.h"
 #include "base/json.h"
 
+/* Keys of long options without a letter. */
 enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT };
 
+/* The last number is the group: it orders --help and decides which verbs have the option. */
 static const struct argp_option option_table[] = {
     {"machine", 'm', "NAME", 0, "machine to use instead of the scenario's (a name or a file)", 1},
     {"set", 's', "KEY=VALUE", 0,
@@ -27,6 +33,7 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
+/* Groups 0 and 5 belong to every verb. */
 static unsigned group_of(int group)
 {
     static const unsigned takes[] = {0, TAKES_PLAN,  TAKES_STORE,   TAKES_DIR,   TAKES_JOBS,
@@ -34,14 +41,15 @@ static unsigned group_of(int group)
     return takes[group];
 }
 
+/* What argp's parser needs: least and most arguments. */
 struct parse {
     struct common *common;
     int least, most;
     struct err error;
 };
 
-/* Say what is wrong with the command line; argp then ends the process, unless a document is wanted
- * first. */
+/* Say what is wrong with the command line. argp_error ends the process, unless a document is
+ * wanted first: then the error is kept for it. */
 static error_t refuse(struct argp_state *state, const char *format, const char *arg)
 {
     struct parse *p = state->input;
@@ -52,6 +60,7 @@ static error_t refuse(struct argp_state *state, const char *format, const char *
     return EINVAL;
 }
 
+/* Values are only collected: their keys are checked when the plan is read, with file and line. */
 static void add_set(struct common *c, const char *text, struct argp_state *state)
 {
     if (c->nset == COMMON_MOST_SETS)
@@ -59,6 +68,7 @@ static void add_set(struct common *c, const char *text, struct argp_state *state
     c->set[c->nset++] = text;
 }
 
+/* More workers than 256 would be a typing mistake. */
 static error_t set_jobs(struct common *c, const char *arg, struct argp_state *state)
 {
     char *end;
@@ -81,6 +91,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         add_set(c, arg, state);
         break;
     case 'o':
+        /* Whether it was given decides the default of `paper`. */
         c->database = arg;
         c->database_given = true;
         return arg[0] ? 0 : refuse(state, "--output: '%s' is not the name of a file", arg);
@@ -111,6 +122,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->json = true;
         break;
     case ARGP_KEY_ARG:
+        /* argp puts options anywhere: arguments are counted as they come. */
         if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
             return refuse(state, "unexpected argument '%s'", arg);
         c->arg[c->narg++] = arg;
@@ -123,6 +135,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
+/* Keys of the failure of one file, in the order of the alphabet; also used by `check` for files
+ * in order. */
 void common_error_json(struct json *j, const char *file, const struct err *e)
 {
     json_object(j);
@@ -134,7 +148,7 @@ void common_error_json(struct json *j, const char *file, const struct err *e)
     json_end(j);
 }
 
-/* The document of a failure. */
+/* The document of a failure: {"error": {...}}. */
 static void print_error(const struct err *e)
 {
     struct json j = json_make(stdout);
@@ -145,14 +159,15 @@ static void print_error(const struct err *e)
     json_finish(&j);
 }
 
-/* The first word of the command line that looks like a long option and is none, NULL: all are. A
- * value is skipped. */
+/* The first word of the command line that looks like a long option and is none, NULL: all are.
+ * The value of an option is skipped, so that it may begin with hyphens. */
 static const char *unknown_option(int argc, char **argv, const struct argp_option *option)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
         if (strncmp(argv[i], "--", 2) != 0) continue;
         size_t length = strcspn(argv[i] + 2, "=");
         const struct argp_option *o = option;
+        /* argp accepts the beginning of a name, so this does, too. */
         while (o->name && strncmp(o->name, argv[i] + 2, length) != 0)
             o++; /* the beginning of a name will do */
         bool ours = o->name || strncmp("help", argv[i] + 2, length) == 0 ||
@@ -163,7 +178,7 @@ static const char *unknown_option(int argc, char **argv, const struct argp_optio
     return NULL;
 }
 
-/* argp would name the option, but not the one that may have been meant. */
+/* argp would name the option, but not the one that may have been meant. Ends the process. */
 static void refuse_option(const char *verb, const char *word, const struct argp_option *option,
                           bool document)
 {
@@ -182,6 +197,7 @@ static void refuse_option(const char *verb, const char *word, const struct argp_
     exit(err_exit_status(ERR_USAGE));
 }
 
+/* Before argp: how errors are told depends on it. Help is text whatever else is asked for. */
 bool common_wants_json(int argc, char **argv)
 {
     bool wants = false;
@@ -194,6 +210,7 @@ bool common_wants_json(int argc, char **argv)
     return wants;
 }
 
+/* Defaults, the verb's options, then argp. Returns only if the command line is right. */
 void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args,
                   const char *doc, int least, int most)
 {
@@ -205,10 +222,12 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     struct argp_option option[sizeof option_table / sizeof *option_table] = {{0}};
     int n = 0;
     for (const struct argp_option *o = option_table; o->name; o++)
+        /* The verb's own table of options. */
         if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
     struct parse p = {c, least, most, {0}};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
     bool document = common_wants_json(argc, argv);
+    /* Looked at first, since argp ends the process at an unknown option. */
     const char *unknown = unknown_option(argc, argv, option);
     if (unknown) refuse_option(argv[0], unknown, option, document);
     if (argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p) == 0) return;
@@ -218,6 +237,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     exit(err_exit_status(ERR_USAGE));
 }
 
+/* What a plan takes from the command line; the built-in programs are known by name. */
 struct plan_options common_plan(const struct common *c)
 {
     return (struct plan_options){.machine = c->machine,
@@ -227,6 +247,7 @@ struct plan_options common_plan(const struct common *c)
                                  .kernel = c->kernel.name};
 }
 
+/* The end of a failed verb: document, text, exit status. */
 int common_fail(const struct common *c, const struct err *e)
 {
     if (c->json) print_error(e);
@@ -234,6 +255,7 @@ int common_fail(const struct common *c, const struct err *e)
     return err_exit_status(e->kind);
 }
 
+/* A list of names and titles, as verbs without arguments print it. */
 void common_print_pairs(const struct common *c, int n, const char *const *name,
                         const char *const *title)
 {

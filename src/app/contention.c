@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+/* The quantity at each level; NAN where a level refuses it (a machine without buffers at flit). */
 static bool measure(const struct machine_spec *m, struct contention *row)
 {
     bool any = false;
@@ -18,6 +19,8 @@ static bool measure(const struct machine_spec *m, struct contention *row)
     return any;
 }
 
+/* An even number of ranks: halves exchange. A machine of fewer than four has no contention to
+ * show. */
 int contention_measure(const char *machine, struct contention row[CONTENTION_ROWS], struct arena *a,
                        struct err *e)
 {
@@ -34,6 +37,7 @@ int contention_measure(const char *machine, struct contention row[CONTENTION_ROW
     return n;
 }
 
+/* Levels side by side, in the order of their cost. */
 void contention_print(const struct contention *row, int n)
 {
     if (n == 0) return;
@@ -50,6 +54,7 @@ void contention_print(const struct contention *row, int n)
     }
 }
 
+/* The same as a list under the key `contention`. */
 void contention_json(const struct contention *row, int n, struct json *j)
 {
     json_key(j, "contention");

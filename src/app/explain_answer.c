@@ -10,13 +10,15 @@
 
 /* --- confirming ------------------------------------------------------------------------------- */
 
+/* The answer tried with the runs of the study: `asked` is false when the claim names no command. */
 struct confirmed {
     bool asked, agrees;
     int nrun;
 };
 
-/* The study's own runs at the answer; where they say no, a little further from the nominal
- * point. */
+/* The study's own runs at the answer. A search uses fewer points than the study, so its boundary
+ * may lie a little beside: where the study says no, move away from the nominal point by 2 % at a
+ * time. */
 static bool confirm(struct explain_bench *b, struct explain_search *s, struct confirmed *c)
 {
     enum { MOVES = 6 };
@@ -27,10 +29,12 @@ static bool confirm(struct explain_bench *b, struct explain_search *s, struct co
         for (int i = 0; i < EXPLAIN_MOST_AXES; i++) u[i] = s->best.u[i] * (1 + 0.02 * k);
         explain_space_snap(&s->goal.subject->space, u);
         if (!explain_confirm(b, s->goal.subject, s->goal.operators, u, &p, &c->nrun)) return false;
+        /* No runs: there is nothing to confirm with. */
         if (c->nrun == 0) return true;
         c->asked = true;
         struct explain_grade g = explain_grade_point(&s->goal, &p, u);
         c->agrees = g.holds;
+        /* The confirmed point is the answer. */
         if (g.holds) {
             s->best.grade = g;
             memcpy(s->best.u, u, sizeof u);
@@ -41,6 +45,7 @@ static bool confirm(struct explain_bench *b, struct explain_search *s, struct co
 
 /* --- sentences -------------------------------------------------------------------------------- */
 
+/* How many parameters differ from their nominal values. */
 static int changes(const struct explain_search *s, const double *u)
 {
     int n = 0;
@@ -48,6 +53,7 @@ static int changes(const struct explain_search *s, const double *u)
     return n;
 }
 
+/* "the code runs at 20 Mflop/s, ... and ...": the changes in words. */
 static void add_changes(const struct explain_search *s, const double *u, bool brief, struct text *t)
 {
     const struct explain_space *space = &s->goal.subject->space;
@@ -61,6 +67,7 @@ static void add_changes(const struct explain_search *s, const double *u, bool br
     if (n == 0) text_add(t, "nothing else is changed");
 }
 
+/* The value of the claim at the answer, in its own unit. */
 static void add_value(const struct explain_search *s, struct text *t)
 {
     const struct claim_rule *rule = s->goal.subject->rule[s->best.grade.rule];
@@ -89,6 +96,7 @@ static void add_single(const struct explain_search *s, struct text *t)
     text_add(t, ".");
 }
 
+/* A claim for which a point was found. */
 static void add_holds(const struct explain_search *s, const char *variant,
                       const struct confirmed *c, struct text *t)
 {
@@ -103,6 +111,7 @@ static void add_holds(const struct explain_search *s, const char *variant,
     add_single(s, t);
 }
 
+/* How thorough the search was: what not finding means depends on it. */
 static void add_tried(const struct explain_search *s, struct text *t)
 {
     text_add(t, "%d points", s->goal.subject->npoint);
@@ -111,6 +120,7 @@ static void add_tried(const struct explain_search *s, struct text *t)
                     "several starts)");
 }
 
+/* A claim without such a point: the nearest one, and that this is no proof. */
 static void add_not_found(const struct explain_search *s, const char *variant, struct text *t)
 {
     text_add(t, "%s: no point was found at which it holds, among ", s->goal.subject->name);
@@ -122,6 +132,7 @@ static void add_not_found(const struct explain_search *s, const char *variant, s
     text_add(t, ".");
 }
 
+/* A claim with a proof that it cannot hold. The search tries to refute the proof. */
 static void add_never(const struct explain_search *s, const char *never, struct text *t)
 {
     text_add(t, "%s cannot hold for any values of the parameters: %s. ", s->goal.subject->name,
@@ -134,6 +145,7 @@ static void add_never(const struct explain_search *s, const char *never, struct 
 
 /* --- rows ------------------------------------------------------------------------------------- */
 
+/* One row of table explain_answer, with the sentence as it will be printed. */
 static bool keep(struct explain_bench *b, const struct explain_search *s, const char *goal,
                  const char *verdict, const char *variant, const struct confirmed *c,
                  const char *sentence)
@@ -151,6 +163,7 @@ static bool keep(struct explain_bench *b, const struct explain_search *s, const 
         store_text(variant),
         store_text(s->goal.operators == OPERATORS_DENSE ? "dense" : "structured"),
         store_text(settings.s ? settings.s : ""),
+        /* NULL: no distance of something that was not found */
         g->holds ? store_real(g->distance) : store_null(),
         store_real(g->value),
         store_real(g->margin),
@@ -163,6 +176,7 @@ static bool keep(struct explain_bench *b, const struct explain_search *s, const 
     return ok;
 }
 
+/* goal: "own" or "any" (baseline and operators). */
 bool explain_answer(struct explain_bench *b, struct explain_search *s, const char *goal,
                     const char *never)
 {
@@ -173,6 +187,7 @@ bool explain_answer(struct explain_bench *b, struct explain_search *s, const cha
     if (never) add_never(s, never, &sentence);
     else if (s->best.grade.holds) add_holds(s, variant.s, &c, &sentence);
     else add_not_found(s, variant.s, &sentence);
+    /* A point that holds refutes the proof, so `holds` wins. */
     const char *verdict = s->best.grade.holds ? "holds" : never ? "never" : "not found";
     ok = ok && keep(b, s, goal, verdict, variant.s, &c, sentence.s);
     text_free(&variant);
@@ -180,12 +195,14 @@ bool explain_answer(struct explain_bench *b, struct explain_search *s, const cha
     return ok;
 }
 
+/* "C1, C2 and C7" */
 static void add_ids(const struct explain_subject *s, struct text *t)
 {
     for (int i = 0; i < s->nrule; i++)
         text_add(t, "%s%s", i == 0 ? "" : i == s->nrule - 1 ? " and " : ", ", s->rule[i]->id);
 }
 
+/* All claims that can hold alone, at one point. `without`: those that cannot. */
 bool explain_answer_together(struct explain_bench *b, struct explain_search *s, const char *without)
 {
     struct confirmed c = {0};
@@ -229,7 +246,8 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
 
 /* --- maps ------------------------------------------------------------------------------------- */
 
-/* Axes by what they change in the answer, then by how near they bring the claim alone. */
+/* The two axes of a map: those that change most in the answer, then those that bring the claim
+ * nearest alone. */
 static void two_axes(const struct explain_search *s, int axis[2])
 {
     int n = s->goal.subject->space.n;
@@ -244,6 +262,7 @@ static void two_axes(const struct explain_search *s, int axis[2])
         }
 }
 
+/* A factor, or the value itself where the nominal value is 0. */
 static double shown(const struct explain_space *space, const double *u, int i)
 {
     bool factor = space->axis[i].least < 0;
@@ -268,13 +287,14 @@ struct map_frame {
     struct text label[2], variant;
 };
 
-/* A published bound of an axis as it is drawn; NULL when there is none. */
+/* A published bound of an axis as it is drawn, over the nominal value; NULL when there is none. */
 static struct store_value bound(const struct explain_axis *a, double value)
 {
     bool known = a->map == EXPLAIN_FACTOR && a->high[0] > a->low[0];
     return known ? store_real(value / a->nominal[0]) : store_null();
 }
 
+/* One cell: where it is, how the axes are called, what to mark, and the point that was judged. */
 static bool keep_cell(struct explain_bench *b, const struct explain_search *s,
                       const struct map_frame *f, int i, int j, const double *u)
 {
@@ -286,6 +306,7 @@ static bool keep_cell(struct explain_bench *b, const struct explain_search *s,
     const struct explain_space *space = &s->goal.subject->space;
     const struct explain_point *p = explain_known(s->goal.subject, s->goal.operators, u);
     const struct explain_axis *x = &space->axis[f->axis[0]], *y = &space->axis[f->axis[1]];
+    /* every point of the map was made before */
     CHECK(p);
     const struct store_value value[] = {store_text(s->goal.subject->name),
                                         store_int(i),
@@ -309,6 +330,7 @@ static bool keep_cell(struct explain_bench *b, const struct explain_search *s,
     return store_insert(b->store, "explain_map", 19, name, value, b->e);
 }
 
+/* Cells along each side. */
 enum { MAP = 11, DEAR_MAP = 6 };
 
 /* Points along each axis of a map: fewer where they take long to simulate. */
@@ -320,7 +342,7 @@ static int map_size(const struct explain_search *s, const int *axis)
     return dear ? DEAR_MAP : MAP;
 }
 
-/* The point in row j and column i of the map. */
+/* The point in row j and column i of the map: the answer, but for the two axes. */
 static void map_point(const struct explain_search *s, const int *axis, int i, int j, double *u)
 {
     const struct explain_space *space = &s->goal.subject->space;
@@ -333,7 +355,7 @@ static void map_point(const struct explain_search *s, const int *axis, int i, in
     explain_space_snap(space, u);
 }
 
-/* The points of a map that are not known yet. */
+/* The points of a map that are not known yet, each once: snapping makes neighbours equal. */
 static int missing_points(const struct explain_search *s, const int *axis,
                           struct explain_request *request)
 {
@@ -349,6 +371,7 @@ static int missing_points(const struct explain_search *s, const int *axis,
     return n;
 }
 
+/* A map is stored whole. */
 static bool keep_map(struct explain_bench *b, const struct explain_search *s,
                      const struct map_frame *f)
 {
@@ -365,6 +388,7 @@ static bool keep_map(struct explain_bench *b, const struct explain_search *s,
     return false;
 }
 
+/* Only of two parameters or more. */
 bool explain_map(struct explain_bench *b, const struct explain_search *s)
 {
     struct explain_request request[MAP * MAP + 1];

@@ -1,5 +1,9 @@
 /* explain_claims.c - which claims fail, searches for each and for all together, answers; see
- * explain_claims.h. */
+ * explain_claims.h.
+ *
+ * For each failed claim: which of the numbers that the paper leaves open would have to be
+ * different, and by how much. The search is over simulated points, so it takes minutes;
+ * everything that it makes is stored. */
 #include "app/explain_claims.h"
 
 #include <math.h>
@@ -37,6 +41,7 @@ struct inquest {
 
 /* --- which claims ----------------------------------------------------------------------------- */
 
+/* Verdicts of the claims themselves (variant ''). */
 static bool take_verdict(void *context, int ncolumn, const char *const *name,
                          const char *const *value)
 {
@@ -51,6 +56,7 @@ static bool take_verdict(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* Each failed claim becomes a subject: its runs, its parameters, its known points. */
 static bool find_failing(struct inquest *q)
 {
     if (!store_select(q->bench.store, "SELECT id, verdict FROM claim WHERE variant = ''", 0, NULL,
@@ -68,7 +74,7 @@ static bool find_failing(struct inquest *q)
 
 /* --- searches --------------------------------------------------------------------------------- */
 
-/* More starts where the runs of a point are small. */
+/* More starts where the runs of a point are small, so that every claim takes about as long. */
 static int starts_of(const struct explain_subject *s)
 {
     enum { PROCESSORS = 1800 };
@@ -78,6 +84,7 @@ static int starts_of(const struct explain_subject *s)
     return starts < 2 ? 2 : starts > EXPLAIN_STARTS ? EXPLAIN_STARTS : starts;
 }
 
+/* Only where the claim has runs with these operators. */
 static void add_search(struct inquest *q, struct explain_subject *s, enum operators operators,
                        bool own, int starts, int steps)
 {
@@ -89,11 +96,14 @@ static void add_search(struct inquest *q, struct explain_subject *s, enum operat
                                          .seed = q->seed,
                                          .starts = starts,
                                          .steps = steps,
+                                         /* The last start may use parameters that are slow to
+                                          * simulate, if the claim is cheap to run. */
                                          .dear = starts_of(s) == EXPLAIN_STARTS && own}};
 }
 
-/* The claim as it is judged; then with either style of operators and any baseline. A claim that is
- * known never to hold is looked at along each axis alone, as a check of the reason. */
+/* Three searches: the claim as it is judged; then with either style of operators and any
+ * baseline. A claim that is known never to hold is looked at along each axis alone, as a check
+ * of the reason. */
 static void add_searches(struct inquest *q, struct inquiry *c)
 {
     enum { STEPS = 60 };
@@ -108,6 +118,7 @@ static void add_searches(struct inquest *q, struct inquiry *c)
     c->ngoal = q->nsearch - c->first;
 }
 
+/* All searches of all claims side by side: points of different claims fill the same batch. */
 static bool search_claims(struct inquest *q)
 {
     q->search = TAKE(q->bench.arena, MOST_SEARCHES, struct explain_search);
@@ -117,7 +128,7 @@ static bool search_claims(struct inquest *q)
 
 /* --- answers ---------------------------------------------------------------------------------- */
 
-/* The best of a claim's searches with any operators and baseline. */
+/* The best of a claim's searches. */
 static struct explain_search *best_of(struct explain_search *search, int n)
 {
     struct explain_search *best = NULL;
@@ -126,6 +137,8 @@ static struct explain_search *best_of(struct explain_search *search, int n)
     return best;
 }
 
+/* The claim's own variant first. Another one is told only where it holds and is the smaller
+ * change. */
 static bool answer_claim(struct inquest *q, struct inquiry *c)
 {
     struct explain_search *own = &q->search[c->first], *any = best_of(own, c->ngoal);
@@ -139,7 +152,8 @@ static bool answer_claim(struct inquest *q, struct inquiry *c)
 
 /* --- all together ----------------------------------------------------------------------------- */
 
-/* Where the searches of single claims ended, as one point: of each axis the largest change. */
+/* Where the searches of single claims ended, as one point: of each axis the largest change.
+ * Claims of another machine have other axes. */
 static void merge(const struct inquest *q, const struct explain_subject *s, double *u)
 {
     for (int k = 0; k < q->n; k++) {
@@ -161,6 +175,8 @@ static bool can_hold(const struct inquest *q, int i)
     return true;
 }
 
+/* One point for all claims of a machine that can hold: a change that helps one may break
+ * another. */
 static bool answer_together(struct inquest *q)
 {
     const struct claim_rule *rule[EXPLAIN_MOST_RULES];
@@ -172,12 +188,14 @@ static bool answer_together(struct inquest *q)
         char own[64];
         if (!q->judged[i] || q->rules->rule[i].nexplore == 0) continue;
         if (!explain_machine(&q->bench, &q->rules->rule[i], own)) return false;
+        /* Only the machine of the first failed claim. */
         bool same = strcmp(own, machine) == 0;
         if (same && can_hold(q, i)) rule[n++] = &q->rules->rule[i];
         else if (same) text_add(&without, "%s%s", without.length ? ", " : "", q->rules->rule[i].id);
     }
     struct explain_subject *all = TAKE(q->bench.arena, 1, struct explain_subject);
     struct explain_search *search = TAKE(q->bench.arena, 2, struct explain_search);
+    /* One claim is not "together". */
     bool ok = n < 2 || explain_subject_make(all, &q->bench, "together", rule, n);
     int nsearch = 0;
     for (int operators = 0; ok && n >= 2 && operators < 2; operators++) {
@@ -200,6 +218,7 @@ static bool answer_together(struct inquest *q)
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
+/* One hash. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -208,6 +227,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
     return false;
 }
 
+/* What the answers depend on: seed, claims, their runs, and which claims are judged at all. */
 static void identity(const struct inquest *q, char hex[65])
 {
     struct text all = {0};
@@ -220,6 +240,7 @@ static void identity(const struct inquest *q, char hex[65])
     text_free(&all);
 }
 
+/* An error reads as no: then it is searched again. */
 static bool is_stored(struct inquest *q, const char *hex)
 {
     char stored[65] = "";
@@ -230,6 +251,7 @@ static bool is_stored(struct inquest *q, const char *hex)
            strcmp(stored, hex) == 0;
 }
 
+/* Table meta: key and value. */
 static bool keep_meta(struct inquest *q, const char *key, const char *text)
 {
     static const char *const name[] = {"key", "value"};
@@ -237,7 +259,7 @@ static bool keep_meta(struct inquest *q, const char *key, const char *text)
     return store_insert(q->bench.store, "meta", 2, name, value, q->bench.e);
 }
 
-/* What was answered of claims that may hold by now. */
+/* Remove what was answered before, also of claims that hold by now. */
 static bool clear_answers(struct inquest *q)
 {
     if (!store_begin(q->bench.store, q->bench.e)) return false;
@@ -253,6 +275,8 @@ static bool clear_answers(struct inquest *q)
     return false;
 }
 
+/* Clear, search, answer, and only then store the hash: an interrupted search begins again, with
+ * the points that it made. */
 static bool inquire(struct inquest *q)
 {
     char hex[65], took[32];
@@ -279,6 +303,7 @@ bool explain_claims(const struct common *c, const struct claim_rules *rules, uin
     return ok;
 }
 
+/* The maps. Without gnuplot, or without any map, that is no error. */
 bool explain_draw(const struct common *c, struct store *s, struct err *e)
 {
     struct err own;

@@ -13,6 +13,7 @@
 
 /* --- the cache -------------------------------------------------------------------------------- */
 
+/* u in millionths: snapped points differ by more, and rounding by less. */
 static uint64_t key_of(const struct explain_subject *s, enum operators operators, const double *u)
 {
     uint64_t h = digest_mix(DIGEST_START, (uint64_t)operators);
@@ -20,6 +21,7 @@ static uint64_t key_of(const struct explain_subject *s, enum operators operators
     return h;
 }
 
+/* Open addressing with linear probing: the place of the key, or the empty one where it belongs. */
 static struct explain_point **slot_of(const struct explain_subject *s, uint64_t key)
 {
     size_t mask = (size_t)s->capacity - 1, at = (size_t)key & mask;
@@ -27,6 +29,7 @@ static struct explain_point **slot_of(const struct explain_subject *s, uint64_t 
     return &s->slot[at];
 }
 
+/* Four times as large each time; the old array stays in the arena. */
 static void grow(struct explain_subject *s, struct arena *a)
 {
     int old = s->capacity;
@@ -39,6 +42,7 @@ static void grow(struct explain_subject *s, struct arena *a)
 
 static void remember(struct explain_subject *s, struct explain_point *p, struct arena *a)
 {
+    /* At most half full, so that probing stays short. */
     if (2 * (s->npoint + 1) > s->capacity) grow(s, a);
     *slot_of(s, p->key) = p;
     s->npoint++;
@@ -52,7 +56,8 @@ const struct explain_point *explain_known(const struct explain_subject *s, enum 
 
 /* --- subjects --------------------------------------------------------------------------------- */
 
-/* The runs of "SCENARIO KEY=VALUE ...", appended to *spec; their texts live in the arena. */
+/* The runs of "SCENARIO KEY=VALUE ...", appended to *spec. Their texts are copied into the
+ * arena, as the plan is freed. */
 static bool read_runs(struct explain_bench *b, const char *line, struct run_spec **spec, int *n)
 {
     enum { MOST_WORDS = 16 };
@@ -80,7 +85,7 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     return true;
 }
 
-/* Runs that several lines name are made once. */
+/* Runs that several lines name are made once: they are equal by their identity. */
 static void drop_doubles(struct run_spec *spec, int *n)
 {
     int kept = 0;
@@ -93,6 +98,7 @@ static void drop_doubles(struct run_spec *spec, int *n)
     *n = kept;
 }
 
+/* A point changes one machine's parameters. */
 static bool one_machine(const struct explain_subject *s, struct err *e)
 {
     for (int i = 1; i < s->nspec; i++)
@@ -112,6 +118,7 @@ bool explain_machine(struct explain_bench *b, const struct claim_rule *rule, cha
     return true;
 }
 
+/* The runs of all rules, each once, with either style of operators noted. */
 static bool read_subject(struct explain_subject *s, struct explain_bench *b)
 {
     for (int i = 0; i < s->nrule; i++) {
@@ -128,6 +135,7 @@ static bool read_subject(struct explain_subject *s, struct explain_bench *b)
     return one_machine(s, b->e);
 }
 
+/* Points of other runs or of a changed claim are worth nothing. */
 static void identify(struct explain_subject *s)
 {
     struct text all = {0};
@@ -139,6 +147,7 @@ static void identify(struct explain_subject *s)
 
 /* --- stored points ---------------------------------------------------------------------------- */
 
+/* One hash. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -147,12 +156,14 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
     return false;
 }
 
+/* The state of reading stored points back. */
 struct loading {
     struct explain_subject *subject;
     struct explain_bench *bench;
     struct explain_point *point; /* whose verdicts are being read */
 };
 
+/* A claim that is not asked for is -1. */
 static int rule_of(const struct explain_subject *s, const char *id)
 {
     for (int i = 0; i < s->nrule; i++)
@@ -174,7 +185,8 @@ static void add_verdict(struct explain_point *p, const struct explain_verdict *v
     p->verdict[p->nverdict++] = *v;
 }
 
-/* (point id, key, claim, variant, value, margin, holds), ordered by point. */
+/* One row: (point id, key, claim, variant, value, margin, holds), ordered by point. A point
+ * without verdicts has NULL as its claim. */
 static bool load_row(void *context, int ncolumn, const char *const *name,
                      const struct store_value *value)
 {
@@ -190,6 +202,7 @@ static bool load_row(void *context, int ncolumn, const char *const *name,
     }
     struct explain_verdict v = {
         .rule = value[2].kind == STORE_TEXT ? rule_of(l->subject, value[2].text) : -1};
+    /* A point with a verdict of another claim only is known all the same. */
     if (v.rule < 0) return true;
     v.variant = arena_text(a, value[3].text);
     v.value = value[4].kind == STORE_REAL ? value[4].real : NAN;
@@ -200,6 +213,7 @@ static bool load_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* The last number in use; 0 in an empty table. */
 static bool take_id(void *context, int ncolumn, const char *const *name,
                     const struct store_value *value)
 {
@@ -209,6 +223,7 @@ static bool take_id(void *context, int ncolumn, const char *const *name,
     return false;
 }
 
+/* Answers, maps and points of an older identity go together, and the new identity is noted. */
 static bool forget(struct explain_subject *s, struct explain_bench *b, const char *meta)
 {
     static const char *const name[] = {"key", "value"};
@@ -224,6 +239,7 @@ static bool forget(struct explain_subject *s, struct explain_bench *b, const cha
     return false;
 }
 
+/* Points that are stored already are taken over; --force and a changed identity forget them. */
 static bool load(struct explain_subject *s, struct explain_bench *b)
 {
     struct text meta = {0};
@@ -246,6 +262,7 @@ static bool load(struct explain_subject *s, struct explain_bench *b)
                        &b->last_id, b->e);
 }
 
+/* Runs, axes, identity, stored points. */
 bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, const char *name,
                           const struct claim_rule *const *rule, int nrule)
 {
@@ -274,6 +291,7 @@ struct batch {
     bool keep; /* false: for a look, nothing is stored */
 };
 
+/* One variant's verdict at the point in the making. */
 static bool judge_variant(void *context, const struct claim_rule *rule, const struct judgement *j)
 {
     struct batch *t = context;
@@ -287,6 +305,7 @@ static bool judge_variant(void *context, const struct claim_rule *rule, const st
     return true;
 }
 
+/* Verdicts of a point, with the point's transaction. */
 static bool keep_verdicts(struct batch *t)
 {
     static const char *const name[] = {"point_id", "claim", "variant", "value", "margin", "holds"};
@@ -303,6 +322,7 @@ static bool keep_verdicts(struct batch *t)
     return true;
 }
 
+/* A point with its verdicts is one transaction: a search that is killed leaves whole points. */
 static bool keep_point(struct batch *t)
 {
     static const char *const name[] = {"id",       "subject",  "key",       "operators",
@@ -332,7 +352,7 @@ static bool keep_point(struct batch *t)
     return ok;
 }
 
-/* The next point begins without runs; making a database anew takes longer. */
+/* The next point begins without runs. Deleting them takes less time than making a database anew. */
 static bool empty(struct store *s, struct err *e)
 {
     static const char *const status[] = {"ok", "invalid", "deadlock", "failed"};
@@ -341,7 +361,7 @@ static bool empty(struct store *s, struct err *e)
     return true;
 }
 
-/* All runs of a point are there: judge and keep it. */
+/* All runs of a point are there: judge it, store it, and empty the database for the next one. */
 static bool finish_point(struct batch *t)
 {
     const struct explain_request *q = &t->request[t->of[t->kept - 1]];
@@ -354,6 +374,8 @@ static bool finish_point(struct batch *t)
         if (!claims_judge(q->subject->rule[i], t->passing, "explored", judge_variant, t, b->e))
             return false;
     if (!empty(t->passing, b->e)) return false;
+    /* A look (explain_confirm) uses other runs: its point must not be mixed with those of the
+     * search. */
     if (t->keep) {
         p->id = ++b->last_id;
         if (!keep_point(t)) return false;
@@ -364,6 +386,8 @@ static bool finish_point(struct batch *t)
     return true;
 }
 
+/* Results come in the order of the runs: a point is complete when the next run belongs to
+ * another. */
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct batch *t = context;
@@ -378,7 +402,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     return t->of[t->kept] == mine || finish_point(t);
 }
 
-/* The runs of `from` with these operators, at a point. */
+/* The runs of `from` with these operators, at a point: settings changed, identity anew. */
 static void add_runs(struct batch *t, int request, const struct run_spec *from, int n,
                      struct arena *a)
 {
@@ -391,6 +415,7 @@ static void add_runs(struct batch *t, int request, const struct run_spec *from, 
     }
 }
 
+/* The entry behind the last run ends the last point. */
 static bool run_batch(struct batch *t)
 {
     t->of[t->nspec] = -1;
@@ -401,6 +426,7 @@ static bool run_batch(struct batch *t)
     return ok;
 }
 
+/* All points in one campaign: workers are busy until the last run. */
 bool explain_make(struct explain_bench *b, const struct explain_request *request, int n)
 {
     struct batch t = {.bench = b, .request = request, .keep = true};
@@ -416,7 +442,8 @@ bool explain_make(struct explain_bench *b, const struct explain_request *request
     return ok;
 }
 
-/* The runs of the command that the rule needs: "mimdsim paper fig6". */
+/* The runs of the command that the rule needs, "mimdsim paper fig6"; none where it names no such
+ * command. */
 static bool read_study(struct explain_bench *b, const struct claim_rule *rule,
                        struct run_spec **spec, int *n)
 {
@@ -427,6 +454,7 @@ static bool read_study(struct explain_bench *b, const struct claim_rule *rule,
     return true;
 }
 
+/* The same point with the study's own runs, which are more than the search can afford. */
 bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum operators operators,
                      const double *u, struct explain_point *out, int *nrun)
 {

@@ -61,6 +61,7 @@ static const struct explain_axis table[] = {
 
 /* --- the axes of a machine -------------------------------------------------------------------- */
 
+/* The value's origin in the machine file; NULL: a default. */
 static const struct origin *origin_of(const struct origin *o, int n, const char *key)
 {
     for (int i = 0; i < n; i++)
@@ -68,6 +69,7 @@ static const struct origin *origin_of(const struct origin *o, int n, const char 
     return NULL;
 }
 
+/* Every key of the table is a number: another kind would be a mistake of ours. */
 static const struct field *machine_field(const char *key)
 {
     const struct field_table *t;
@@ -79,7 +81,8 @@ static const struct field *machine_field(const char *key)
     return f;
 }
 
-/* The range widened by what another message library of the same machine is published with. */
+/* The range widened by what another message library of the same machine is published with: both
+ * are ranges of what the paper may have used. */
 static void widen(double *low, double *high, const struct origin *other)
 {
     if (!other || other->max <= other->min) return;
@@ -89,7 +92,8 @@ static void widen(double *low, double *high, const struct origin *other)
 
 static bool is_software(const char *key) { return strncmp(key, "software.", 9) == 0; }
 
-/* One row of the table for this machine; false when it has no number to change. */
+/* One row of the table for this machine; false when it has no number to change: a factor of 0 is
+ * 0, and a share can only be added where there is none. */
 static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, const struct origin *o,
                       int n, const struct origin *mpich, int nmpich)
 {
@@ -98,6 +102,7 @@ static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, cons
     for (int k = 0; k < x->nkey; k++) {
         x->field[k] = machine_field(x->key[k]);
         memcpy(&x->nominal[k], (const char *)m + x->field[k]->offset, sizeof(double));
+        /* The serial rate has no range of its own: it is the same processor. */
         const char *ranged = x->map == EXPLAIN_RELATIVE ? "node.flop_rate" : x->key[k];
         widen(&x->low[k], &x->high[k], origin_of(o, n, ranged));
         if (is_software(ranged)) widen(&x->low[k], &x->high[k], origin_of(mpich, nmpich, ranged));
@@ -105,6 +110,7 @@ static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, cons
     return x->map == EXPLAIN_FACTOR ? x->nominal[0] > 0 : x->nominal[0] == 0;
 }
 
+/* The axes of a machine. Its variant with MPICH is optional. */
 bool explain_space_make(struct explain_space *s, const char *name, struct arena *a, struct err *e)
 {
     struct machine_spec m, library;
@@ -157,7 +163,7 @@ double explain_space_value(const struct explain_space *s, const double *u, int i
     }
 }
 
-/* The change that a value is. */
+/* The change that a value is: the inverse of explain_space_value. */
 static double change_of(const struct explain_space *s, const double *u, int i, double value)
 {
     const struct explain_axis *x = &s->axis[i];
@@ -173,6 +179,7 @@ static double change_of(const struct explain_space *s, const double *u, int i, d
     }
 }
 
+/* A point is what its text says: changes are rounded to the values that are printed. */
 void explain_space_snap(const struct explain_space *s, double *u)
 {
     for (int i = 0; i < s->n; i++) {
@@ -185,6 +192,7 @@ void explain_space_snap(const struct explain_space *s, double *u)
     }
 }
 
+/* L1 norm: many small changes are as far as one large one. */
 double explain_space_distance(const struct explain_space *s, const double *u)
 {
     double sum = 0;
@@ -194,6 +202,7 @@ double explain_space_distance(const struct explain_space *s, const double *u)
 
 /* --- settings, runs, words -------------------------------------------------------------------- */
 
+/* What a user would type to simulate this point. */
 void explain_space_settings(const struct explain_space *s, const double *u, struct text *out)
 {
     char number[64];
@@ -205,6 +214,7 @@ void explain_space_settings(const struct explain_space *s, const double *u, stru
         }
 }
 
+/* Settings are written into the struct; then the run has another identity. */
 void explain_space_apply(const struct explain_space *s, const double *u, struct run_spec *run,
                          struct arena *a)
 {
@@ -216,11 +226,13 @@ void explain_space_apply(const struct explain_space *s, const double *u, struct 
     run_identify(run, a);
 }
 
+/* Rounding to three digits may leave a range by a thousandth. */
 static bool within(const struct explain_axis *x, int k, double value)
 {
     return value >= 0.999 * x->low[k] && value <= 1.001 * x->high[k];
 }
 
+/* All keys of an axis must be within their ranges. */
 static bool axis_published(const struct explain_space *s, const double *u, int i)
 {
     const struct explain_axis *x = &s->axis[i];
@@ -236,6 +248,7 @@ bool explain_space_published(const struct explain_space *s, const double *u)
     return true;
 }
 
+/* "the code runs at 20 Mflop/s (2.8 times below nominal, outside the published range ...)" */
 void explain_space_phrase(const struct explain_space *s, const double *u, int i, bool brief,
                           struct text *out)
 {
@@ -246,6 +259,7 @@ void explain_space_phrase(const struct explain_space *s, const double *u, int i,
     text_add(out, "%s %s%s", x->words, number, x->after);
     if (brief) return;
     text_add(out, " (");
+    /* Nominal is none: there is no factor to tell. */
     if (x->map == EXPLAIN_SHARE || x->map == EXPLAIN_SPREAD) {
         text_add(out, "nominal none, no published range)");
         return;

@@ -1,8 +1,12 @@
-/* flag.c - see flag.h. */
+/* flag.c - see flag.h.
+ *
+ * argp knows the options that all verbs share; an option of one verb is taken out before. "--"
+ * ends options here as it does there. */
 #include "app/flag.h"
 
 #include <string.h>
 
+/* argv keeps its NULL at the end. */
 static void drop(int *argc, char **argv, int at, int n)
 {
     for (int i = at; i + n <= *argc; i++) argv[i] = argv[i + n];
@@ -20,6 +24,8 @@ bool take_flag(int *argc, char **argv, const char *name)
     return found;
 }
 
+/* As argp: "--name=value" and "--name value". The last one counts; a value that is missing is
+ * "". */
 const char *take_value(int *argc, char **argv, const char *name)
 {
     const char *value = NULL;

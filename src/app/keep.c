@@ -1,9 +1,13 @@
-/* keep.c - see keep.h. */
+/* keep.c - see keep.h.
+ *
+ * Results of a study replace those of the same scenario, in one transaction: never half old,
+ * half new. */
 #include "app/keep.h"
 
 #include "app/levels.h"
 #include "report/report.h"
 
+/* Ladders and choices together: a choice refers to a rung. */
 bool keep_accuracy(struct store *s, const struct accuracy_report *r, struct err *e)
 {
     static const char *const name[] = {"scenario"};
@@ -39,6 +43,7 @@ bool keep_stability(struct store *s, const struct stability_report *r, struct er
     return false;
 }
 
+/* The figure is drawn from the database, so it can be drawn again by `mimdsim plot`. */
 bool keep_draw(const struct common *c, struct store *s, const char *figure, struct err *e)
 {
     if (!report_figure(s, plan_data_dir(), figure, c->directory, e)) return false;

@@ -1,4 +1,7 @@
-/* levels.c - see levels.h. */
+/* levels.c - see levels.h.
+ *
+ * 'auto-tolerance 2 %' is settled once per family of runs and tolerance, before any run: the
+ * level is part of what identifies a run. */
 #include "app/levels.h"
 
 #include <stdio.h>
@@ -11,6 +14,7 @@
 
 enum { MOST_LEVELS = 8, HEX = 65 };
 
+/* All rungs of a report, numbered in their order. */
 bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *e)
 {
     static const char *const name[] = {"scenario", "ordinal"};
@@ -22,12 +26,13 @@ bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *
     return true;
 }
 
-/* The errors that are known of one family's levels. */
+/* The errors that are known of one family's levels, from earlier ladders. */
 struct known {
     int n;
     struct level_error level[MOST_LEVELS];
 };
 
+/* (level, error, where it was measured) */
 static bool add_known(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     struct known *k = context;
@@ -41,7 +46,8 @@ static bool add_known(void *context, int ncolumn, const char *const *name, const
     return true;
 }
 
-/* The largest error of each level over all points where this family was measured. */
+/* The largest error of each level over all points where this family was measured: an error at
+ * one size must not be hidden by a better one at another size. */
 static bool find_known(struct store *s, const char *family, struct known *k, struct err *e)
 {
     k->n = 0;
@@ -53,7 +59,7 @@ static bool find_known(struct store *s, const char *family, struct known *k, str
                         1, &family, add_known, k, e);
 }
 
-/* Climb the network ladder of the runs of one family and keep it. */
+/* Climb the network ladder of the runs of one family and store it: the next campaign finds it. */
 static bool measure(struct store *s, const struct run_spec *run, int nrun, const char *family,
                     struct err *e)
 {
@@ -62,6 +68,7 @@ static bool measure(struct store *s, const struct run_spec *run, int nrun, const
     struct accuracy_report r;
     int n = 0;
     CHECK(alike);
+    /* Families are compared by their hash (level_choice.h). */
     for (int i = 0; i < nrun; i++) {
         char hex[HEX];
         level_family(&run[i], hex);
@@ -75,7 +82,7 @@ static bool measure(struct store *s, const struct run_spec *run, int nrun, const
     return ok;
 }
 
-/* What one family takes for one tolerance. */
+/* What one family takes for one tolerance; `known` below has one of them per pair. */
 struct settled {
     char family[HEX];
     double tolerance;
@@ -83,7 +90,7 @@ struct settled {
     bool stored, said; /* known before; told to the user */
 };
 
-/* Settle that of run[which]; x->family is known. */
+/* Settle that of run[which]; x->family is known. Returns false when no level is accurate enough. */
 static bool settle(struct store *s, const struct run_spec *run, int nrun, int which,
                    struct settled *x, struct err *e)
 {
@@ -91,6 +98,7 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
     struct known k;
     x->stored = true;
     if (!find_known(s, x->family, &k, e)) return false;
+    /* Never measured: measure now, which takes seconds. */
     if (k.n == 0) {
         x->stored = false;
         if (!measure(s, run, nrun, x->family, e) || !find_known(s, x->family, &k, e)) return false;
@@ -104,7 +112,7 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
     return true;
 }
 
-/* Say once what a family took. */
+/* Say once what a family took, as it decides how accurate all its runs are. */
 static void say(const struct run_spec *run, struct settled *x)
 {
     if (x->said) return;
@@ -119,6 +127,7 @@ static void say(const struct run_spec *run, struct settled *x)
 static int settle_run(struct store *s, const struct run_spec *run, int nrun, int which,
                       struct settled *known, int *n, struct err *e)
 {
+    /* The entry behind the last one is used as a sentinel: the loop ends there at the latest. */
     struct settled *mine = &known[*n];
     level_family(&run[which], mine->family);
     int at = 0;
@@ -129,6 +138,7 @@ static int settle_run(struct store *s, const struct run_spec *run, int nrun, int
     return at;
 }
 
+/* n pairs at most, one per run; one more is the sentinel. */
 bool levels_settle(struct store *s, struct run_spec *run, struct run_order *order, int nrun,
                    bool quiet, struct arena *a, struct err *e)
 {
@@ -147,6 +157,7 @@ bool levels_settle(struct store *s, struct run_spec *run, struct run_order *orde
         if (taken[i] < 0) continue;
         struct settled *x = &known[taken[i]];
         level_take(&run[i], &x->taken, &order[i].level_choice, a);
+        /* A run that is stored needs no remark. */
         if (!quiet && !store_has(s, &run[i])) say(&run[i], x);
     }
     free(known);

@@ -12,6 +12,7 @@
 
 enum { MOST_VERBS = 64 };
 
+/* Verbs and their titles come from the list of verbs. */
 static void print_help(FILE *out)
 {
     fprintf(
@@ -27,6 +28,7 @@ static void print_help(FILE *out)
         "\n'mimdsim VERB --help' describes a verb, with an example. Exit statuses: mimdsim(1).\n");
 }
 
+/* Everything that a result may depend on beside the settings: version, commit, compiler, flags. */
 static void print_version(void)
 {
     struct build b = store_build();
@@ -39,6 +41,7 @@ static void print_version(void)
            b.flags, run_fibers(), sanitizers);
 }
 
+/* The nearest verb; options of the program itself are candidates, too. */
 static int unknown_verb(int argc, char **argv)
 {
     const char *word = argv[1];
@@ -54,7 +57,8 @@ static int unknown_verb(int argc, char **argv)
     return common_fail(&c, &e);
 }
 
-/* An answer that could not be written is none, whatever the verb found. */
+/* An answer that could not be written is none, whatever the verb found: a full disk or a closed
+ * pipe must not end with status 0. */
 static int finish(int status)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return status;
@@ -65,6 +69,7 @@ static int finish(int status)
     return status ? status : err_exit_status(ERR_IO);
 }
 
+/* argp prints argv[0] in messages: "mimdsim run". "-h" is no option of argp's. */
 static int run_verb(const struct verb *v, int argc, char **argv)
 {
     static const char prefix[] = "mimdsim ";
@@ -79,6 +84,7 @@ static int run_verb(const struct verb *v, int argc, char **argv)
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";
+    /* argp's own errors end with the status for wrong usage. */
     argp_err_exit_status = err_exit_status(ERR_USAGE);
     if (argc < 2) {
         print_help(stderr);

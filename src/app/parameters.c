@@ -9,6 +9,7 @@
 
 enum { MOST_MACHINES = 64 };
 
+/* The machines of all runs, each once, in their order. */
 static int machines_of(const struct plan *plan, int nplan, const char **name)
 {
     int n = 0;
@@ -22,6 +23,8 @@ static int machines_of(const struct plan *plan, int nplan, const char **name)
     return n;
 }
 
+/* The published range with units, "" without one. A published figure is no field and has no
+ * unit. */
 const char *parameters_range(const struct origin *o, struct arena *a)
 {
     if (!(o->max > o->min)) return "";
@@ -39,6 +42,8 @@ const char *parameters_range(const struct origin *o, struct arena *a)
     return s;
 }
 
+/* Two passes: origins of all machines, then rows for those with evidence. Values without are
+ * defaults. */
 bool parameters_gather(const struct plan *plan, int nplan, struct arena *a,
                        const struct document_parameter **out, int *n, struct err *e)
 {

@@ -1,4 +1,7 @@
-/* published.c - machines/published.csv into records (published.h). */
+/* published.c - machines/published.csv into records (published.h).
+ *
+ * The file is data that other people check and extend: every mistake in it is refused with its
+ * line, what was expected, and the nearest valid word. */
 #include "app/published.h"
 
 #include <math.h>
@@ -14,7 +17,7 @@ enum { COLUMNS = 14, MOST_SETS = 8 };
 static const char header[] =
     "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
 
-/* What a unit is a unit of. */
+/* What a unit is a unit of: a time in MB/s is a mistake in the file. */
 enum dimension { TIME, SIZE, RATE, FLOPS };
 static const struct {
     const char *name;
@@ -24,6 +27,7 @@ static const struct {
              {"MB/s", 1e6, RATE}, {"GB/s", 1e9, RATE},  {"TB/s", 1e12, RATE},     {"Mflop/s", 1e6, FLOPS},
              {"Gflop/s", 1e9, FLOPS}};
 
+/* Time, but for the quantities named here. */
 static enum dimension dimension_of(enum probe_quantity q)
 {
     switch (q) {
@@ -48,6 +52,7 @@ static enum dimension dimension_of(enum probe_quantity q)
     }
 }
 
+/* With its end, as cells are parts of a line. */
 static char *copied(struct arena *a, const char *s, size_t n)
 {
     char *c = arena_take(a, n + 1);
@@ -56,7 +61,8 @@ static char *copied(struct arena *a, const char *s, size_t n)
     return c;
 }
 
-/* The cells of one line; a quoted cell may hold commas. Returns how many there are. */
+/* The cells of one line, in place; a quoted cell may have commas but no quotes. Returns how many
+ * there are, -1: a quote has no end. */
 static int split(char *line, char *cell[COLUMNS])
 {
     int n = 0;
@@ -74,7 +80,7 @@ static int split(char *line, char *cell[COLUMNS])
     return n + 1;
 }
 
-/* A row without a cause may end before it. */
+/* A row without a cause may end before it: the last cell is then empty. */
 static bool split_row(char *line, char *cell[COLUMNS])
 {
     cell[COLUMNS - 1] = line + strlen(line);
@@ -82,6 +88,7 @@ static bool split_row(char *line, char *cell[COLUMNS])
     return n == COLUMNS || n == COLUMNS - 1;
 }
 
+/* An empty cell is `otherwise`; a number below 0 is refused. */
 static bool number(const char *s, double scale, double otherwise, double *value)
 {
     char *end;
@@ -89,6 +96,7 @@ static bool number(const char *s, double scale, double otherwise, double *value)
     return !*s || (*end == '\0' && isfinite(*value) && *value >= 0);
 }
 
+/* "key=value; key=value" as settings of the machine. */
 static bool split_sets(struct published *p, const char *s, struct arena *a, struct err *e)
 {
     p->set = TAKE(a, MOST_SETS, const char *);
@@ -108,6 +116,7 @@ static const char *const uses[] = {"yes", "no", "other"};
 
 const char *published_use_name(enum published_use use) { return uses[use]; }
 
+/* `other`: published, but not of what is simulated; its cause says why. */
 static bool read_use(struct published *p, const char *s, struct err *e)
 {
     for (int i = 0; i < 3; i++) {
@@ -117,6 +126,7 @@ static bool read_use(struct published *p, const char *s, struct err *e)
     return err_set(e, ERR_DATA, "calibrated: '%s'; expected yes, no or other", s);
 }
 
+/* The unit must be known and fit the quantity. */
 static bool read_unit(struct published *p, struct err *e)
 {
     const char *name[sizeof units / sizeof *units];
@@ -134,6 +144,7 @@ static bool read_unit(struct published *p, struct err *e)
                    near ? near : "", near ? "'?" : "");
 }
 
+/* The nearest name of a quantity where there is one. */
 static bool read_quantity(struct published *p, const char *s, struct err *e)
 {
     const char *name[PROBE_QUANTITIES];
@@ -145,8 +156,8 @@ static bool read_quantity(struct published *p, const char *s, struct err *e)
                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-/* What every row has: a name, a known class of evidence, a source, a value that lies in its own
- * range. */
+/* What every row has: a name, a known class of evidence, a source, a value above 0 that lies in
+ * its own range. */
 static bool check_row(const struct published *p, struct err *e)
 {
     static const char *const class[] = {"P", "PR", "D", "E"};
@@ -162,7 +173,7 @@ static bool check_row(const struct published *p, struct err *e)
                    p->value / p->scale, p->low / p->scale, p->high / p->scale);
 }
 
-/* "+40 %: reason": the error that the reason explains. */
+/* "+40 %: reason" as a cause: the error that the reason explains. NAN: no number. */
 static void read_missed(struct published *p)
 {
     char *end;
@@ -179,7 +190,7 @@ static bool check_cause(const struct published *p, struct err *e)
            err_set(e, ERR_DATA, "%s: calibrated is 'other', and no cause is given", p->id);
 }
 
-/* "1024@16": 1024 bytes on 16 ranks. */
+/* "1024@16" as the place: 1024 bytes on 16 ranks. Without @ the quantity's own number of ranks. */
 static bool take_ranks(struct published *p, struct err *e)
 {
     const char *ranks = strchr(p->at_text, '@');
@@ -193,6 +204,7 @@ static bool take_ranks(struct published *p, struct err *e)
     return true;
 }
 
+/* One row from its cells; reading goes on only while everything is right. */
 static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, struct err *e)
 {
     *p = (struct published){.id = cell[0],
@@ -206,6 +218,7 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
     if (!read_use(p, cell[9], e)) return false;
     if (!take_ranks(p, e)) return false;
     char at[32];
+    /* The number in front of @. */
     snprintf(at, sizeof at, "%.*s", (int)strcspn(p->at_text, "@"), p->at_text);
     if (!*cell[4] || !number(at, 1, 0, &p->at) || !number(cell[4], p->scale, 0, &p->value) ||
         !number(cell[5], p->scale, p->value, &p->low) ||
@@ -215,6 +228,7 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
     return split_sets(p, cell[11], a, e) && check_row(p, e) && check_cause(p, e);
 }
 
+/* Ids are quoted in reports: they must be unique. */
 static bool is_new(const struct published *row, int n, struct err *e)
 {
     for (int i = 0; i < n; i++)
@@ -223,6 +237,8 @@ static bool is_new(const struct published *row, int n, struct err *e)
     return true;
 }
 
+/* Line by line, in place; \r\n and \n both end a line. The first mistake ends it, with file and
+ * line. */
 static bool read_lines(const char *path, char *s, struct arena *a, struct published *row, int *n,
                        struct err *e)
 {
@@ -248,6 +264,7 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
     return true;
 }
 
+/* As many records as lines are enough. The text is copied: records point into it. */
 bool published_read(const char *path, struct arena *a, struct published **row, int *n,
                     struct err *e)
 {

@@ -1,4 +1,7 @@
-/* run_table.c - see run_table.h. */
+/* run_table.c - see run_table.h.
+ *
+ * The table is a query, so that what `run` prints and what a user asks of the database are the
+ * same numbers. */
 #include "app/run_table.h"
 
 #include <string.h>
@@ -7,7 +10,7 @@
 
 enum { MOST_SWEPT = 64 };
 
-/* Swept keys that have a column in every table. */
+/* Swept keys that have a column in every table, under another name. */
 static const char *const always[] = {"machine.name",  "kernel.name",           "kernel.formulation",
                                      "kernel.solver", "machine.network.level", "model.n",
                                      "ranks"};
@@ -28,6 +31,7 @@ static const char *const fixed[] = {"machine",
                                     "relative_error",
                                     "measured_us"};
 
+/* %s: whether messages are swept; else only micro-benchmarks have a message size. */
 static const char first_sql[] =
     "SELECT r.machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation,"
     " iif(r.nu > 0, r.solver, NULL) AS solver,"
@@ -35,6 +39,7 @@ static const char first_sql[] =
     " NULL) AS message,"
     " r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P";
 
+/* The rows of the plan, in its order: ?1 is a JSON array of [hash, seed, repetition]. */
 static const char last_sql[] =
     ", iif(r.status IN ('ok', 'invalid'), r.makespan_ps / 1e6, NULL) AS makespan_us,"
     " (SELECT s.speedup FROM v_speedup s WHERE s.run_id = r.id AND s.baseline = 'fastest serial')"
@@ -61,12 +66,14 @@ static bool ends_in(const char *key, const char *name)
     return m <= n && strcmp(key + n - m, name) == 0 && (m == n || key[n - m - 1] == '.');
 }
 
-/* The shortest end of swept key number `at` that names no other column. */
+/* The shortest end of swept key number `at` that names no other column: "bandwidth" instead of
+ * "machine.network.link.bandwidth", unless something else ends so. */
 static const char *short_name(const struct plan *p, int at)
 {
     const char *key = p->swept[at].key, *name = key + strlen(key);
     while (name > key) {
         do name--;
+        /* One word more to the left each time. */
         while (name > key && name[-1] != '.');
         bool taken = is_one_of(name, fixed, sizeof fixed / sizeof *fixed);
         for (int i = 0; i < p->nswept; i++)
@@ -76,6 +83,7 @@ static const char *short_name(const struct plan *p, int at)
     return name;
 }
 
+/* A swept setting as a column; numbers as numbers, so that they sort and align. */
 static void add_column(struct text *sql, const struct plan *p, int at)
 {
     const char *key = p->swept[at].key, *name = short_name(p, at);
@@ -86,6 +94,7 @@ static void add_column(struct text *sql, const struct plan *p, int at)
                  p->swept[at].number ? "CAST(value AS NUMERIC)" : "value", key, name);
 }
 
+/* The columns of a plan: what is swept, repetitions where there are any. */
 static void make_sql(const struct plan *p, struct text *sql)
 {
     bool message = false, repeated = false;

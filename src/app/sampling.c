@@ -1,5 +1,9 @@
 /* sampling.c - drawing parameters, running the samples as one campaign, judging each; see
- * sampling.h. */
+ * sampling.h.
+ *
+ * How much of a verdict hangs on numbers that nobody knows exactly? Each sample is the study in
+ * small (the scenarios sample-*), with every uncertain parameter of its machine drawn from its
+ * published range. */
 #include "app/sampling.h"
 
 #include <math.h>
@@ -15,6 +19,7 @@
 #include "run/run.h"
 #include "spec/field.h"
 
+/* Fixed: samples are the same in every study, and stored ones are found again. */
 enum { SAMPLING_SEED = 2002 };
 
 /* A parameter with a published range. */
@@ -47,12 +52,14 @@ struct sampler {
     int kept;              /* specs handed over so far */
 };
 
+/* Numbers with a range that is not empty. */
 static bool is_drawn(const struct origin *o, const struct field *f)
 {
     bool number = f->kind == FIELD_REAL || f->kind == FIELD_INT || f->kind == FIELD_INT64;
     return number && o->max > o->min && o->min >= 0;
 }
 
+/* All uncertain parameters of a machine, once, however many scenes it has. */
 static bool add_machine(struct sampler *p, const char *machine)
 {
     struct origin *origin;
@@ -78,6 +85,7 @@ static bool add_machine(struct sampler *p, const char *machine)
     return true;
 }
 
+/* Scenarios called sample-*: a new one takes part without a line here. */
 static bool find_scenes(struct sampler *p)
 {
     const char **stem, **title;
@@ -99,8 +107,9 @@ static bool find_scenes(struct sampler *p)
                                     "there is no scenario sample-*.yaml to sample with");
 }
 
-/* Log-uniform; uniform from a range that begins at 0. Every parameter has a stream of its own, so a
- * new one does not change the others' draws. */
+/* Log-uniform, as rates and times are known by factors; uniform from a range that begins at 0.
+ * Every parameter has a random stream of its own, so a new one does not change the others'
+ * draws. */
 static double draw(const struct uncertain *u, int sample)
 {
     uint64_t name = DIGEST_START;
@@ -109,9 +118,11 @@ static double draw(const struct uncertain *u, int sample)
     struct random r = random_make(SAMPLING_SEED, (uint64_t)sample, name);
     double x = random_uniform(&r, 0, 1);
     double value = u->min > 0 ? u->min * exp(x * log(u->max / u->min)) : x * u->max;
+    /* A whole number stays one. */
     return u->field->kind == FIELD_REAL ? value : round(value);
 }
 
+/* "machine.KEY=VALUE", as --set takes it: the value is read back with all its digits. */
 static const char *setting(struct sampler *p, const struct uncertain *u, double value)
 {
     struct text t = {0};
@@ -123,6 +134,7 @@ static const char *setting(struct sampler *p, const struct uncertain *u, double 
     return s;
 }
 
+/* One scenario in one sample: only the parameters of its own machine are set. */
 static bool read_plan(struct sampler *p, int sample, int scene)
 {
     const char **set = TAKE(p->arena, p->nuncertain + 1, const char *);
@@ -134,6 +146,7 @@ static bool read_plan(struct sampler *p, int sample, int scene)
     return plan_read(&p->plan[sample * p->nscene + scene], p->scene[scene].name, &o, p->e);
 }
 
+/* Draws, plans, then all runs in one array, sample by sample. */
 static bool read_plans(struct sampler *p)
 {
     p->drawn = TAKE(p->arena, size_sum(size_product(p->nsample, p->nuncertain), 1), double);
@@ -154,11 +167,13 @@ static bool read_plans(struct sampler *p)
             p->spec[at] = p->plan[i].run[k];
             p->sample_of[at++] = i / p->nscene;
         }
+    /* ends the last sample */
     p->sample_of[at] = -1;
     return true;
 }
 
-/* What the samples depend on: every configuration, every claim. */
+/* What the samples depend on: every configuration and every claim. A changed claim is judged
+ * anew. */
 static void identity(const struct sampler *p, char hex[65])
 {
     struct text all = {0};
@@ -169,6 +184,7 @@ static void identity(const struct sampler *p, char hex[65])
     text_free(&all);
 }
 
+/* One hash. */
 static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -177,6 +193,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
     return false;
 }
 
+/* Whether these very samples are stored. */
 static bool are_stored(const struct sampler *p, const char *hex)
 {
     char stored[65] = "";
@@ -187,6 +204,7 @@ static bool are_stored(const struct sampler *p, const char *hex)
            strcmp(stored, hex) == 0;
 }
 
+/* What was drawn, for figures that show a verdict against a parameter. */
 static bool keep_settings(struct sampler *p, int sample)
 {
     static const char *const name[] = {"sample", "key", "value"};
@@ -202,6 +220,7 @@ static bool keep_settings(struct sampler *p, int sample)
     return true;
 }
 
+/* All runs of a sample are there: judge all claims by them, then forget the runs. */
 static bool finish_sample(struct sampler *p, int sample)
 {
     if (!store_commit(p->passing, p->e) ||
@@ -212,6 +231,8 @@ static bool finish_sample(struct sampler *p, int sample)
     return true;
 }
 
+/* Results come in the order of the runs, whatever worker made them: a sample is complete when
+ * the next run belongs to another. */
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct sampler *p = context;
@@ -225,6 +246,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     return p->sample_of[p->kept] == sample || finish_sample(p, sample);
 }
 
+/* In one transaction: no verdict of old samples stays beside new ones. */
 static bool clear_tables(struct sampler *p)
 {
     bool ok = store_begin(p->store, p->e);
@@ -247,6 +269,7 @@ static bool keep_meta(struct sampler *p, const char *key, const char *text)
     return store_insert(p->store, "meta", 2, name, value, p->e);
 }
 
+/* The hash is stored last: an interrupted sampling begins again. */
 static bool run_samples(struct sampler *p)
 {
     char hex[65];

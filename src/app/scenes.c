@@ -9,10 +9,12 @@
 #include "base/progress.h"
 #include "study/savings.h"
 
+/* A chain, a floating base, a tree, a loop and a stiff system: one of each kind. */
 static const char *const scene[] = {"speedup-t3e", "free-floating", "tree-humanoid", "four-bar",
                                     "stiff-polymer"};
 enum { SCENES = sizeof scene / sizeof *scene };
 
+/* One row is enough. */
 static bool note_row(void *context, int ncolumn, const char *const *name, const char *const *value)
 {
     (void)ncolumn;
@@ -22,7 +24,7 @@ static bool note_row(void *context, int ncolumn, const char *const *name, const 
     return false;
 }
 
-/* Whether `sql` with this scene has no row yet, or is to be measured in any case. */
+/* Whether `sql` with this scene has no row yet, or is to be measured in any case (--force). */
 static bool is_wanted(const struct common *c, struct store *s, const char *sql, const char *name,
                       bool *wanted, struct err *e)
 {
@@ -32,6 +34,7 @@ static bool is_wanted(const struct common *c, struct store *s, const char *sql, 
     return ok;
 }
 
+/* Error against run time of one scenario. */
 static bool ladders(const struct common *c, const struct plan *p, struct store *s, const char *name,
                     struct err *e)
 {
@@ -46,7 +49,7 @@ static bool ladders(const struct common *c, const struct plan *p, struct store *
     return ok;
 }
 
-/* p NULL: the built-in suite. */
+/* Stability: of the scenes of p, or of the built-in suite (p NULL). */
 static bool grades(const struct common *c, const struct plan *p, struct store *s, const char *name,
                    struct err *e)
 {
@@ -62,6 +65,7 @@ static bool grades(const struct common *c, const struct plan *p, struct store *s
     return ok;
 }
 
+/* What leaving out saves, for each omission of the scenario. */
 static bool savings(const struct common *c, const struct plan *p, struct store *s, const char *name,
                     struct err *e)
 {
@@ -80,6 +84,7 @@ static bool savings(const struct common *c, const struct plan *p, struct store *
     return ok;
 }
 
+/* The suite, then three studies per scene. */
 bool scenes_measure(const struct common *c, struct store *s, struct err *e)
 {
     if (!grades(c, NULL, s, "suite", e)) return false;

@@ -1,4 +1,7 @@
-/* shard.c - see shard.h. */
+/* shard.c - see shard.h.
+ *
+ * Which shard a run belongs to follows from its identity alone: hosts that read the same
+ * scenario agree without talking to each other. */
 #include "app/shard.h"
 
 #include <stdio.h>
@@ -11,6 +14,7 @@ bool shard_parse(const char *text, struct shard *out, struct err *e)
     *out = (struct shard){0};
     if (text == NULL) return true;
     int used = 0;
+    /* %n tells whether the whole text was read. */
     const bool read = sscanf(text, "%9d/%9d%n", &out->number, &out->of, &used) == 2 && text[used] == '\0';
     if (read && out->number >= 1 && out->number <= out->of && out->of <= MOST_SHARDS) return true;
     return err_set(e, ERR_USAGE, "--shard '%.40s': expected K/N with 1 <= K <= N <= %d, such as 1/8", text,
@@ -20,6 +24,7 @@ bool shard_parse(const char *text, struct shard *out, struct err *e)
 int shard_of(const struct run_spec *run, int of)
 {
     /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by one. */
+    /* Fifteen hexadecimal digits fit into 64 bits and are more than enough to be even. */
     char digits[HASH_DIGITS + 1];
     snprintf(digits, sizeof digits, "%.*s", HASH_DIGITS, run->config_hash);
     return (int)((strtoull(digits, NULL, 16) + (unsigned)run->rep) % (unsigned)of) + 1;

@@ -1,4 +1,7 @@
-/* validation.c - published figures judged (validation.h). */
+/* validation.c - published figures judged (validation.h).
+ *
+ * What was used in calibration must come out within 5 to 20 %, what was not within 30 %: the
+ * first is a test of the program, the second one of the model. */
 #include "app/validation.h"
 
 #include <math.h>
@@ -7,12 +10,15 @@
 
 #include "base/text.h"
 
+/* Cuts and wires follow from the topology by arithmetic: there is little to be wrong. */
 static bool is_cut(const struct published *p)
 {
     return p->quantity == PROBE_BISECTION || p->quantity == PROBE_GLOBAL ||
            p->quantity == PROBE_WIRE;
 }
 
+/* The limit of the error, as the verb's help states it; wider where the source is quoted from
+ * memory. */
 static double tolerance_of(const struct published *p)
 {
     bool recalled = strcmp(p->evidence, "PR") == 0 || strcmp(p->evidence, "E") == 0;
@@ -21,9 +27,9 @@ static double tolerance_of(const struct published *p)
     return recalled ? 0.2 : 0.1;
 }
 
-/* Whether the error is the one that the row's cause explains. A cause without one explains nothing
- * that was measured.
- */
+/* Whether the error is the one that the row's cause explains: a cause names the error that it
+ * stands for, and any other error is a new one. A cause without a number explains nothing that
+ * was measured. */
 static bool cause_fits(const struct published *p, struct outcome *o)
 {
     char error[32];
@@ -35,6 +41,8 @@ static bool cause_fits(const struct published *p, struct outcome *o)
     return false;
 }
 
+/* The order counts: what was not measured, a cause that does not fit, rows that cannot be
+ * tested, then the limit or the published range. */
 void validation_judge(const struct published *p, struct outcome *o)
 {
     o->tolerance = tolerance_of(p);
@@ -52,6 +60,7 @@ const char *validation_level_name(int level)
     return network_level_name((enum network_level)level);
 }
 
+/* Keys in the order of the alphabet; NAN becomes null. */
 void validation_levels_json(const double level[LEVELS], double scale, struct json *j)
 {
     enum network_level sorted[LEVELS];
@@ -63,6 +72,7 @@ void validation_levels_json(const double level[LEVELS], double scale, struct jso
     json_end(j);
 }
 
+/* Every level, for quantities in which ranks share links. */
 static void measure_levels(const struct published *p, const struct machine_spec *m,
                            struct outcome *o)
 {
@@ -78,17 +88,20 @@ static void measure_levels(const struct published *p, const struct machine_spec 
     }
 }
 
-/* A machine that lacks the quantity is an outcome; a machine that cannot be read is an error. */
+/* Measure and judge one row. A machine that lacks the quantity is an outcome; a machine that
+ * cannot be read is an error. */
 bool validation_measure(const struct published *p, struct outcome *o, struct arena *a,
                         struct err *e)
 {
     struct machine_spec m;
+    /* Rows may change the machine: another library, another number of nodes. */
     struct plan_options options = {.nset = p->nset, .set = p->set};
     *o = (struct outcome){.value = NAN};
     if (!plan_machine(&m, p->machine, &options, a, NULL, NULL, e)) return false;
     struct err why;
     err_clear(&why);
     o->measured = probe_measure(&m, p->quantity, p->at, p->ranks, &o->value, &why);
+    /* `add`: what the benchmark measures beside the network, such as memories. */
     o->value = o->measured ? o->value + p->add : NAN;
     text_copy(o->why, sizeof o->why, why.text);
     validation_judge(p, o);
@@ -102,7 +115,8 @@ static int ascending(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-/* The points of one use; `size` is scratch of n. */
+/* The points of one use; `size` is scratch of n. Estimates (class E) are in no group: they would
+ * judge themselves. */
 static struct validation_group group(const struct published *const *p, const struct outcome *o,
                                      int n, enum published_use use, double *size)
 {
@@ -121,10 +135,12 @@ static struct validation_group group(const struct published *const *p, const str
     if (g.n == 0) return g;
     g.mean /= g.n;
     qsort(size, (size_t)g.n, sizeof *size, ascending);
+    /* The mean of the two middle ones where their number is even. */
     g.median = (size[(g.n - 1) / 2] + size[g.n / 2]) / 2;
     return g;
 }
 
+/* Counts over all rows, then the groups. */
 struct validation_summary validation_summarize(const struct published *const *p,
                                                const struct outcome *o, int n)
 {
