@@ -9,7 +9,8 @@
 #include "loader/block_table.h"
 #include "machine/node_cost.h"
 
-/* Reads: the bytes of an image that may be written, by their address in the file; NULL: they are not all there. */
+/* Reads: the bytes of an image that may be written, by their address in the file; NULL: they are
+ * not all there. */
 typedef void *block_at_fn(const void *image, uint64_t address, size_t size);
 
 /* A table as it lies in memory. */
@@ -19,17 +20,20 @@ struct block_table {
     uint64_t address; /* of entry[0] in the file */
 };
 
-/* block_cost_ps: cost of a block on a node [ps]: node_cost_code_ps, times `factor`, to the nearest picosecond. */
+/* block_cost_ps: cost of a block on a node [ps]: node_cost_code_ps, times `factor`, to the nearest
+ * picosecond. */
 int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts, double factor);
 
 /* block_costs_patch: write the cost of every block of `table` into the code of the image.
  *
  *   at, image  in      where the image's bytes are; they are written
- *   c, factor  in      the node of the run's machine, and what its times are multiplied by (1: as they are)
+ *   c, factor  in      the node of the run's machine, and what its times are multiplied by (1: as
+ * they are)
  *
- * Returns false with ERR_DATA (the table does not fit the code: not made by `mimdsim cc`, or damaged) or ERR_CONFIG (a
- * block takes 2.1 ms or more: it does not fit in 31 bits of picoseconds); the image is then not to be used. */
-bool block_costs_patch(const struct block_table *table, block_at_fn *at, const void *image, const struct node_cost *c,
-                       double factor, struct err *e);
+ * Returns false with ERR_DATA (the table does not fit the code: not made by `mimdsim cc`, or
+ * damaged) or ERR_CONFIG (a block takes 2.1 ms or more: it does not fit in 31 bits of picoseconds);
+ * the image is then not to be used. */
+bool block_costs_patch(const struct block_table *table, block_at_fn *at, const void *image,
+                       const struct node_cost *c, double factor, struct err *e);
 
 #endif

@@ -1,21 +1,24 @@
-/* block_table.h - what an image of `mimdsim cc` says of its code: basic blocks, what each does, who compiled it.
+/* block_table.h - what an image of `mimdsim cc` says of its code: basic blocks, what each does, who
+ * compiled it.
  *
  * In every basic block of the program stands one instruction
  *
  *     4d 8d bf IMM32      lea IMM32(%r15), %r15
  *
- * that adds the block's cost in picoseconds to register r15, which the compiler leaves alone (-ffixed-r15) and which
- * the program's stubs hand over to the simulator. lea, because it leaves the flags as they are. The immediate is 0 in
- * the file; it is written when the image is loaded for a run, from the costs of the run's machine (block_costs.h).
+ * that adds the block's cost in picoseconds to register r15, which the compiler leaves alone
+ * (-ffixed-r15) and which the program's stubs hand over to the simulator. lea, because it leaves
+ * the flags as they are. The immediate is 0 in the file; it is written when the image is loaded for
+ * a run, from the costs of the run's machine (block_costs.h).
  *
- * Section `mimdsim_blocks` (read-only, 4-byte aligned) is an array of struct block_entry, one for each block, in no
- * order that matters. Each piece of it is in the COMDAT group of its code and linked to the section of its code, so
- * that the linker drops both or neither.
+ * Section `mimdsim_blocks` (read-only, 4-byte aligned) is an array of struct block_entry, one for
+ * each block, in no order that matters. Each piece of it is in the COMDAT group of its code and
+ * linked to the section of its code, so that the linker drops both or neither.
  *
- * Section `.note.mimdsim` (SHT_NOTE) has one note for each object that was compiled: name "mimdsim", type
- * BLOCK_NOTE_OBJECT, descriptor: BLOCK_TABLE_ABI as 32 bits, then a text that ends in NUL: the source's name, the
- * compiler, and the flags that act on code, as "sum.c; GCC: (Debian 12.2.0-14) 12.2.0; -O2 -g". An object without it
- * was not compiled by `mimdsim cc`. All numbers are little-endian. */
+ * Section `.note.mimdsim` (SHT_NOTE) has one note for each object that was compiled: name
+ * "mimdsim", type BLOCK_NOTE_OBJECT, descriptor: BLOCK_TABLE_ABI as 32 bits, then a text that ends
+ * in NUL: the source's name, the compiler, and the flags that act on code, as "sum.c; GCC:
+ * (Debian 12.2.0-14) 12.2.0; -O2 -g". An object without it was not compiled by `mimdsim cc`. All
+ * numbers are little-endian. */
 #ifndef LOADER_BLOCK_TABLE_H
 #define LOADER_BLOCK_TABLE_H
 
@@ -31,16 +34,19 @@ enum { BLOCK_TABLE_ABI = 1, BLOCK_NOTE_OBJECT = 1 };
 #define BLOCK_ADD_OPCODE "\x4d\x8d\xbf"
 enum { BLOCK_ADD_OPCODE_BYTES = 3 };
 
-/* What one execution of a block does, in the classes of base/work.h and two more. The filter starts a new block before
- * a count would overflow. */
+/* What one execution of a block does, in the classes of base/work.h and two more. The filter starts
+ * a new block before a count would overflow. */
 struct block_counts {
-    uint16_t instruction; /* instructions; a vector instruction counts once for each 8 bytes of its registers */
-    uint16_t flop;        /* floating-point additions, subtractions, multiplications, by lanes; a fused one is two */
-    uint16_t div;         /* divisions, floating-point by lanes and of integers */
-    uint16_t sqrt;        /* square roots, by lanes */
-    uint16_t trig;        /* elementary functions called: sin, exp, ...; pow and sincos are two */
-    uint16_t call;        /* calls; their instructions are counted as such, so that node_cost.h does not price them */
-    uint16_t bytes;       /* loaded and stored, but for the stack frame and constants [B] */
+    uint16_t instruction; /* instructions; a vector instruction counts once for each 8 bytes of its
+                             registers */
+    uint16_t flop; /* floating-point additions, subtractions, multiplications, by lanes; a fused one
+                      is two */
+    uint16_t div;  /* divisions, floating-point by lanes and of integers */
+    uint16_t sqrt; /* square roots, by lanes */
+    uint16_t trig; /* elementary functions called: sin, exp, ...; pow and sincos are two */
+    uint16_t call; /* calls; their instructions are counted as such, so that node_cost.h does not
+                      price them */
+    uint16_t bytes; /* loaded and stored, but for the stack frame and constants [B] */
 };
 
 struct block_entry {
@@ -51,9 +57,11 @@ struct block_entry {
 
 enum block_kind {
     BLOCK_ADD, /* IMM32 of the lea above */
-    BLOCK_RATE /* a 32-bit word in data or code that becomes the cost of the counts: for code that multiplies it */
+    BLOCK_RATE /* a 32-bit word in data or code that becomes the cost of the counts: for code that
+                  multiplies it */
 };
 
-_Static_assert(sizeof(struct block_entry) == 20, "entries are written by the assembler as one long and eight words");
+_Static_assert(sizeof(struct block_entry) == 20,
+               "entries are written by the assembler as one long and eight words");
 
 #endif
