@@ -46,11 +46,16 @@ static struct guard *guard_of_process(void)
     return s.ss_size == GUARD_BYTES && g->magic == GUARD_MAGIC ? g : NULL;
 }
 
-/* The rank on whose stack `sp` is: of the stacks that begin above it the nearest. */
-static const struct loader_instance *instance_by_stack(const struct loader_template *t,
-                                                       uintptr_t sp)
+/* The rank that ran: whose program text `pc` is, or, in the C library or the simulator, on whose
+ * stack `sp` is: of the stacks that begin above it the nearest. */
+static const struct loader_instance *running_instance(const struct loader_template *t, uint64_t pc,
+                                                      uintptr_t sp)
 {
     const struct loader_instance *best = NULL;
+    const char *file;
+    uint64_t at;
+    int rank;
+    if (loader_find_address(t, (void *)(uintptr_t)pc, &rank, &file, &at)) return &t->instance[rank];
     for (int k = 0; k < t->nrank; k++) {
         const struct loader_instance *i = &t->instance[k];
         if (!i->base || !i->outermost || i->stack < sp || i->stack - sp > MOST_STACK) continue;
@@ -103,14 +108,20 @@ static void note_frames(struct crash_record *r, const struct loader_instance *i,
         if (is_return(i, word[k])) add_frame(r, i->t, word[k] - 1);
 }
 
-/* An address just outside of what the stack has, which is protected: its end. */
+/* An access near the stack pointer, far below the stack's beginning, to what is protected or not
+ * there: its end. Where frames of many pages step over the guard page, the stack pointer is far
+ * off, too. */
 static bool is_stack_overflow(const siginfo_t *info, const struct loader_instance *i, uintptr_t sp)
 {
+    enum { NEAR = 1 << 20, LEAST_DEPTH = 16 * 1024 };
     const uintptr_t at = (uintptr_t)info->si_addr;
-    if (info->si_signo != SIGSEGV || info->si_code != SEGV_ACCERR) return false;
-    return at < i->stack && i->stack - at < MOST_STACK &&
-           (at + (1 << 20) > sp || sp - at < MOST_STACK) &&
-           !loader_find_address(i->t, info->si_addr, NULL, &(const char *){NULL}, &(uint64_t){0});
+    const char *file;
+    uint64_t in_file;
+    if (info->si_signo != SIGSEGV || (info->si_code != SEGV_ACCERR && info->si_code != SEGV_MAPERR))
+        return false;
+    if (at > i->stack - LEAST_DEPTH || i->stack - at > MOST_STACK) return false;
+    if ((at > sp ? at - sp : sp - at) > NEAR) return false;
+    return !loader_find_address(i->t, info->si_addr, NULL, &file, &in_file);
 }
 
 static void note_rank(struct crash_record *r, const struct loader_template *t,
@@ -119,7 +130,7 @@ static void note_rank(struct crash_record *r, const struct loader_template *t,
 #ifdef __x86_64__
     const uintptr_t sp = (uintptr_t)u->uc_mcontext.gregs[REG_RSP];
     const uint64_t pc = (uint64_t)u->uc_mcontext.gregs[REG_RIP];
-    const struct loader_instance *i = instance_by_stack(t, sp);
+    const struct loader_instance *i = running_instance(t, pc, sp);
     if (!i) return;
     r->rank = i->host.rank;
     const bool overflow = *kind == CRASH_SIGNAL && is_stack_overflow(info, i, sp);

@@ -15,6 +15,7 @@
 
 #include "base/check.h"
 #include "base/progress.h"
+#include "loader/crash.h"
 #include "measure/run_heartbeat.h"
 #include "run/run.h"
 
@@ -93,6 +94,7 @@ struct worker {
     pid_t pid;
     int orders, answers; /* pipe ends of the parent */
     int busy;            /* run number it works on, -1: none */
+    struct crash_record *crash; /* shared with it: how it crashed, NULL: no memory for that */
 };
 
 struct campaign {
@@ -145,10 +147,14 @@ static struct run_order with_heartbeat(const struct run_order *order, int index,
     return own;
 }
 
-static _Noreturn void worker_main(const struct campaign *c, struct run_heartbeat *heartbeat, int orders, int answers)
+static _Noreturn void worker_main(const struct campaign *c, int at, int orders, int answers)
 {
     int index;
+    struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
     struct run_cache *cache = run_cache_create();
+    struct err unguarded; /* a crash is then told by its signal alone */
+    err_clear(&unguarded);
+    if (c->worker[at].crash) crash_guard_begin(c->worker[at].crash, &unguarded);
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
@@ -164,6 +170,9 @@ static _Noreturn void worker_main(const struct campaign *c, struct run_heartbeat
 static bool start_worker(struct campaign *c, int at, struct err *e)
 {
     int orders[2], answers[2];
+    struct crash_record *crash = c->worker[at].crash ? c->worker[at].crash : crash_record_create();
+    c->worker[at].crash = crash;
+    if (crash) crash_record_clear(crash);
     if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
     pid_t pid = fork();
     if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
@@ -175,11 +184,11 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
             close(c->worker[i].orders);
             close(c->worker[i].answers);
         }
-        worker_main(c, c->heartbeat ? &c->heartbeat[at] : NULL, orders[0], answers[1]);
+        worker_main(c, at, orders[0], answers[1]);
     }
     close(orders[0]);
     close(answers[1]);
-    c->worker[at] = (struct worker){pid, orders[1], answers[0], -1};
+    c->worker[at] = (struct worker){pid, orders[1], answers[0], -1, crash};
     if (at == c->nworker) c->nworker++;
     return true;
 }
@@ -234,20 +243,39 @@ static bool hand_over(struct campaign *c)
     return true;
 }
 
-/* The run of a worker that died has failed; another worker takes its place for those that are left. */
-static bool replace_worker(struct campaign *c, struct worker *w, struct err *why, struct err *e)
+/* Whether a run executes code of people, which may crash, loop for ever, or leave memory behind. */
+static bool loads_code(const struct run_spec *spec)
+{
+    return spec->program.kind == PROGRAM_KERNEL || spec->program.kind == PROGRAM_MPI;
+}
+
+/* Wait for the end of a worker that gets no more orders. */
+static int end_worker(struct worker *w)
 {
     int status = 0;
     close(w->orders);
     close(w->answers);
-    kill(w->pid, SIGKILL); /* it may only have answered wrongly */
     while (waitpid(w->pid, &status, 0) < 0 && errno == EINTR) {}
     w->pid = 0;
-    if (WIFSIGNALED(status))
-        err_set(why, ERR_INTERNAL, "its worker process was killed by signal %d (%s)", WTERMSIG(status),
+    return status;
+}
+
+/* The run of a worker that died has failed; another worker takes its place for those that are left. A crash that the
+ * worker has described was the run's own end, anything else is a run that could not be made. */
+static bool replace_worker(struct campaign *c, struct worker *w, struct answer *a, struct err *e)
+{
+    kill(w->pid, SIGKILL); /* it may only have answered wrongly */
+    const int status = end_worker(w);
+    err_clear(&a->error);
+    a->ok = w->crash && crash_text(w->crash, a->error.text, sizeof a->error.text);
+    if (a->ok) {
+        a->result = refused_result(&a->error);
+        a->result.nrank = c->spec[a->index].nrank;
+    } else if (WIFSIGNALED(status))
+        err_set(&a->error, ERR_INTERNAL, "its worker process was killed by signal %d (%s)", WTERMSIG(status),
                 strsignal(WTERMSIG(status)));
     else
-        err_set(why, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
+        err_set(&a->error, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
                 WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused more memory" : "");
     return start_worker(c, (int)(w - c->worker), e);
 }
@@ -258,10 +286,12 @@ static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
     c->arena[index] = arena_create();
     c->slot[index] = TAKE(c->arena[index], 1, struct answer);
     if (!receive_answer(w->answers, c->slot[index], c->arena[index])) {
-        struct err why;
-        err_clear(&why);
-        if (!replace_worker(c, w, &why, e)) return false;
-        *c->slot[index] = (struct answer){.index = index, .error = why};
+        *c->slot[index] = (struct answer){.index = index};
+        if (!replace_worker(c, w, c->slot[index], e)) return false;
+    } else if (loads_code(&c->spec[index])) {
+        /* What such a run has left in the process goes with the process. */
+        end_worker(w);
+        if (!start_worker(c, (int)(w - c->worker), e)) return false;
     }
     CHECK(c->slot[index]->index == index);
     give_order(c, w);
@@ -294,8 +324,10 @@ static void stop_workers(struct campaign *c, bool at_once)
         close(c->worker[i].answers);
         if (at_once) kill(c->worker[i].pid, SIGKILL);
     }
-    for (int i = 0; i < c->nworker; i++)
+    for (int i = 0; i < c->nworker; i++) {
         if (c->worker[i].pid > 0) waitpid(c->worker[i].pid, NULL, 0);
+        crash_record_destroy(c->worker[i].crash);
+    }
 }
 
 static bool run_here(struct campaign *c)
@@ -347,15 +379,20 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
                   bool quiet, run_done_fn *done, void *context, struct err *e)
 {
     struct campaign c = {.spec = spec, .order = order, .nspec = nspec, .skip = skip, .done = done, .context = context};
-    for (int i = 0; i < nspec; i++) c.ntodo += !(skip && skip[i]);
+    bool apart = false; /* people's code never runs in this process */
+    for (int i = 0; i < nspec; i++) {
+        if (skip && skip[i]) continue;
+        c.ntodo++;
+        if (loads_code(&spec[i])) apart = true;
+    }
     if (c.ntodo == 0) return true;
     c.progress = progress_make("runs", c.ntodo, quiet);
     if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (workers > c.ntodo) workers = c.ntodo;
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
     if (!quiet) c.heartbeat = heartbeats_make();
-    if (c.heartbeat && workers <= 1) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
-    bool ok = workers <= 1 ? run_here(&c) : run_workers(&c, workers, e);
+    if (c.heartbeat && workers <= 1 && !apart) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
+    bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, e);
     progress_end(&c.progress);
     if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
     return ok;

@@ -57,7 +57,8 @@ typedef bool run_done_fn(void *context, const struct run_spec *spec, const struc
  *
  * run_campaign: every spec whose `skip` flag is not set, on `workers` processes (0: as many as processors online;
  * 1: in this process), executed as `order` (nspec; NULL: as usual) says but for its heartbeat, which is the campaign's
- * own. Results are handed over in plan order, so the outcome does not depend on `workers`. */
+ * own. Code of people's own programs runs in worker processes only, each run in a new one, and a crash is told by rank
+ * and line. Results are handed over in plan order, so the outcome does not depend on `workers`. */
 bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
                   bool quiet, run_done_fn *done, void *context, struct err *e);
 
