@@ -1,17 +1,25 @@
 /* node_cost.c - rates and cycles of a node as picoseconds per operation. */
 #include "machine/node_cost.h"
 
-static double cycles_ps(double cycles, double clock) { return clock > 0 ? cycles / clock * 1e12 : 0; }
+/* A clock of 0 means that cycle counts cost nothing. */
+static double cycles_ps(double cycles, double clock)
+{
+    return clock > 0 ? cycles / clock * 1e12 : 0;
+}
 
-/* Where no machine file says it: one instruction a cycle, or, on processors that issue several, as many as a scalar
- * product needs at the flop rate: five (load, load and multiply, add, advance, branch) for its two flops. */
+/* Where no machine file says it: one instruction a cycle, or, on processors that issue several, as
+ * many as a scalar product needs at the flop rate: five (load, load and multiply, add, advance,
+ * branch) for its two flops. */
 static double instruction_ps(const struct node_spec *s)
 {
     if (s->instruction_cycles > 0) return cycles_ps(s->instruction_cycles, s->clock);
-    const double cycle = cycles_ps(1, s->clock), product = s->flop_rate > 0 ? 1e12 / (2.5 * s->flop_rate) : cycle;
+    const double cycle = cycles_ps(1, s->clock),
+                 product = s->flop_rate > 0 ? 1e12 / (2.5 * s->flop_rate) : cycle;
     return cycle < product ? cycle : product;
 }
 
+/* Picoseconds for one operation of each class of base/work.h, as double: a sum is rounded to whole
+ * picoseconds once, by node_cost_ps. A rate of 0 means: free. */
 struct node_cost node_cost_make(const struct node_spec *s)
 {
     return (struct node_cost){

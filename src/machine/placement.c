@@ -1,13 +1,17 @@
-/* placement.c - ranks onto processors: an order of the processors, of which the first nrank are used.
+/* placement.c - ranks onto processors: an order of the processors, of which the first nrank are
+ * used.
  *
- * Processors are numbered node by node. An order of routers (linear, snake, Gray) becomes one of nodes and then of
- * processors: block fills a node before the next, cyclic deals one processor of every node in turn. */
+ * Processors are numbered node by node. An order of routers (linear, snake, Gray) becomes one of
+ * nodes and then of processors: block fills a node before the next, cyclic deals one processor of
+ * every node in turn. */
 #include "machine/placement.h"
 
 #include "base/check.h"
 #include "base/random.h"
 
-/* Router number `i` along a path through the grid that only steps to neighbours: every second line runs backwards. */
+/* Router number `i` along a path through the grid that only steps to neighbours: every second line
+ * runs backwards. rest[d] is the number of the line of dimension d, whose parity is its
+ * direction. */
 static int snake_router(const struct topology_spec *s, int i)
 {
     int router = 0, stride = 1, rest[MACHINE_MAX_DIMS];
@@ -23,6 +27,8 @@ static int snake_router(const struct topology_spec *s, int i)
     return router;
 }
 
+/* Binary reflected Gray code: neighbours in the order differ in one bit, hence are neighbours in
+ * the cube. */
 static int ordered_router(const struct machine_spec *m, int i)
 {
     switch (m->placement.kind) {
@@ -35,6 +41,7 @@ static int ordered_router(const struct machine_spec *m, int i)
     }
 }
 
+/* Orders that need a shape are refused on others, instead of meaning something else there. */
 static bool kind_fits(const struct machine_spec *m, struct err *e)
 {
     enum topology_family f = m->topology.family;
@@ -51,18 +58,23 @@ static void put(struct placement *p, int rank, int64_t processor, int per_node)
     p->processor[rank] = (int)(processor % per_node);
 }
 
-static void place_in_order(struct placement *p, const struct machine_spec *m, const struct topology *t)
+/* Block: ranks 0 .. k-1 on the first node. Cyclic: rank r on node r mod nodes. Several nodes on a
+ * router stay together. */
+static void place_in_order(struct placement *p, const struct machine_spec *m,
+                           const struct topology *t)
 {
     int per_node = m->topology.processors_per_node, npr = t->nodes_per_router;
     for (int r = 0; r < p->nrank; r++) {
         bool block = m->placement.spread == SPREAD_BLOCK;
-        int i = block ? r / per_node : r % t->nnode, processor = block ? r % per_node : r / t->nnode;
+        int i = block ? r / per_node : r % t->nnode,
+            processor = block ? r % per_node : r / t->nnode;
         int node = npr == 1 ? ordered_router(m, i) : ordered_router(m, i / npr) * npr + i % npr;
         put(p, r, (int64_t)node * per_node + processor, per_node);
     }
 }
 
-static void place_randomly(struct placement *p, const struct machine_spec *m, int64_t nprocessor, struct arena *a)
+static void place_randomly(struct placement *p, const struct machine_spec *m, int64_t nprocessor,
+                           struct arena *a)
 {
     struct random g = random_make(m->placement.seed, 0x706c616365, 0); /* "place" */
     struct arena_mark mark = arena_mark(a);
@@ -77,23 +89,27 @@ static void place_randomly(struct placement *p, const struct machine_spec *m, in
     arena_release(a, mark);
 }
 
-static bool place_by_list(struct placement *p, const struct machine_spec *m, int64_t nprocessor, struct arena *a,
-                          struct err *e)
+/* The list may name more processors than there are ranks; none twice. */
+static bool place_by_list(struct placement *p, const struct machine_spec *m, int64_t nprocessor,
+                          struct arena *a, struct err *e)
 {
     const struct placement_spec *s = &m->placement;
     if (s->nlist < p->nrank)
-        return err_set(e, ERR_CONFIG, "placement list names %d processors for %d ranks", s->nlist, p->nrank);
+        return err_set(e, ERR_CONFIG, "placement list names %d processors for %d ranks", s->nlist,
+                       p->nrank);
     struct arena_mark mark = arena_mark(a);
+    /* Who sits where, so that a processor named twice is told with both ranks. */
     int *taken = TAKE(a, nprocessor, int); /* 1 + rank */
     bool ok = true;
     for (int r = 0; ok && r < p->nrank; r++) {
         int processor = s->list[r];
         if (processor < 0 || processor >= nprocessor)
-            ok = err_set(e, ERR_CONFIG, "placement list: processor %d of rank %d; expected 0 to %lld", processor, r,
-                         (long long)nprocessor - 1);
+            ok = err_set(e, ERR_CONFIG,
+                         "placement list: processor %d of rank %d; expected 0 to %lld", processor,
+                         r, (long long)nprocessor - 1);
         else if (taken[processor])
-            ok = err_set(e, ERR_CONFIG, "placement list: ranks %d and %d on processor %d", taken[processor] - 1, r,
-                         processor);
+            ok = err_set(e, ERR_CONFIG, "placement list: ranks %d and %d on processor %d",
+                         taken[processor] - 1, r, processor);
         else taken[processor] = r + 1;
         if (ok) put(p, r, processor, m->topology.processors_per_node);
     }
@@ -101,14 +117,15 @@ static bool place_by_list(struct placement *p, const struct machine_spec *m, int
     return ok;
 }
 
-bool placement_create(struct placement *p, const struct machine_spec *m, const struct topology *t, int nrank,
-                      struct arena *a, struct err *e)
+/* One rank a processor: there is no time slicing in this simulator. */
+bool placement_create(struct placement *p, const struct machine_spec *m, const struct topology *t,
+                      int nrank, struct arena *a, struct err *e)
 {
     int64_t nprocessor = (int64_t)t->nnode * m->topology.processors_per_node;
     CHECK(nrank >= 1);
     if (nrank > nprocessor)
-        return err_set(e, ERR_CONFIG, "%d ranks do not fit on machine %s with %lld processors", nrank, m->name,
-                       (long long)nprocessor);
+        return err_set(e, ERR_CONFIG, "%d ranks do not fit on machine %s with %lld processors",
+                       nrank, m->name, (long long)nprocessor);
     if (!kind_fits(m, e)) return false;
     *p = (struct placement){nrank, TAKE(a, nrank, int), TAKE(a, nrank, int)};
     switch (m->placement.kind) {

@@ -12,6 +12,8 @@ static const struct topology_type *const types[] = {
 #undef X
 };
 
+/* The family checks its own numbers and sets the sizes; what all families share is done here.
+ * Everything starts as for a family without classes or random routes. */
 struct topology *topology_create(const struct topology_spec *s, struct arena *a, struct err *e)
 {
     struct topology *t = TAKE(a, 1, struct topology);
@@ -22,16 +24,19 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
     t->fixed_routes = true;
     t->nodes_per_router = s->nodes_per_router;
     if (s->nodes_per_router < 1 || s->processors_per_node < 1) {
-        err_set(e, ERR_CONFIG, "topology %s: nodes_per_router and processors_per_node must be at least 1",
+        err_set(e, ERR_CONFIG,
+                "topology %s: nodes_per_router and processors_per_node must be at least 1",
                 t->type->name);
         return NULL;
     }
     if (!t->type->create(t, a, e)) return NULL;
+    /* Families whose dims do not count nodes: nodes_per_router on each router. Processors are
+     * numbered in an int, so that the product must fit. */
     if (t->nnode == 0) {
         int64_t nnode = (int64_t)t->nrouter * t->nodes_per_router;
         if (nnode > INT32_MAX / s->processors_per_node) {
-            err_set(e, ERR_CONFIG, "topology %s: %lld nodes are more than can be numbered", t->type->name,
-                    (long long)nnode);
+            err_set(e, ERR_CONFIG, "topology %s: %lld nodes are more than can be numbered",
+                    t->type->name, (long long)nnode);
             return NULL;
         }
         t->nnode = (int)nnode;
@@ -39,22 +44,32 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
     return t;
 }
 
+/* One node a router is the common case, and a division less on every hop of every message. */
 int topology_router_of(const struct topology *t, int node)
 {
     return t->nodes_per_router == 1 ? node : node / t->nodes_per_router;
 }
 
-int topology_injection_port(const struct topology *t, int node) { return t->nport + node % t->nodes_per_router; }
+/* Behind the ports of links, so that arbitration looks at nodes last. */
+int topology_injection_port(const struct topology *t, int node)
+{
+    return t->nport + node % t->nodes_per_router;
+}
 
+/* c.at: the local number of the destination, which some families route by. */
 struct route_cursor topology_start(const struct topology *t, int src, int dst, uint64_t choice)
 {
-    struct route_cursor c = {.router = topology_router_of(t, src), .target = topology_router_of(t, dst), .via = -1};
+    struct route_cursor c = {
+        .router = topology_router_of(t, src), .target = topology_router_of(t, dst), .via = -1};
     c.at = dst - c.target * t->nodes_per_router;
     t->type->start(t, choice, &c);
     return c;
 }
 
-bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h) { return t->type->next(t, c, h); }
+bool topology_next(const struct topology *t, struct route_cursor *c, struct hop *h)
+{
+    return t->type->next(t, c, h);
+}
 
 int topology_route(const struct topology *t, int src, int dst, uint64_t choice, struct hop *route)
 {
@@ -62,15 +77,18 @@ int topology_route(const struct topology *t, int src, int dst, uint64_t choice, 
     int n = 0;
     struct hop h;
     while (t->type->next(t, &c, &h)) {
+        /* A route longer than promised would overrun the caller's array. */
         CHECK(n < t->max_hops);
         route[n++] = h;
     }
     return n;
 }
 
+/* By formula where the family has one, else by walking. Random routes: those of choice 0. */
 int topology_distance(const struct topology *t, int src, int dst)
 {
-    if (t->type->distance) return t->type->distance(t, topology_router_of(t, src), topology_router_of(t, dst));
+    if (t->type->distance)
+        return t->type->distance(t, topology_router_of(t, src), topology_router_of(t, dst));
     struct route_cursor c = topology_start(t, src, dst, 0);
     struct hop h;
     int n = 0;
@@ -84,6 +102,7 @@ void topology_link_ends(const struct topology *t, int link, int *from, int *to, 
     t->type->ends(t, link, from, to, port);
 }
 
+/* No dimension has a rate of its own, and no link of a graph has a share. */
 bool topology_uniform(const struct topology *t)
 {
     for (int d = 0; d < MACHINE_MAX_DIMS && t->type->rate_dim; d++)
@@ -91,6 +110,7 @@ bool topology_uniform(const struct topology *t)
     return !t->type->share || t->spec->nlink_percent == 0;
 }
 
+/* 0 means: as the machine's link. An unlimited machine link cannot be divided by. */
 double topology_link_bandwidth(const struct topology *t, int link, double link_bandwidth)
 {
     double own = t->type->rate_dim ? t->spec->dim_bandwidth[t->type->rate_dim(t, link)] : 0;

@@ -1,12 +1,15 @@
-/* topology_dragonfly.c - groups of routers, all-to-all inside and between groups; minimal and Valiant routes.
+/* topology_dragonfly.c - groups of routers, all-to-all inside and between groups; minimal and
+ * Valiant routes.
  *
- * dims = {p, a, h, g}: p nodes and h global links per router, a routers per group, g groups (0: the most, a h + 1).
- * Global port q of group G, at its router floor(q / h), leads to group G + 1 + (q mod (g-1)) mod g and belongs to
- * copy floor(q / (g-1)) of the links between the two groups; the other end is port g - 2 - (q mod (g-1)) of that copy.
- * Minimal: local, global, local. Valiant: minimal to a random third group, then minimal. The class is the number of
- * global links behind, so that routes cannot wait in a circle.
+ * dims = {p, a, h, g}: p nodes and h global links per router, a routers per group, g groups (0: the
+ * most, a h + 1). Global port q of group G, at its router floor(q / h), leads to group G + 1 + (q
+ * mod (g-1)) mod g and belongs to copy floor(q / (g-1)) of the links between the two groups; the
+ * other end is port g - 2 - (q mod (g-1)) of that copy. Minimal: local, global, local. Valiant:
+ * minimal to a random third group, then minimal. The class is the number of global links behind, so
+ * that routes cannot wait in a circle.
  *
- * Links: local r (a-1) + j', j' the other router of the group less one where above; then global by group and port. */
+ * Links: local r (a-1) + j', j' the other router of the group less one where above; then global by
+ * group and port. */
 #include "base/check.h"
 #include "machine/topology_internal.h"
 
@@ -18,19 +21,26 @@ struct dragonfly {
     bool valiant;
 };
 
+/* With fewer groups than a h + 1 the global ports are shared out evenly: `copies` links between any
+ * two groups; the rest stays unused. */
 static bool dragonfly_create(struct topology *t, struct arena *a, struct err *e)
 {
     const int *dims = t->spec->dims;
-    int64_t p = dims[0], most = (int64_t)dims[1] * dims[2] + 1, groups = dims[3] > 0 ? dims[3] : most;
+    int64_t p = dims[0], most = (int64_t)dims[1] * dims[2] + 1,
+            groups = dims[3] > 0 ? dims[3] : most;
     struct dragonfly *g = TAKE(a, 1, struct dragonfly);
     if (p < 1 || dims[1] < 1 || dims[2] < 1 || groups < 2 || groups > most)
         return err_set(e, ERR_CONFIG,
-                       "topology dragonfly: {%d nodes/router, %d routers/group, %d global links/router, %d groups}; "
-                       "expected at least {1, 1, 1, 2} and no more groups than routers x global links + 1",
+                       "topology dragonfly: {%d nodes/router, %d routers/group, "
+                       "%d global links/router, %d groups}; expected at least "
+                       "{1, 1, 1, 2} and no more groups than routers x global "
+                       "links + 1",
                        dims[0], dims[1], dims[2], dims[3]);
     if (groups * dims[1] * (p + dims[1] + dims[2]) > INT32_MAX / 2)
-        return err_set(e, ERR_CONFIG, "topology dragonfly: more nodes and links than can be numbered");
+        return err_set(e, ERR_CONFIG,
+                       "topology dragonfly: more nodes and links than can be numbered");
     *g = (struct dragonfly){.a = dims[1], .h = dims[2], .g = (int)groups};
+    /* Links are numbered group by group: local ones first, then the global ports in use. */
     g->copies = (int)((most - 1) / (groups - 1));
     g->used = g->copies * (g->g - 1);
     g->valiant = t->spec->routing == ROUTE_VALIANT && g->g > 2;
@@ -40,6 +50,8 @@ static bool dragonfly_create(struct topology *t, struct arena *a, struct err *e)
     g->first_global = t->nrouter * (g->a - 1);
     t->nlink = g->first_global + g->g * g->used;
     t->nport = g->a - 1 + g->h;
+    /* local, global, local; Valiant: local, global, local, global, local. The class is the number
+     * of global links behind. */
     t->max_hops = g->valiant ? 5 : 3;
     t->nclass = g->valiant ? 3 : 2;
     t->fixed_routes = !g->valiant;
@@ -52,7 +64,8 @@ static int global_port(const struct dragonfly *g, int from, int to, int ends)
     return (to - from - 1 + g->g) % g->g + (g->g - 1) * (ends % g->copies);
 }
 
-/* stage: global links behind; via: group to pass through first, -1: none; at: what picks among parallel links */
+/* stage: global links behind; via: group to pass through first, -1: none; at: what picks among
+ * parallel links */
 static void dragonfly_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
 {
     const struct dragonfly *g = t->state;
@@ -61,6 +74,7 @@ static void dragonfly_start(const struct topology *t, uint64_t choice, struct ro
     c->via = -1;
     c->at = c->router + c->target;
     if (!g->valiant || from == to) return;
+    /* A third group by chance: drawn from g - 2 numbers, which step over both ends. */
     int low = from < to ? from : to, high = from < to ? to : from;
     int via = (int)(choice % (uint64_t)(g->g - 2));
     via += via >= low;
@@ -68,6 +82,7 @@ static void dragonfly_start(const struct topology *t, uint64_t choice, struct ro
     c->via = via;
 }
 
+/* A router has no link to itself: numbers above it move down by one. */
 static void local_hop(const struct dragonfly *g, struct route_cursor *c, int to, struct hop *h)
 {
     int i = c->router % g->a, j = to % g->a;
@@ -86,6 +101,7 @@ static bool dragonfly_next(const struct topology *t, struct route_cursor *c, str
         local_hop(g, c, c->target, h);
         return true;
     }
+    /* To the router of this group that has the global link, if this is not the one. */
     int q = global_port(g, group, goal, c->at), gate = group * g->a + q / g->h;
     if (gate != c->router) {
         local_hop(g, c, gate, h);
@@ -96,10 +112,12 @@ static bool dragonfly_next(const struct topology *t, struct route_cursor *c, str
     h->port = g->a - 1 + peer % g->h;
     c->router = goal * g->a + peer / g->h;
     c->stage++;
+    /* The third group is reached: from here minimal to the target. */
     if (goal == c->via) c->via = -1;
     return true;
 }
 
+/* The numbering of the header, backwards. */
 static void dragonfly_ends(const struct topology *t, int link, int *from, int *to, int *port)
 {
     const struct dragonfly *g = t->state;

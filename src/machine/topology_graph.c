@@ -1,23 +1,25 @@
 /* topology_graph.c - routers and links as given in a file, deterministic shortest paths.
  *
- * The next router towards a target is the lowest-numbered neighbour that is nearer to it. Next hops are found by a
- * breadth-first search per target when it is first used, and kept. The class is the number of links behind, which
- * frees any graph of deadlock; a tree needs one class only. */
+ * The next router towards a target is the lowest-numbered neighbour that is nearer to it. Next hops
+ * are found by a breadth-first search per target when it is first used, and kept. The class is the
+ * number of links behind, which frees any graph of deadlock; a tree needs one class only. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/check.h"
 #include "machine/topology_internal.h"
 
-enum { GRAPH_EXACT_DIAMETER = 1024 }; /* routers; above, twice the distance from router 0 bounds the longest route */
+/* routers; above, twice the distance from router 0 bounds the longest route */
+enum { GRAPH_EXACT_DIAMETER = 1024 };
 
 struct graph {
     struct arena *arena;
     int nrouter;
-    int *first; /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
+    /* (nrouter + 1) links that leave a router, sorted by neighbour: first[r] .. first[r+1] - 1 */
+    int *first;
     int *from, *to, *port; /* (nlink) of each directed link */
     int *percent;          /* (nlink) of the link rate, NULL: 100 */
-    int **next;            /* (nrouter) per target: the link to take from every router; NULL until needed */
+    int **next; /* (nrouter) per target: the link to take from every router; NULL until needed */
     int *distance, *queue; /* (nrouter) of the search */
     bool tree;
 };
@@ -27,20 +29,27 @@ struct graph_link {
     int percent;
 };
 
+/* By router, then by neighbour: next_links takes the lowest neighbour, ports go by neighbour. */
 static int link_order(const void *a, const void *b)
 {
     const struct graph_link *p = a, *q = b;
-    return p->from != q->from ? (p->from > q->from) - (p->from < q->from) : (p->to > q->to) - (p->to < q->to);
+    return p->from != q->from ? (p->from > q->from) - (p->from < q->from)
+                              : (p->to > q->to) - (p->to < q->to);
 }
 
+/* Every line of the file is two directed links. Rates: one percentage for both directions, or one
+ * for each. Double links are refused, as routes could not tell them apart. */
 static bool links_read(const struct topology_spec *s, struct graph_link *all, struct err *e)
 {
     for (int i = 0; i < s->nlink; i++) {
         int a = s->link[i][0], b = s->link[i][1];
         if (a < 0 || b < 0 || a >= s->dims[0] || b >= s->dims[0] || a == b)
-            return err_set(e, ERR_CONFIG, "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i,
-                           a, b, s->dims[0] - 1);
-        int there = s->nlink_percent == 0 ? 100 : s->link_percent[s->nlink_percent == s->nlink ? i : 2 * i];
+            return err_set(
+                e, ERR_CONFIG,
+                "topology graph: link %d joins routers %d and %d; expected two of 0 to %d", i, a, b,
+                s->dims[0] - 1);
+        int there =
+            s->nlink_percent == 0 ? 100 : s->link_percent[s->nlink_percent == s->nlink ? i : 2 * i];
         int back = s->nlink_percent == 2 * s->nlink ? s->link_percent[2 * i + 1] : there;
         all[2 * i] = (struct graph_link){a, b, there};
         all[2 * i + 1] = (struct graph_link){b, a, back};
@@ -48,11 +57,14 @@ static bool links_read(const struct topology_spec *s, struct graph_link *all, st
     qsort(all, 2 * (size_t)s->nlink, sizeof *all, link_order);
     for (int i = 1; i < 2 * s->nlink; i++)
         if (link_order(&all[i - 1], &all[i]) == 0)
-            return err_set(e, ERR_CONFIG, "topology graph: routers %d and %d are joined twice", all[i].from, all[i].to);
+            return err_set(e, ERR_CONFIG, "topology graph: routers %d and %d are joined twice",
+                           all[i].from, all[i].to);
     return true;
 }
 
-static void graph_index(struct graph *g, const struct graph_link *all, int nlink, struct topology *t)
+/* Counting sort: first[] holds the number of links of each router, then where they begin. */
+static void graph_index(struct graph *g, const struct graph_link *all, int nlink,
+                        struct topology *t)
 {
     int *arrived = TAKE(g->arena, g->nrouter, int);
     for (int l = 0; l < nlink; l++) {
@@ -60,7 +72,8 @@ static void graph_index(struct graph *g, const struct graph_link *all, int nlink
         g->to[l] = all[l].to;
         if (g->percent) g->percent[l] = all[l].percent;
         g->first[all[l].from + 1]++;
-        g->port[l] = arrived[all[l].to]++; /* links are sorted by `from`, so ports go by neighbour */
+        /* links are sorted by `from`, so ports go by neighbour */
+        g->port[l] = arrived[all[l].to]++;
     }
     for (int r = 0; r < g->nrouter; r++) {
         if (g->first[r + 1] > t->nport) t->nport = g->first[r + 1];
@@ -68,7 +81,8 @@ static void graph_index(struct graph *g, const struct graph_link *all, int nlink
     }
 }
 
-/* breadth-first from `target` backwards; returns the largest distance, -1 when some router cannot be reached */
+/* Breadth-first from `target` backwards; returns the largest distance, -1 when some router cannot
+ * be reached. Links come in pairs, so that distances to and from are equal. O(links). */
 static int search(struct graph *g, int target)
 {
     int head = 0, tail = 0;
@@ -86,6 +100,8 @@ static int search(struct graph *g, int target)
     return tail == g->nrouter ? g->distance[g->queue[tail - 1]] : -1;
 }
 
+/* On demand: a run mostly sends to few of the routers of a large graph. nrouter numbers for each
+ * target. */
 static const int *next_links(struct graph *g, int target)
 {
     if (g->next[target]) return g->next[target];
@@ -100,6 +116,8 @@ static const int *next_links(struct graph *g, int target)
     return next;
 }
 
+/* The diameter: a search from every router, O(routers x links), or for large graphs a bound from
+ * one (no route is longer than by way of router 0). */
 static int longest_route(struct graph *g)
 {
     int longest = search(g, 0);
@@ -119,12 +137,14 @@ static bool graph_create(struct topology *t, struct arena *a, struct err *e)
     if (n < 1 || s->nlink < 0 || s->nlink > INT32_MAX / 4)
         return err_set(e, ERR_CONFIG, "topology graph: %d routers, %d links", n, s->nlink);
     if (s->nlink_percent != 0 && s->nlink_percent != s->nlink && s->nlink_percent != 2 * s->nlink)
-        return err_set(e, ERR_CONFIG, "topology graph: %d rates for %d links; expected one or two for each",
+        return err_set(e, ERR_CONFIG,
+                       "topology graph: %d rates for %d links; expected one or two for each",
                        s->nlink_percent, s->nlink);
     struct graph *g = TAKE(a, 1, struct graph);
     *g = (struct graph){.arena = a, .nrouter = n, .tree = s->nlink == n - 1};
     struct graph_link *all = TAKE(a, nlink + 1, struct graph_link);
     if (!links_read(s, all, e)) return false;
+    /* Everything about links in arrays by number; searches share one queue. */
     g->first = TAKE(a, n + 1, int);
     g->from = TAKE(a, nlink + 1, int);
     g->to = TAKE(a, nlink + 1, int);
@@ -138,7 +158,11 @@ static bool graph_create(struct topology *t, struct arena *a, struct err *e)
     t->nrouter = n;
     t->nlink = nlink;
     t->max_hops = longest_route(g);
-    if (t->max_hops < 0) return err_set(e, ERR_CONFIG, "topology graph: not all routers can be reached from router 0");
+    if (t->max_hops < 0)
+        return err_set(e, ERR_CONFIG,
+                       "topology graph: not all routers can be reached from router 0");
+    /* One class more on each hop: whoever waits, waits for a higher class, and circles are
+     * impossible. A tree has no circle to begin with. */
     t->nclass = g->tree || t->max_hops < 2 ? 1 : t->max_hops;
     return true;
 }

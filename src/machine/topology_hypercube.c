@@ -1,12 +1,15 @@
-/* topology_hypercube.c - binary n-cubes with e-cube routes, and the Origin's Xpress links on spare ports of routers.
+/* topology_hypercube.c - binary n-cubes with e-cube routes, and the Origin's Xpress links on spare
+ * ports of routers.
  *
- * The link that leaves router r in dimension d is r n + d. Xpress links follow, for n up to 2 one beside each of them,
- * n 2^n + r n + d: what goes to a router's odd nodes takes them. From n = 3 on there is one a router, n 2^n + r, to the
- * opposite corner; a route between opposite corners takes it, others are e-cube. */
+ * The link that leaves router r in dimension d is r n + d. Xpress links follow, for n up to 2 one
+ * beside each of them, n 2^n + r n + d: what goes to a router's odd nodes takes them. From n = 3 on
+ * there is one a router, n 2^n + r, to the opposite corner; a route between opposite corners takes
+ * it, others are e-cube. */
 #include "base/check.h"
 #include "machine/topology_internal.h"
 
-/* A router of the Origin has six ports, two of them for nodes: with up to two dimensions each link has a spare pair. */
+/* A router of the Origin has six ports, two of them for nodes: with up to two dimensions each link
+ * has a spare pair. */
 enum { MOST_DOUBLED = 2 };
 
 struct hypercube {
@@ -15,15 +18,20 @@ struct hypercube {
     bool diagonal; /* they join opposite corners */
 };
 
+/* nport links leave every router, so that the number of links is nport 2^n. The opposite corner
+ * costs one link instead of n, which makes n - 1 the longest route. */
 static bool hypercube_create(struct topology *t, struct arena *a, struct err *e)
 {
     const struct topology_spec *s = t->spec;
     struct hypercube *g = TAKE(a, 1, struct hypercube);
     int n = s->dims[0];
     if (n < 0 || n > 24)
-        return err_set(e, ERR_CONFIG, "topology hypercube: %d dimensions; expected 0 to 24 (2^n routers)", n);
+        return err_set(e, ERR_CONFIG,
+                       "topology hypercube: %d dimensions; expected 0 to 24 (2^n routers)", n);
     if (s->xpress && n < 1)
-        return err_set(e, ERR_CONFIG, "topology hypercube: Xpress links join two routers, so at least 1 dimension");
+        return err_set(
+            e, ERR_CONFIG,
+            "topology hypercube: Xpress links join two routers, so at least 1 dimension");
     g->ndim = n;
     g->doubled = s->xpress && n <= MOST_DOUBLED;
     g->diagonal = s->xpress && !g->doubled;
@@ -35,6 +43,7 @@ static bool hypercube_create(struct topology *t, struct arena *a, struct err *e)
     return true;
 }
 
+/* Router and target are all that a route needs. */
 static void hypercube_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
 {
     (void)t;
@@ -48,12 +57,15 @@ static bool hypercube_next(const struct topology *t, struct route_cursor *c, str
     unsigned diff = (unsigned)(c->router ^ c->target), all = (1u << g->ndim) - 1;
     if (diff == 0) return false;
     h->vc_class = 0;
+    /* All bits differ: the direct link, which leads back to the same number in all bits. */
     if (g->diagonal && diff == all) {
         h->link = (g->ndim << g->ndim) + c->router;
         h->port = g->ndim;
         c->router = c->target;
         return true;
     }
+    /* e-cube: the lowest differing bit first. One order for all makes circles of waiting impossible
+     * with one class. */
     int d = __builtin_ctz(diff);
     bool beside = g->doubled && c->at % 2;
     h->link = c->router * g->ndim + d + (beside ? g->ndim << g->ndim : 0);
@@ -62,6 +74,7 @@ static bool hypercube_next(const struct topology *t, struct route_cursor *c, str
     return true;
 }
 
+/* Number of differing bits. */
 static int hypercube_distance(const struct topology *t, int from, int to)
 {
     const struct hypercube *g = t->state;
@@ -70,6 +83,7 @@ static int hypercube_distance(const struct topology *t, int from, int to)
     return __builtin_popcount(diff);
 }
 
+/* Cube links by router and dimension; then Xpress links in the same order, or by router. */
 static void hypercube_ends(const struct topology *t, int link, int *from, int *to, int *port)
 {
     const struct hypercube *g = t->state;

@@ -1,22 +1,24 @@
 /* topology_shared.c - families without a shape: crossbar, bus and full mesh.
  *
- * A crossbar is one router that holds every node: nothing is shared but injection and ejection. A bus is the same
- * with one link, from the router to itself, that every message crosses. */
+ * A crossbar is one router that holds every node: nothing is shared but injection and ejection. A
+ * bus is the same with one link, from the router to itself, that every message crosses. */
 #include "base/check.h"
 #include "machine/topology_internal.h"
 
+/* All nodes hang on one router; a bus has one link, from it to itself. */
 static bool single_router(struct topology *t, int nlink, struct err *e)
 {
     int64_t nnode = (int64_t)t->spec->dims[0] * t->spec->nodes_per_router;
     if (t->spec->dims[0] < 1 || nnode > INT32_MAX)
-        return err_set(e, ERR_CONFIG, "topology %s: %d x %d nodes; expected 1 to %d", t->type->name, t->spec->dims[0],
-                       t->spec->nodes_per_router, INT32_MAX);
+        return err_set(e, ERR_CONFIG, "topology %s: %d x %d nodes; expected 1 to %d", t->type->name,
+                       t->spec->dims[0], t->spec->nodes_per_router, INT32_MAX);
     t->nrouter = 1;
     t->nnode = t->nodes_per_router = (int)nnode;
     t->nlink = t->nport = t->max_hops = nlink;
     return true;
 }
 
+/* Nothing is shared but the ports: the ideal network of closed forms (physics 10.1). */
 static bool crossbar_create(struct topology *t, struct arena *a, struct err *e)
 {
     (void)a;
@@ -62,8 +64,10 @@ static bool full_mesh_create(struct topology *t, struct arena *a, struct err *e)
 {
     (void)a;
     int64_t n = t->spec->dims[0];
+    /* n (n - 1) links must be numbered in an int. */
     if (n < 1 || n > 40000)
-        return err_set(e, ERR_CONFIG, "topology full-mesh: %d routers; expected 1 to 40000", t->spec->dims[0]);
+        return err_set(e, ERR_CONFIG, "topology full-mesh: %d routers; expected 1 to 40000",
+                       t->spec->dims[0]);
     t->nrouter = (int)n;
     t->nlink = (int)(n * (n - 1));
     t->nport = (int)n - 1;
@@ -71,6 +75,7 @@ static bool full_mesh_create(struct topology *t, struct arena *a, struct err *e)
     return true;
 }
 
+/* Every route is one link or none. */
 static void full_mesh_start(const struct topology *t, uint64_t choice, struct route_cursor *c)
 {
     (void)t;
@@ -81,6 +86,7 @@ static void full_mesh_start(const struct topology *t, uint64_t choice, struct ro
 static bool full_mesh_next(const struct topology *t, struct route_cursor *c, struct hop *h)
 {
     if (c->router == c->target) return false;
+    /* A router has no link to itself: numbers above it move down by one. */
     h->link = c->router * (t->nrouter - 1) + c->target - (c->target > c->router);
     h->port = c->router - (c->router > c->target);
     h->vc_class = 0;
