@@ -1,4 +1,10 @@
-/* collective_rules.c - rules for the choice of algorithms, read from text (collective_rules.h). */
+/* collective_rules.c - rules for the choice of algorithms, read from text (collective_rules.h).
+ *
+ *     rules = rule; rule; ..      rule = COLLECTIVE ALGORITHM [from SIZE] [on N [ranks]]
+ *     allreduce ring from 64 KiB on 8 ranks; broadcast binomial
+ *
+ * The same text stands in machine files, on the command line and in the store. Of all rules that
+ * match the last one counts, so that general rules come first. */
 #include "comm/collective_rules.h"
 
 #include <ctype.h>
@@ -10,9 +16,12 @@
 #include "base/text.h"
 #include "base/units.h"
 
+/* Longer words are cut, and then match nothing. */
 enum { WORD = 48, MAX_ALGORITHMS = 64 };
 
-static bool refuse(char *why, int size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Always false: a refusal is one statement. The attribute lets the compiler check the format. */
+static bool refuse(char *why, int size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 static bool refuse(char *why, int size, const char *format, ...)
 {
@@ -23,6 +32,7 @@ static bool refuse(char *why, int size, const char *format, ...)
     return false;
 }
 
+/* For messages: what would have been right. */
 void collective_algorithm_names(enum collective_kind kind, char *buffer, int size)
 {
     int n, at = 0;
@@ -31,6 +41,7 @@ void collective_algorithm_names(enum collective_kind kind, char *buffer, int siz
         at += snprintf(buffer + at, (size_t)(size - at), "%s%s", i > 0 ? ", " : "", row[i].name);
 }
 
+/* The nearest name, if one is near; else two examples. */
 static bool no_collective(const char *word, char *why, int size)
 {
     const char *name[COLLECTIVE_KINDS];
@@ -50,16 +61,20 @@ static void take_word(const char **s, char word[WORD])
     while (isspace((unsigned char)**s)) (*s)++;
 }
 
-/* "2 KiB" up to "on" or the end. */
+/* "2 KiB" up to "on" or the end: a size may be two words. They are put together with one blank and
+ * read as every other quantity (base/units.h). */
 static bool take_size(const char **s, int64_t *bytes, char *why, int size)
 {
     char quantity[WORD] = "", word[WORD];
     double value;
     for (const char *next = *s; *next;) {
         take_word(&next, word);
+        /* "on" begins the next condition and stays in the text. */
         if (strcmp(word, "on") == 0) break;
+        /* One word more of the size, if there is room for it and a blank. */
         size_t used = strlen(quantity), more = strlen(word);
-        if (used + more + 2 > sizeof quantity) return refuse(why, size, "'from %s ...' is no size", quantity);
+        if (used + more + 2 > sizeof quantity)
+            return refuse(why, size, "'from %s ...' is no size", quantity);
         if (used > 0) quantity[used++] = ' ';
         memcpy(quantity + used, word, more + 1);
         *s = next;
@@ -70,6 +85,7 @@ static bool take_size(const char **s, int64_t *bytes, char *why, int size)
     return true;
 }
 
+/* "ranks" behind the number is optional. */
 static bool take_ranks(const char **s, int *ranks, char *why, int size)
 {
     char word[WORD];
@@ -85,7 +101,8 @@ static bool take_ranks(const char **s, int *ranks, char *why, int size)
     return true;
 }
 
-/* "COLLECTIVE ALGORITHM [from SIZE] [on N [ranks]]". */
+/* "COLLECTIVE ALGORITHM [from SIZE] [on N [ranks]]". The algorithm is looked up in the table of its
+ * collective: "ring" exists for several. */
 static bool take_rule(const char *s, struct collective_rule *rule, char *why, int size)
 {
     char word[WORD], names[240];
@@ -97,47 +114,58 @@ static bool take_rule(const char *s, struct collective_rule *rule, char *why, in
     rule->algorithm = collective_algorithm_find(rule->kind, word);
     if (!rule->algorithm) {
         collective_algorithm_names(rule->kind, names, (int)sizeof names);
-        return refuse(why, size, "%s has no algorithm '%s'; expected one of %s", collective_name(rule->kind), word,
-                      names);
+        return refuse(why, size, "%s has no algorithm '%s'; expected one of %s",
+                      collective_name(rule->kind), word, names);
     }
+    /* Conditions in any order; the same twice: the later one holds. */
     while (*s) {
         take_word(&s, word);
+        /* Each condition is a word and what belongs to it. */
         bool from = strcmp(word, "from") == 0, on = strcmp(word, "on") == 0;
         if (from && !take_size(&s, &rule->from_bytes, why, size)) return false;
         if (on && !take_ranks(&s, &rule->from_ranks, why, size)) return false;
         if (!from && !on)
-            return refuse(why, size, "'%s': expected 'from SIZE' or 'on N ranks' after the algorithm", word);
+            return refuse(why, size,
+                          "'%s': expected 'from SIZE' or 'on N ranks' after the algorithm", word);
     }
     return true;
 }
 
-bool collective_rules_parse(const char *text, struct collective_rule *rule, int *n, char *why, int size)
+bool collective_rules_parse(const char *text, struct collective_rule *rule, int *n, char *why,
+                            int size)
 {
     char part[256];
     *n = 0;
     for (const char *s = text; *s;) {
+        /* Brackets, commas and line ends as well: a YAML list of rules is one text here. */
         s += strspn(s, "[]; ,\t\n");
         size_t length = strcspn(s, ";,]");
+        /* Two separators in a row hold no rule between them. */
         if (length == 0) continue;
-        if (length >= sizeof part) return refuse(why, size, "a rule of %zu characters is too long", length);
-        if (*n == COLLECTIVE_MAX_RULES) return refuse(why, size, "more than %d rules", COLLECTIVE_MAX_RULES);
+        if (length >= sizeof part)
+            return refuse(why, size, "a rule of %zu characters is too long", length);
+        if (*n == COLLECTIVE_MAX_RULES)
+            return refuse(why, size, "more than %d rules", COLLECTIVE_MAX_RULES);
         memcpy(part, s, length);
         part[length] = '\0';
         struct collective_rule one;
         if (!take_rule(part, &one, why, size)) return false;
         if (rule) rule[*n] = one;
         (*n)++;
+        /* The next rule begins behind this one and its separators. */
         s += length;
     }
     return true;
 }
 
+/* For settings: checked where they are read, parsed again where they are used. */
 bool collective_rules_valid(const char *text, char *why, int size)
 {
     int n;
     return collective_rules_parse(text, NULL, &n, why, size);
 }
 
+/* Which collective it will be is not known here: any name of any table will do. */
 bool collective_choice_valid(const char *text, char *why, int size)
 {
     const char *name[MAX_ALGORITHMS] = {"auto"};
@@ -145,12 +173,14 @@ bool collective_choice_valid(const char *text, char *why, int size)
     if (strcmp(text, "auto") == 0) return true;
     for (int k = 0; k < COLLECTIVE_KINDS; k++) {
         int nrow;
-        const struct collective_algorithm *row = collective_algorithms((enum collective_kind)k, &nrow);
+        const struct collective_algorithm *row =
+            collective_algorithms((enum collective_kind)k, &nrow);
         for (int i = 0; i < nrow && n < MAX_ALGORITHMS; i++) name[n++] = row[i].name;
     }
     for (int i = 0; i < n; i++)
         if (strcmp(text, name[i]) == 0) return true;
     const char *near = text_nearest(text, name, n);
     return refuse(why, size, "no collective has such an algorithm; expected 'auto' or a name%s%s%s",
-                  near ? " such as '" : "", near ? near : " (docs/collectives.md)", near ? "'" : "");
+                  near ? " such as '" : "", near ? near : " (docs/collectives.md)",
+                  near ? "'" : "");
 }

@@ -1,14 +1,25 @@
-/* collectives_allreduce.c - all ranks' vectors combined, on every rank. */
+/* collectives_allreduce.c - all ranks' vectors combined, on every rank.
+ *
+ * Recursive doubling for short vectors, Rabenseifner's algorithm or a ring for long ones. The order
+ * in which vectors are combined is part of each algorithm: results may differ by rounding between
+ * algorithms, never between machines or runs. */
 #include "comm/collectives_internal.h"
 
+/* Room for what comes in, beside the sum in recv. */
 static int64_t one_vector(const struct collective_shape *s, int rank)
 {
     (void)rank;
     return s->count * s->element;
 }
 
-static int64_t two_vectors(const struct collective_shape *s, int rank) { return 2 * one_vector(s, rank); }
+/* What comes in, and the accumulator of the ranks that are not root. */
+static int64_t two_vectors(const struct collective_shape *s, int rank)
+{
+    return 2 * one_vector(s, rank);
+}
 
+/* lg (alpha + n beta + n gamma). Both partners combine the same two vectors, in the order of ranks,
+ * so that all ranks get the same bits. */
 static void recursive_doubling(const struct collective_call *k)
 {
     struct fold f = fold_make(comm_rank(k->comm), comm_size(k->comm));
@@ -22,6 +33,7 @@ static void recursive_doubling(const struct collective_call *k)
     fold_out(k, &f, 2, k->recv, k->count);
 }
 
+/* Ranks outside the core cost one message in and one out, and two rounds. */
 static void recursive_doubling_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     struct fold f = fold_make(0, s->size);
@@ -33,6 +45,9 @@ static void recursive_doubling_cost(const struct collective_shape *s, struct col
     out->path = out->rounds * bytes;
 }
 
+/* 2 lg alpha + 2 (P-1)/P n beta + (P-1)/P n gamma: reduce-scatter by halves, allgather by doubling.
+ * Twice the messages of recursive doubling, but each byte travels about twice instead of lg
+ * times. */
 static void rabenseifner(const struct collective_call *k)
 {
     struct fold f = fold_make(comm_rank(k->comm), comm_size(k->comm));
@@ -45,17 +60,22 @@ static void rabenseifner(const struct collective_call *k)
     fold_out(k, &f, 3, k->recv, k->count);
 }
 
+/* The core exchanges twice (core - 1)/core of the vector; each rank outside adds two whole
+ * vectors. */
 static void rabenseifner_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     struct fold f = fold_make(0, s->size);
     int64_t bytes = s->count * s->element, steps = log2_floor(f.core), outside = f.rest ? 2 : 0;
-    *out = (struct collective_cost){.messages = 2 * f.core * steps + 2 * f.rest,
-                                    .bytes = 2 * (f.core - 1 + f.rest) * bytes,
-                                    .rounds = 2 * steps + outside,
-                                    .path = s->count % f.core ? -1 : 2 * (bytes - bytes / f.core) + outside * bytes,
-                                    .combined = (s->size - 1) * s->count};
+    *out = (struct collective_cost){
+        .messages = 2 * f.core * steps + 2 * f.rest,
+        .bytes = 2 * (f.core - 1 + f.rest) * bytes,
+        .rounds = 2 * steps + outside,
+        .path = s->count % f.core ? -1 : 2 * (bytes - bytes / f.core) + outside * bytes,
+        .combined = (s->size - 1) * s->count};
 }
 
+/* 2 (P - 1) alpha + 2 (P-1)/P n beta + (P-1)/P n gamma: each part goes round the ring twice, once
+ * to be summed up and once to be given out. Least bytes, most messages. */
 static void ring(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);
@@ -64,13 +84,18 @@ static void ring(const struct collective_call *k)
     for (int step = 0; step < 2 * (size - 1); step++) {
         int out = ring_down(rank, step, size), in = ring_down(rank, step + 1, size);
         bool gathers = step >= size - 1; /* parts are complete from here on, and only passed on */
+        /* Parts as even as they can be; empty ones are sent, too, to keep the rounds alike. */
         int64_t a = split(k->count, out, size), na = split(k->count, out + 1, size) - a;
         int64_t b = split(k->count, in, size), nb = split(k->count, in + 1, size) - b;
-        exchange(k, gathers, up, at(k, k->recv, a), na, down, gathers ? at(k, k->recv, b) : k->scratch, nb);
+        /* Before the parts are complete they come into scratch, to be combined; afterwards in
+         * place. */
+        exchange(k, gathers, up, at(k, k->recv, a), na, down,
+                 gathers ? at(k, k->recv, b) : k->scratch, nb);
         if (!gathers) combine(k, at(k, k->recv, b), k->scratch, true, nb);
     }
 }
 
+/* A path in closed form exists where all parts have one size. */
 static void ring_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     int64_t bytes = s->count * s->element, P = s->size;
@@ -81,7 +106,9 @@ static void ring_cost(const struct collective_shape *s, struct collective_cost *
                                     .combined = (P - 1) * s->count};
 }
 
-/* Round j joins the results of the 2^j ranks up to here with those of the 2^j before: an element may enter twice. */
+/* Round j joins the results of the 2^j ranks up to here with those of the 2^j before: an element
+ * may enter twice, hence only operations with a op a = a. lg (alpha + n beta + n gamma) for any P,
+ * without a fold. */
 static void dissemination(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);
@@ -93,8 +120,13 @@ static void dissemination(const struct collective_call *k)
     }
 }
 
-static bool counts_twice(const struct collective_shape *s) { return s->commutative && s->idempotent; }
+/* Maxima, not sums; in any order. */
+static bool counts_twice(const struct collective_shape *s)
+{
+    return s->commutative && s->idempotent;
+}
 
+/* Every rank sends and combines in every round. */
 static void dissemination_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     int64_t bytes = s->count * s->element, rounds = log2_ceil(s->size);
@@ -105,7 +137,7 @@ static void dissemination_cost(const struct collective_shape *s, struct collecti
                                     .combined = s->size * rounds * s->count};
 }
 
-/* part: this call as one of another collective. */
+/* part: this call as one of another collective, with root 0. */
 static struct collective_call part(const struct collective_call *k, enum collective_kind kind)
 {
     struct collective_call c = *k;
@@ -114,6 +146,7 @@ static struct collective_call part(const struct collective_call *k, enum collect
     return c;
 }
 
+/* 2 lg (alpha + n beta) + lg n gamma: what a program does that has no allreduce. */
 static void reduce_broadcast(const struct collective_call *k)
 {
     struct collective_call down = part(k, COLLECTIVE_BROADCAST), up = part(k, COLLECTIVE_REDUCE);
@@ -122,6 +155,7 @@ static void reduce_broadcast(const struct collective_call *k)
     collective_in_table(&broadcast_algorithms, "binomial")->run(&down);
 }
 
+/* Each vector goes up one edge of the tree and the result comes down it. */
 static void reduce_broadcast_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     int64_t bytes = s->count * s->element, rounds = log2_ceil(s->size), P = s->size;
@@ -133,13 +167,15 @@ static void reduce_broadcast_cost(const struct collective_shape *s, struct colle
 }
 
 static const struct collective_algorithm rows[] = {
-    {"recursive-doubling", NULL, "Thakur, Rabenseifner, Gropp 2005", NULL, one_vector, recursive_doubling,
-     recursive_doubling_cost},
-    {"rabenseifner", "a commutative operation", "Rabenseifner 1997", needs_commutative, one_vector, rabenseifner,
-     rabenseifner_cost},
-    {"ring", "a commutative operation", "Patarasuk, Yuan 2009", needs_commutative, one_vector, ring, ring_cost},
-    {"reduce-broadcast", NULL, "two binomial trees", NULL, two_vectors, reduce_broadcast, reduce_broadcast_cost},
-    {"dissemination", "an operation with a op a = a", "Hensgen, Finkel, Manber 1988", counts_twice, one_vector,
-     dissemination, dissemination_cost},
+    {"recursive-doubling", NULL, "Thakur, Rabenseifner, Gropp 2005", NULL, one_vector,
+     recursive_doubling, recursive_doubling_cost},
+    {"rabenseifner", "a commutative operation", "Rabenseifner 1997", needs_commutative, one_vector,
+     rabenseifner, rabenseifner_cost},
+    {"ring", "a commutative operation", "Patarasuk, Yuan 2009", needs_commutative, one_vector, ring,
+     ring_cost},
+    {"reduce-broadcast", NULL, "two binomial trees", NULL, two_vectors, reduce_broadcast,
+     reduce_broadcast_cost},
+    {"dissemination", "an operation with a op a = a", "Hensgen, Finkel, Manber 1988", counts_twice,
+     one_vector, dissemination, dissemination_cost},
 };
 COLLECTIVE_TABLE(allreduce_algorithms, rows);

@@ -1,6 +1,11 @@
-/* collectives_barrier.c - barriers out of empty messages. */
+/* collectives_barrier.c - barriers out of empty messages.
+ *
+ * No rank may leave before all have come: every rank must hear of every other, which takes at least
+ * lg rounds. Hardware barriers are the machine's (vp), not in here. */
 #include "comm/collectives_internal.h"
 
+/* lg alpha for any P: after round j each rank has heard, directly or not, of the 2^(j+1) - 1 ranks
+ * below it and of itself. */
 static void dissemination(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);
@@ -10,12 +15,14 @@ static void dissemination(const struct collective_call *k)
     }
 }
 
+/* Empty messages: the bytes of headers are the network's business. */
 static void dissemination_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     int rounds = log2_ceil(s->size);
     *out = (struct collective_cost){.messages = (int64_t)s->size * rounds, .rounds = rounds};
 }
 
+/* 2 (P - 1) alpha, all at rank 0: a central counter. */
 static void linear(const struct collective_call *k)
 {
     int size = comm_size(k->comm);
@@ -30,15 +37,17 @@ static void linear(const struct collective_call *k)
 
 static void linear_cost(const struct collective_shape *s, struct collective_cost *out)
 {
-    *out = (struct collective_cost){.messages = 2 * (int64_t)(s->size - 1), .rounds = 2 * (s->size - 1)};
+    *out = (struct collective_cost){.messages = 2 * (int64_t)(s->size - 1),
+                                    .rounds = 2 * (s->size - 1)};
 }
 
-/* Up a binomial tree to rank 0 and down again. */
+/* Up a binomial tree to rank 0 and down again: 2 lg alpha, and the least messages of all. */
 static void binomial(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm), mask = 1;
     for (; mask < size && !(rank & mask); mask *= 2)
         if (rank + mask < size) take(k, 0, rank + mask, NULL, 0);
+    /* The subtree is complete: report, and wait for the release. */
     if (rank) {
         give(k, 0, rank - mask, NULL, 0);
         take(k, 1, rank - mask, NULL, 0);
@@ -47,11 +56,14 @@ static void binomial(const struct collective_call *k)
         if (rank + mask < size) give(k, 1, rank + mask, NULL, 0);
 }
 
+/* Every edge of the tree once up and once down. */
 static void binomial_cost(const struct collective_shape *s, struct collective_cost *out)
 {
-    *out = (struct collective_cost){.messages = 2 * (int64_t)(s->size - 1), .rounds = 2 * log2_ceil(s->size)};
+    *out = (struct collective_cost){.messages = 2 * (int64_t)(s->size - 1),
+                                    .rounds = 2 * log2_ceil(s->size)};
 }
 
+/* Pairs; a P that is no power of two costs two rounds more (fold). */
 static void recursive_doubling(const struct collective_call *k)
 {
     struct fold f = fold_make(comm_rank(k->comm), comm_size(k->comm));
@@ -72,7 +84,8 @@ static void recursive_doubling_cost(const struct collective_shape *s, struct col
 }
 
 static const struct collective_algorithm rows[] = {
-    {"dissemination", NULL, "Hensgen, Finkel, Manber 1988", NULL, NULL, dissemination, dissemination_cost},
+    {"dissemination", NULL, "Hensgen, Finkel, Manber 1988", NULL, NULL, dissemination,
+     dissemination_cost},
     {"recursive-doubling", NULL, "pairwise exchange: Brooks 1986", NULL, NULL, recursive_doubling,
      recursive_doubling_cost},
     {"binomial", NULL, "Culler et al. 1993", NULL, NULL, binomial, binomial_cost},

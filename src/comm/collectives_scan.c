@@ -1,13 +1,19 @@
-/* collectives_scan.c - each rank gets the ranks' vectors up to its own combined, with or without its own. */
+/* collectives_scan.c - each rank gets the ranks' vectors up to its own combined, with or without
+ * its own.
+ *
+ * Both algorithms combine in the order of ranks: no commutativity is needed. The parallel
+ * Newton-Euler sweeps have a scan of their own, which also composes transforms (kernel/scan.c). */
 #include "comm/collectives_internal.h"
 
+/* The partial sum of the ranks up to here, and what comes in. */
 static int64_t two_vectors(const struct collective_shape *s, int rank)
 {
     (void)rank;
     return 2 * s->count * s->element;
 }
 
-/* The prefix comes from the rank before and goes on to the one behind. scratch: the prefix with the own element. */
+/* The prefix comes from the rank before and goes on to the one behind. scratch: the prefix with the
+ * own element. (P - 1) (alpha + n beta + n gamma): serial, but each rank works once. */
 static void linear(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);
@@ -15,6 +21,7 @@ static void linear(const struct collective_call *k)
     own_copy(k, prefix, k->send, k->count);
     if (rank > 0) {
         take(k, 0, rank - 1, in, k->count);
+        /* The last rank of an exclusive scan adds its own to nothing. */
         if (!k->exclusive || rank + 1 < size) combine(k, prefix, in, true, k->count);
     }
     if (rank + 1 < size) give(k, 0, rank + 1, prefix, k->count);
@@ -33,7 +40,9 @@ static void linear_cost(const struct collective_shape *s, struct collective_cost
                                     .combined = (P - 1 - last) * s->count};
 }
 
-/* Round j: what the 2^j ranks up to here have goes 2^j ranks up. */
+/* Round j: what the 2^j ranks up to here have goes 2^j ranks up (Kogge and Stone 1973; Hillis and
+ * Steele 1986). lg (alpha + n beta + 2 n gamma): prefix and partial sum differ only where the own
+ * element is left out. */
 static void recursive_doubling(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);
@@ -46,13 +55,17 @@ static void recursive_doubling(const struct collective_call *k)
         if (rank >= d) comm_irecv(k->comm, rank - d, k->tag, in, bytes, &r[0]);
         if (rank + d < size) comm_isend(k->comm, rank + d, k->tag, partial, bytes, &r[1]);
         comm_waitall(k->comm, 2, r);
+        /* Nobody is that far below: this rank's prefix is complete. */
         if (rank < d) continue;
+        /* Without the own element the first thing that arrives is the prefix. */
         if (k->exclusive && d == 1) own_copy(k, k->recv, in, k->count);
         else combine(k, k->recv, in, true, k->count);
+        /* Nobody asks for the partial sum any more: not combined. */
         if (rank + 2 * d < size) combine(k, partial, in, true, k->count);
     }
 }
 
+/* Sums over the rounds of who receives, and of who combines twice. */
 static void recursive_doubling_cost(const struct collective_shape *s, struct collective_cost *out)
 {
     int64_t P = s->size, bytes = s->count * s->element;
@@ -67,8 +80,8 @@ static void recursive_doubling_cost(const struct collective_shape *s, struct col
 }
 
 static const struct collective_algorithm rows[] = {
-    {"recursive-doubling", NULL, "Kogge, Stone 1973; Hillis, Steele 1986", NULL, two_vectors, recursive_doubling,
-     recursive_doubling_cost},
+    {"recursive-doubling", NULL, "Kogge, Stone 1973; Hillis, Steele 1986", NULL, two_vectors,
+     recursive_doubling, recursive_doubling_cost},
     {"linear", NULL, "down the chain of ranks", NULL, two_vectors, linear, linear_cost},
 };
 COLLECTIVE_TABLE(scan_algorithms, rows);
