@@ -20,9 +20,10 @@ void vp_record_failure(struct vp *v, const char *file, int line, const char *tex
     if (w->stopped) return;
     w->stopped = true;
     w->failed = true;
-    snprintf(r->text, sizeof r->text, "rank %d in %s at %.9g s (%s:%d): %s", v->comm.rank,
-             r->stage_name[v->stage], (double)v->clock / SIM_PS_PER_S, vp_base_name(file), line,
-             text);
+    char place[128] = "";
+    if (file) snprintf(place, sizeof place, " (%s:%d)", vp_base_name(file), line);
+    snprintf(r->text, sizeof r->text, "rank %d in %s at %.9g s%s: %s", v->comm.rank,
+             r->stage_name[v->stage], (double)v->clock / SIM_PS_PER_S, place, text);
 }
 
 _Noreturn static void stop(struct vp *v)

@@ -179,7 +179,7 @@ struct unmatched *matching_find(struct vp *v, const struct comm_request *r, sim_
         if (first_sent(u, r)) return u;
         if (r->kind == RECEIVE_PROBE) continue;
         if (!u->held) u->source->held++;
-        u->held = u->late = true;
+        u->held = true;
     }
     return NULL;
 }
@@ -228,15 +228,19 @@ static void bind(struct vp *v, struct comm_request *r, struct unmatched *u)
         if (v->waiting == r) vp_wake(v->world, v);
         return;
     }
-    /* a message that had to wait for an earlier one of its sender is as good as arrived only now */
-    const bool late = u->late;
     struct message *m = matching_take(v, u);
-    if (late && m->net.arrival < now) m->net.arrival = now;
     sim_ps when = m->net.arrival > r->posted_ps ? m->net.arrival : r->posted_ps;
     message_bind(v, r, m, when > now ? when : now);
 }
 
 static void arrives(void *subject, uint64_t argument, sim_ps now);
+
+static void announce(struct sim *sim, struct unmatched *u, sim_ps now)
+{
+    const sim_ps arrival = u->m->net.arrival;
+    u->due = true;
+    sim_at(sim, arrival > now ? arrival : now, LANE_ARRIVAL, message_key(u->m), arrives, u, 0);
+}
 
 /* Look for a receive for u. One from a given source takes it at once; one from anybody at the later
  * of arrival and posting, in an event: `arrived` says that this is it. Returns whether u was taken.
@@ -250,23 +254,31 @@ static bool try(struct vp *v, struct unmatched *u, bool arrived)
     if (!r) return false;
     if (!first_sent(u, r)) {
         if (!u->held) u->source->held++;
-        u->held = u->late = true;
+        u->held = true;
         return false;
     }
     if (!depends_on_time(r) || (arrived && r->open)) {
         bind(v, r, u);
         return r->kind != RECEIVE_PROBE;
     }
-    if ((r->open || arrival > r->posted_ps) && !u->due) {
-        u->due = true;
-        sim_at(sim, arrival > now ? arrival : now, LANE_ARRIVAL, message_key(u->m), arrives, u, 0);
-    } /* otherwise the event of the posting finds it */
+    /* at or before the posting, the event of the posting finds it */
+    if ((r->open || arrival > r->posted_ps) && !u->due) announce(sim, u, now);
     return false;
 }
 
-/* When a message has been taken from s, those behind it that had to wait for it have another try.
- */
-static void release_held(struct vp *v, struct source *s)
+/* A message that had to wait for another of its sender has not come before that one, which came at
+ * `floor`. */
+static void arrives_behind(struct matching *k, struct unmatched *u, sim_ps floor)
+{
+    if (!u->known || u->m->net.arrival >= floor) return;
+    leave_known(k, u);
+    u->m->net.arrival = floor;
+    append_known(k, u);
+}
+
+/* When a message of s that came at `floor` has been taken, those behind it that had to wait for it
+ * have another try. */
+static void release_held(struct vp *v, struct source *s, sim_ps floor)
 {
     struct unmatched *u = s->first;
     while (u && s->held) {
@@ -274,7 +286,10 @@ static void release_held(struct vp *v, struct source *s)
         if (u->held) {
             u->held = false;
             s->held--;
+            arrives_behind(v->matching, u, floor);
+            const sim_ps arrival = u->m->net.arrival;
             taken = try(v, u, false);
+            if (taken) floor = arrival;
         }
         u = taken ? s->first : u->after;
     }
@@ -283,7 +298,8 @@ static void release_held(struct vp *v, struct source *s)
 static void offer(struct vp *v, struct unmatched *u, bool arrived)
 {
     struct source *s = u->source;
-    if (try(v, u, arrived) && s->held) release_held(v, s);
+    const sim_ps arrival = u->m->net.arrival;
+    if (try(v, u, arrived) && s->held) release_held(v, s, arrival);
 }
 
 static void arrives(void *subject, uint64_t argument, sim_ps now)
@@ -370,13 +386,24 @@ static struct unmatched *first_of_source(struct vp *v, const struct comm_request
     return u;
 }
 
+/* Messages that are known to arrive later, and whose coming nobody has asked for so far. */
+static void expect(struct vp *v, const struct comm_request *r, sim_ps now)
+{
+    for (struct unmatched *u = v->matching->last; u && u->m->net.arrival > now; u = u->prev)
+        if (!u->due && message_fits(u->m, u->source->rank, r)) announce(v->world->sim, u, now);
+}
+
 static void look(struct vp *v, struct comm_request *r, sim_ps now)
 {
     struct unmatched *u = depends_on_time(r) ? matching_find(v, r, now) : first_of_source(v, r);
-    if (!u) return;
+    if (!u) {
+        if (depends_on_time(r)) expect(v, r, now);
+        return;
+    }
     struct source *s = u->source;
+    const sim_ps arrival = u->m->net.arrival;
     bind(v, r, u);
-    if (s->held) release_held(v, s);
+    if (s->held) release_held(v, s, arrival);
 }
 
 /* The receives posted by now look for messages, in their order. */

@@ -27,7 +27,7 @@ struct unmatched {
     struct unmatched *prev, *next;    /* of those whose arrival is known */
     bool known;                       /* its arrival */
     bool due;                         /* an event comes when it arrives */
-    bool held, late;                  /* counted in source->held; it has been */
+    bool held;                        /* counted in source->held */
     struct matching *owner;
 };
 
@@ -86,7 +86,8 @@ int vp_cancel(struct comm *c, struct comm_request *r);
 
 /* --- timer.c --- */
 
-/* timer_set: v, about to block as WAITING_ANY or WAITING_POLL, goes on at `time`, not before now. */
+/* timer_set: v, about to block as WAITING_ANY or WAITING_POLL, goes on at `time`, not before now.
+ */
 void timer_set(struct vp *v, sim_ps time);
 
 /* timer_catch_up: stop until all that has happened by v's clock is known. */
