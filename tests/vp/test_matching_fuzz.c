@@ -1,14 +1,11 @@
 /* test_matching_fuzz.c - Seeded programs with receives from any source against an account of their
  * messages in time, and against the same programs with the sources they found given. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "timed_world.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/random.h"
-#include "vp/world.h"
 
 /* In every round each rank sends to a few others, and posts as many receives as it will get
  * messages: some from given senders, then others from anybody, between pieces of computing; and
@@ -153,53 +150,16 @@ static void fuzz_rank(struct comm *c, void *context)
     }
 }
 
-static struct machine_spec crossbar(int nodes)
+static struct outcome go_fuzz(const struct machine_spec *m, struct fuzz *f, bool timed,
+                              const int *order)
 {
-    struct machine_spec m = {.name = "test"};
-    m.topology = (struct topology_spec){.family = TOPOLOGY_CROSSBAR,
-                                        .ndim = 1,
-                                        .dims = {nodes},
-                                        .nodes_per_router = 1,
-                                        .processors_per_node = 1};
-    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
-    m.network = (struct network_spec){.level = LEVEL_LOGGP,
-                                      .link_bandwidth = 1e9,
-                                      .hop_latency = 100e-9,
-                                      .end_latency = 300e-9,
-                                      .virtual_channels = 1};
-    m.software = (struct software_spec){.send_overhead = 2e-6,
-                                        .recv_overhead = 3e-6,
-                                        .send_copy = 1e-9,
-                                        .recv_copy = 2e-9,
-                                        .eager_bytes = -1};
-    return m;
-}
-
-struct outcome {
-    struct arena *arena;
-    struct run_result r;
-};
-
-static struct outcome go(const struct machine_spec *m, struct fuzz *f, bool timed, const int *order)
-{
-    static const char *const stage_name[] = {"work"};
-    struct outcome o = {.arena = arena_create()};
-    struct record_spec record = {0};
-    struct err e;
-    err_clear(&e);
-    struct world_load load = {.nrank = f->nrank,
-                              .program = fuzz_rank,
-                              .context = f,
-                              .nstage = 1,
-                              .stage_name = stage_name,
-                              .largest_message = -1,
-                              .timed = timed,
-                              .order = order};
+    struct world_load load = {
+        .nrank = f->nrank, .program = fuzz_rank, .context = f, .timed = timed, .order = order};
     for (int i = 0; i < f->nrank; i++) {
         f->rank[i].sum = 0;
         memset(f->rank[i].nmessage, 0, sizeof f->rank[i].nmessage);
     }
-    if (!world_run(m, &load, &record, 1, o.arena, &o.r, &e)) fail_msg("%s", e.text);
+    struct outcome o = run_load(m, load);
     if (o.r.status != RUN_OK) fail_msg("seed %d, %d ranks: %s", (int)f->seed, f->nrank, o.r.text);
     return o;
 }
@@ -286,28 +246,28 @@ static void try_program(uint64_t seed, int nrank, enum network_level level, int6
     m.network.level = level;
     m.software.eager_bytes = eager;
     int *order = shuffled(nrank, seed);
-    struct outcome wild = go(&m, &f, true, NULL);
+    struct outcome wild = go_fuzz(&m, &f, true, NULL);
     int64_t sum = 0;
     for (int i = 0; i < nrank; i++) {
         sum += f.rank[i].sum;
         for (int round = 0; round < ROUNDS && level == LEVEL_LOGGP && eager < 0; round++)
             expect_order(&f, i, round);
     }
-    struct outcome other = go(&m, &f, true, order);
+    struct outcome other = go_fuzz(&m, &f, true, order);
     expect_equal(&f, "other order of ranks", &wild, &other, true);
     arena_destroy(other.arena);
     f.given = true;
-    other = go(&m, &f, true, NULL);
+    other = go_fuzz(&m, &f, true, NULL);
     expect_equal(&f, "sources given", &wild, &other, false);
     arena_destroy(other.arena);
     if (eager < 0) { /* without time, hand-shakes are answered when their receiver waits */
-        other = go(&m, &f, false, NULL);
+        other = go_fuzz(&m, &f, false, NULL);
         expect_equal(&f, "without time", &wild, &other, false);
         arena_destroy(other.arena);
     }
     f.given = false;
     f.by_tests = true;
-    other = go(&m, &f, true, NULL);
+    other = go_fuzz(&m, &f, true, NULL);
     int64_t tested = 0;
     for (int i = 0; i < nrank; i++) tested += f.rank[i].sum;
     assert_int_equal(tested, sum);
