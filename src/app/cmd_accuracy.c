@@ -1,4 +1,8 @@
-/* cmd_accuracy.c - mimdsim accuracy: error against run time, for each ladder of a scenario. */
+/* cmd_accuracy.c - mimdsim accuracy: error against run time, for each ladder of a scenario.
+ *
+ * Order of a study's verb, here and in stability and explain --measure: measure, print for
+ * people, store, draw, print the document. What fails late has still printed and stored what was
+ * measured. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +28,7 @@ static const char doc[] =
 /* "--within X": X is a number or a percentage. Without the option *within stays as it is. */
 static bool read_within(const char *text, double *within, struct err *e)
 {
+    /* NULL: the option was not given */
     char *end;
     if (!text) return true;
     *within = strtod(text, &end);
@@ -60,6 +65,7 @@ int cmd_accuracy(int argc, char **argv)
     bool ok = read_within(take_value(&argc, argv, "--within"), &within, &e);
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR, "SCENARIO", doc, 1, 1);
     struct plan p = {0};
+    /* Parsing ends the process at wrong options, so nothing is allocated before it. */
     struct plan_options o = common_plan(&c);
     struct arena *a = arena_create();
     struct accuracy_report r;

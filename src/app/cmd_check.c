@@ -1,5 +1,8 @@
 /* cmd_check.c - mimdsim check: validate scenario and machine files without running, databases by
- * their own rows. */
+ * their own rows.
+ *
+ * All files are checked, whatever the first one is like: a user wants the list of mistakes, not
+ * the first of them. What kind a file is follows from its content. */
 #include "app/verb.h"
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +72,7 @@ static void tell_steps_down(const char *file)
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
     struct err e;
     struct arena *a = arena_create();
+    /* "./" in front: a name without a slash would be looked up among the shipped machines. */
     struct text path = {0};
     err_clear(&e);
     text_add(&path, "%s%s", strchr(file, '/') == NULL ? "./" : "", file);
@@ -99,6 +103,7 @@ enum { SHOWN = 50 };
  * the return value false. */
 static bool tell_findings(const char *file, const struct audit_report *r, struct err *e)
 {
+    /* The first ones are enough to act on; --json has more. */
     const int n = r->nfinding < SHOWN ? (int)r->nfinding : SHOWN;
     for (int i = 0; i < n; i++) {
         const struct audit_finding *f = &r->finding[i];
@@ -173,16 +178,19 @@ static bool read_options(const char *again, const char *seed, struct audit_optio
            err_set(e, ERR_USAGE, "--seed: '%s' is not a whole number", seed);
 }
 
+/* Returns the exit status of the first invalid file. */
 int cmd_check(int argc, char **argv)
 {
     struct common c;
     struct err e;
     struct audit_options audit = {.seed = 1};
+    /* Options of this verb alone are taken before argp reads the rest. */
     const char *again = take_value(&argc, argv, "--again"),
                *seed = take_value(&argc, argv, "--seed");
     common_parse(&c, argc, argv, TAKES_JOBS, "FILE...", doc, 1, 64);
     err_clear(&e);
     if (!read_options(again, seed, &audit, &e)) return common_fail(&c, &e);
+    /* What all databases share; each file has an error of its own below. */
     audit.jobs = c.jobs;
     audit.quiet = c.quiet;
     struct json j = json_make(stdout);

@@ -1,4 +1,7 @@
-/* cmd_claims.c - mimdsim claims: the claims of the paper, judged by what a database holds. */
+/* cmd_claims.c - mimdsim claims: the claims of the paper, judged by what a database holds.
+ *
+ * A verdict is a row of table claim, written again each time: the rules or the runs may have
+ * changed. */
 #include "app/arguments.h"
 #include "app/explain_claims.h"
 #include "app/flag.h"
@@ -19,6 +22,7 @@ static const char doc[] =
     "runs are missing; the text names them and the command that makes them.\n"
     "A claim that fails is a result, not an error: the exit status is 0 if all could be judged.";
 
+/* Searches, maps, then the sentences: these come from the table that the search filled. */
 static bool tell_explanations(const struct common *c, const struct claim_rules *rules,
                               struct store *s, struct err *e)
 {
@@ -31,13 +35,14 @@ int cmd_claims(int argc, char **argv)
     struct common c;
     bool what_if = take_flag(&argc, argv, "--what-if");
     bool explain = take_flag(&argc, argv, "--explain");
+    /* Only --explain runs anything, so only then are jobs and folders options. */
     common_parse(&c, argc, argv, explain ? TAKES_STORE | TAKES_JOBS | TAKES_DIR : 0, "[DB]", doc, 0,
                  1);
     const char *path = c.narg ? c.arg[0] : "paper.db";
     struct err e;
     err_clear(&e);
+    /* Opened for reading first: a misspelt name must not make an empty database. */
     struct claim_rules rules = {0};
-    /* a database that is not there is not made */
     struct store *s = arguments_look(&c, "paper.db", &e);
     bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
     rules.what_if = what_if;

@@ -1,5 +1,8 @@
 /* cmd_explain.c - mimdsim explain: what will be run, what is left out and why, what it will
- * cost. */
+ * cost.
+ *
+ * Estimates come from the programs themselves (run_explain): the numbers of messages and
+ * operations that they would send and do. Only --measure runs anything. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,8 +31,9 @@ static const char doc[] =
 
 enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS };
 
+/* Sums and maxima over all runs of a plan. */
 struct totals {
-    double host_s, host_bytes;
+    double host_s, host_bytes; /* sum; largest of a run */
 };
 
 /* Runs go one after the other: their times add up, but the memory needed is that of the largest. */
@@ -110,6 +114,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
 {
     struct totals t = {0};
     bool open_level = false;
+    /* Column heads as wide as print_run's cells. */
     printf("%s\n%d runs\n\n%-12s %-10s %-12s %-14s %8s %8s %12s %12s %12s %10s %10s\n", p->question,
            p->nrun, "machine", "kernel", "formulation", "level", "n", "P", "messages", "MB sent",
            "Mflop", "host s", "host MB");
@@ -121,6 +126,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     if (open_level)
         printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the "
                "database, or by one that is measured then\n");
+    /* Polymers compute in nanometres and picoseconds: results are told in SI. */
     if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
         printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre,
                r[0].kilogram, r[0].second);
@@ -128,6 +134,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
         /* Whether the omission can change a result at all comes first. */
+        /* "left out (exact, in 3 of 12 runs): what: why" */
         const struct omission *o = &k->kind[i].omission;
         printf("left out (");
         if (o->bound > 0) printf("bounded by %.1e", o->bound);
@@ -169,7 +176,7 @@ static const struct column_table kind_columns = COLUMNS(kind_column);
 /* A planned run with its estimate. */
 struct planned {
     const struct run_spec *spec;
-    const struct run_estimate *estimate;
+    const struct run_estimate *estimate; /* valid unless the point was refused */
 };
 
 /* The value of the setting named by `more`, as scenario files write it. */
@@ -209,6 +216,7 @@ static void print_json(const struct plan *p, const struct run_estimate *r,
     json_key(&j, "omissions");
     columns_json_list(&kind_columns, k->kind, k->n, sizeof *k->kind, &j);
     free(k);
+    /* keys in the order of the alphabet: omissions, question, runs, savings, unused */
     json_key_text(&j, "question", p->question);
     json_key(&j, "runs");
     json_array(&j);
@@ -263,6 +271,7 @@ int cmd_explain(int argc, char **argv)
     struct run_estimate *r = calloc(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
     /* calloc of 1: an empty plan still has an array. */
     ok = ok && r && estimate_all(&p, r, &e);
+    /* Too large for the stack: a row for every omission. */
     struct savings *all = calloc(1, sizeof *all);
     CHECK(all);
     if (ok && !c.json) print_text(&p, r);

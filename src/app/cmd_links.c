@@ -1,4 +1,7 @@
-/* cmd_links.c - mimdsim links: the most loaded links of a run, and the ports that feed them. */
+/* cmd_links.c - mimdsim links: the most loaded links of a run, and the ports that feed them.
+ *
+ * Links and ports are listed apart: a port is often the busiest, as all of a node's messages
+ * pass it, and would hide the links of the network. */
 #include "app/arguments.h"
 #include "app/verb.h"
 #include "report/report.h"
@@ -64,12 +67,15 @@ static bool print_links(const struct common *c, struct store *s, struct err *e)
         ok = err_set(e, ERR_NO_INPUT,
                      "%s has no link loads%s%s; run a scenario with `record: {links: true}`",
                      c->arg[0], wanted ? " of run " : "", wanted ? wanted : "");
+    /* The query of the default gives the run's number, the other one only says that there are
+     * rows. */
     const char *run = wanted ? wanted : found.s;
     ok = ok && report_query(s, links_sql, 1, &run, c->json, stdout, e);
     text_free(&found);
     return ok;
 }
 
+/* Both arguments are checked before any query. */
 int cmd_links(int argc, char **argv)
 {
     struct common c;

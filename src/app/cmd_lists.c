@@ -1,4 +1,6 @@
-/* cmd_lists.c - mimdsim scenarios and kernels: what there is. */
+/* cmd_lists.c - mimdsim scenarios and kernels: what there is.
+ *
+ * The manual of all keys is made from the tables of fields, so that it cannot be out of date. */
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/arena.h"
@@ -66,11 +68,13 @@ static void print_keys(const struct common *c)
     arena_destroy(a);
 }
 
+/* Questions of the shipped scenarios and of the user's own. */
 int cmd_scenarios(int argc, char **argv)
 {
     struct common c;
     bool keys = take_flag(&argc, argv, "--keys");
     common_parse(&c, argc, argv, 0, "", scenarios_help, 0, 0);
+    /* --keys needs no scenario to be readable. */
     if (keys) {
         print_keys(&c);
         return 0;
@@ -91,6 +95,7 @@ int cmd_kernels(int argc, char **argv)
 {
     struct common c;
     common_parse(&c, argc, argv, 0, "", "List the kernels.\n\nExample: mimdsim kernels\n", 0, 0);
+    /* Names and titles from the table of programs. */
     struct catalogue k = catalogue_of_kernels();
     common_print_pairs(&c, k.n, k.name, k.title);
     return 0;

@@ -1,4 +1,7 @@
-/* cmd_machines.c - mimdsim machines: list, show one with the origin of every value, compare two. */
+/* cmd_machines.c - mimdsim machines: list, show one with the origin of every value, compare two.
+ *
+ * Every value is shown with its evidence and source: a prediction rests on these numbers, so a
+ * user must be able to check and change each. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,8 +18,8 @@ static const char doc[] =
 
 /* A machine, and where each of its values comes from. */
 struct shown {
-    struct machine_spec spec;
-    struct origin *origin;
+    struct machine_spec spec; /* with --set applied */
+    struct origin *origin; /* (n) in the arena */
     int n;
 };
 
@@ -59,6 +62,7 @@ static void print_segments(const char *list)
 /* Value, range, evidence and place in columns; the source, of any length, at the end. */
 static void print_origin(const struct origin *o, struct arena *a)
 {
+    /* Without folders: all files lie in machines/, but for the user's own. */
     const char *slash = strrchr(o->file, '/');
     const bool segments = o->value[0] == '[' && o->value[1] == '{';
     printf("%-36s %-22s %-30s %-3s ", o->key, segments ? "by size:" : o->value,
@@ -84,13 +88,14 @@ static const struct origin *value_of(const struct shown *m, const char *key)
  * at the least, the stated and the largest rate of the file [flop/s]. A published LINPACK result
  * is the one number of many old machines, so it is compared here. */
 struct sustained {
-    double rate[3], linpack[3];
+    double rate[3], linpack[3]; /* at the least, stated, largest rate [flop/s] */
 };
 
 /* LINPACK's operations are counted once and priced three times. */
 static struct sustained sustained_rate(const struct shown *m)
 {
     const struct origin *o = value_of(m, "node.flop_rate");
+    /* Without a published range the three rates are one. */
     bool ranged = o->max > o->min;
     struct sustained s = {.rate = {ranged ? o->min : m->spec.node.flop_rate, m->spec.node.flop_rate,
                                    ranged ? o->max : m->spec.node.flop_rate}};
@@ -128,6 +133,7 @@ static void json_sustained(struct json *j, const struct shown *m)
     struct sustained s = sustained_rate(m);
     json_key(j, "sustained_rate");
     json_object(j);
+    /* Two objects of three rates each. */
     for (int list = 0; list < 2; list++) {
         json_key(j, list ? "small_dense" : "linpack_100");
         json_object(j);
@@ -143,6 +149,7 @@ static void json_sustained(struct json *j, const struct shown *m)
 static void show_one(const struct common *c, const struct shown *m, struct arena *a)
 {
     if (!c->json) {
+        /* Name and size, the rate that decides most, then every value. */
         printf("%s: %s, %lld processors\n", m->spec.name, m->spec.title,
                (long long)machine_spec_processors(&m->spec));
         print_sustained(m);
@@ -154,6 +161,7 @@ static void show_one(const struct common *c, const struct shown *m, struct arena
     json_object(&j);
     json_key_text(&j, "name", m->spec.name);
     json_key_int(&j, "processors", machine_spec_processors(&m->spec));
+    /* keys in the order of the alphabet */
     json_sustained(&j, m);
     json_key_text(&j, "title", m->spec.title);
     json_key(&j, "values");

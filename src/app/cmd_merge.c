@@ -1,4 +1,6 @@
-/* cmd_merge.c - mimdsim merge: databases that several hosts or shards made, joined to one. */
+/* cmd_merge.c - mimdsim merge: databases that several hosts or shards made, joined to one.
+ *
+ * Merging is safe to repeat, and refuses what cannot be right: one run with two results. */
 #include "app/arguments.h"
 #include "app/verb.h"
 #include "base/json.h"
@@ -38,6 +40,7 @@ int cmd_merge(int argc, char **argv)
     common_parse(&c, argc, argv, 0, "OUT IN...", doc, 2, 64);
     struct err e;
     err_clear(&e);
+    /* OUT is made where there is none. */
     struct store *s = arguments_store(&c, c.arg[0], &e);
     bool ok = s != NULL;
     struct json j = json_make(stdout);

@@ -1,4 +1,7 @@
-/* cmd_netcheck.c - mimdsim netcheck: the network levels against files of reference answers. */
+/* cmd_netcheck.c - mimdsim netcheck: the network levels against files of reference answers.
+ *
+ * The verdict is about this program: answers outside of the stated accuracy end with status 1,
+ * so that the verb can be used as a test. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,6 +89,7 @@ static bool within_of(const char *word, double *within, struct err *e)
     return true;
 }
 
+/* Status 1: a verdict is FAIL; 65: a file that proves nothing. */
 int cmd_netcheck(int argc, char **argv)
 {
     struct common c;
@@ -93,6 +97,7 @@ int cmd_netcheck(int argc, char **argv)
     double within;
     bool pass = true, stated = take_flag(&argc, argv, "--stated");
     common_parse(&c, argc, argv, TAKES_LEVEL, "FILE...", doc, stated ? 0 : 1, 64);
+    /* The table needs no file. */
     if (stated) {
         if (c.json) netcheck_json_stated(stdout);
         else netcheck_print_stated(stdout);

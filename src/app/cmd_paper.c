@@ -1,4 +1,7 @@
-/* cmd_paper.c - mimdsim paper: every run, figure and claim of the paper, and the report of them. */
+/* cmd_paper.c - mimdsim paper: every run, figure and claim of the paper, and the report of them.
+ *
+ * The study can be interrupted at any point and begun again: runs, samples and searches that are
+ * stored are not made again, and the report is written last. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,23 +36,24 @@ enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
 /* What the stages of the study share. A stage returns false with *e set; what was stored before
  * stays. */
 struct paper {
-    const struct common *common;
+    const struct common *common; /* the command line */
     const char *database;
     struct store *store;
     struct err *e;
-    struct claim_rules rules;
+    struct claim_rules rules; /* read once, judged several times */
     const struct run_spec
         *run; /* the runs of all plans while they are made, and how each is executed */
-    struct run_order *order;
+    struct run_order *order; /* (runs) in step with `run` */
     bool paper_only; /* without the scenes */
     int failed;      /* runs that could not be made, or did not end */
     int nplan;
-    struct plan plan[MOST_PLANS];
+    struct plan plan[MOST_PLANS]; /* (nplan) kept to the end for figures and parameters */
 };
 
 /* --set applies to all scenarios: a study with a changed machine. */
 static bool add_plan(struct paper *p, const char *name)
 {
+    /* The study's scenarios are files of this program: too many would be our mistake. */
     CHECK(p->nplan < MOST_PLANS);
     struct plan_options o = common_plan(p->common);
     return plan_read(&p->plan[p->nplan++], name, &o, p->e);
@@ -66,6 +70,7 @@ static bool add_plans(struct paper *p)
     struct arena *a = arena_create();
     bool ok = plan_list("scenarios", a, &stem, &title, &n, p->e);
     for (int i = 0; ok && i < n; i++)
+        /* The names tell: figures of the paper, and studies around them. */
         if (strncmp(stem[i], "fig", 3) == 0 || strncmp(stem[i], "paper-", 6) == 0)
             ok = add_plan(p, stem[i]);
     arena_destroy(a);
@@ -147,10 +152,12 @@ static bool draw_all(struct paper *p, struct progress *progress)
                                draw(p, "omissions") && draw(p, "explain"));
 }
 
+/* With a progress line. */
 static bool draw_figures(struct paper *p)
 {
     int n = 1;
     for (int i = 0; i < p->nplan; i++) n += p->plan[i].nfigure;
+    /* One second a figure: worth a progress line. */
     struct progress progress = progress_make("figures", n, p->common->quiet);
     bool ok = draw_all(p, &progress);
     progress_end(&progress);
@@ -208,6 +215,7 @@ static bool answer(struct paper *p, double began)
     if (!p->store || !add_plans(p) || !run_plans(p)) return false;
     if (whole && !judge(p)) return false;
     if (whole && !p->paper_only && !scenes_measure(p->common, p->store, p->e)) return false;
+    /* Figures after the studies, whose rows they show. */
     if (!draw_figures(p)) return false;
     if (!whole) return true;
     return write_documents(p, began) && claims_print(p->store, p->common->json, stdout, p->e);
@@ -220,6 +228,7 @@ int cmd_paper(int argc, char **argv)
     common_parse(&c, argc, argv, TAKES_STORE | TAKES_DIR | TAKES_JOBS, "[FIGURE...]", doc, 0, 16);
     struct err e;
     err_clear(&e);
+    /* Before anything else: the report tells how long all of it took. */
     double began = host_seconds();
     struct paper p = {.common = &c, .database = c.database_given ? c.database : "paper.db", .e = &e,
                       .paper_only = paper_only};

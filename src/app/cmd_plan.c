@@ -72,6 +72,7 @@ static bool read_shards(const char *text, int *shards, struct err *e)
     return true;
 }
 
+/* Nothing is run and nothing stored. */
 int cmd_plan(int argc, char **argv)
 {
     struct common c;

@@ -1,4 +1,6 @@
-/* cmd_plot.c - mimdsim plot: draw a figure from a database alone. */
+/* cmd_plot.c - mimdsim plot: draw a figure from a database alone.
+ *
+ * A figure needs no scenario and no run: everything is in the database and in plots/. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -19,6 +21,7 @@ static const char doc[] =
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j,
                           struct err *e)
 {
+    /* One figure may be several drawings, such as one for each scenario. */
     struct report_drawings d;
     if (!report_drawings_find(s, plan_data_dir(), name, &d, e)) return false;
     for (int i = 0; i < d.n; i++) {
@@ -108,6 +111,7 @@ static struct store *open_database(const struct common *c, struct err *e)
     return NULL;
 }
 
+/* No argument: figures; a database: the same; figures: draw them. */
 int cmd_plot(int argc, char **argv)
 {
     struct common c;
@@ -115,6 +119,7 @@ int cmd_plot(int argc, char **argv)
     struct err e;
     err_clear(&e);
     struct store *s = c.narg > 0 ? open_database(&c, &e) : NULL;
+    /* Figures in the order of the command line; the first failure ends it. */
     bool ok = s != NULL || c.narg == 0;
     for (int i = 1; ok && i < c.narg; i++)
         ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);

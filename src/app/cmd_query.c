@@ -1,5 +1,8 @@
-/* cmd_query.c - mimdsim query: SQL for people without sqlite3 at hand; databases of older versions
- * upgraded. */
+/* cmd_query.c - mimdsim query: SQL for people without sqlite3 at hand; databases of older
+ * versions upgraded.
+ *
+ * The database is opened for reading: a query cannot change it. Views make the usual questions
+ * short. */
 #include "app/arguments.h"
 #include "app/flag.h"
 #include "app/verb.h"
@@ -52,6 +55,7 @@ int cmd_query(int argc, char **argv)
     err_clear(&e);
     if (schema && (c.json || upgrades)) err_set(&e, ERR_USAGE,
                                                 "--schema stands alone: it writes Markdown");
+    /* The manual describes a new database of this version; no file is opened. */
     if (schema) return e.kind == ERR_NONE && store_document(stdout, &e) ? 0 : common_fail(&c, &e);
     /* Upgrading opens for writing and closes: the query then reads an upgraded database. */
     bool ok = !upgrades || upgrade(&c, &e);

@@ -1,5 +1,7 @@
 /* cmd_report.c - mimdsim report: everything that a database holds, as pictures, Markdown and
- * HTML. */
+ * HTML.
+ *
+ * Chapters without rows are left out: a database with one study gives a report on that study. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,12 +28,12 @@ enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
 /* What is gathered before the document can be written. */
 struct report {
     const struct common *common;
-    struct store *store;
+    struct store *store; /* opened for reading */
     struct err *e;
     int nfigure;
     char *figure[MOST_FIGURES]; /* drawn, and not shown in a section of their own */
     int nplan;
-    struct plan plan[MOST_SCENARIOS];
+    struct plan plan[MOST_SCENARIOS]; /* (nplan) of the scenarios that still exist */
 };
 
 /* Their figures appear there, not in the chapter of figures. */
@@ -51,8 +53,10 @@ static bool draw(struct report *r, char *name)
         err_print(&e);
         drawn = true; /* as numbers */
     }
+    /* The name is kept, or freed here. */
     if (drawn && !has_section(name) && r->nfigure < MOST_FIGURES) r->figure[r->nfigure++] = name;
     else free(name);
+    /* No rows: the figure is of another study. */
     if (!drawn && e.kind != ERR_NO_INPUT) *r->e = e;
     return drawn || e.kind == ERR_NO_INPUT;
 }

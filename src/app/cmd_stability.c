@@ -1,4 +1,7 @@
-/* cmd_stability.c - mimdsim stability: stiff and extreme scenes against every algorithm. */
+/* cmd_stability.c - mimdsim stability: stiff and extreme scenes against every algorithm.
+ *
+ * A scene on which algorithms fail is a result: the exit status is that of the verb, not of the
+ * algorithms. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,7 @@
-/* cmd_timeline.c - mimdsim timeline: who computes, sends and waits when, in one run. */
+/* cmd_timeline.c - mimdsim timeline: who computes, sends and waits when, in one run.
+ *
+ * One run, whether stored or made now, in all formats that people can look at: bars of letters,
+ * a picture, and traces for two kinds of viewers. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,10 +34,10 @@ struct shown {
     struct err *e;
     struct arena *arena;
     struct store *store; /* where the picture finds the run */
-    int64_t run_id;
-    struct run_result result;
+    int64_t run_id; /* in `store`; 0: there is none */
+    struct run_result result; /* with its spans */
     enum run_status status; /* of the run shown */
-    char title[160];
+    char title[160]; /* kernel, machine, n and P */
 };
 
 /* By content: a database may have any name. */
@@ -92,6 +95,7 @@ static bool from_scenario(struct shown *t)
     struct plan plan = {0};
     struct plan_options o = common_plan(t->common);
     if (!plan_read(&plan, t->common->arg[0], &o, t->e)) return false;
+    /* The first point only: a timeline of a sweep would be unreadable. */
     struct run_spec spec = plan.run[0];
     /* Recording is switched on whatever the scenario says. */
     spec.record.spans = true;
@@ -156,6 +160,7 @@ static bool draw_picture(struct shown *t)
 /* Without --format everything that people can open; with --json the Chrome trace, which is JSON. */
 static bool show(struct shown *t)
 {
+    /* text goes to standard output and has no ending */
     static const char *const ending[] = {
         [TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
     const char *word = t->common->format;
@@ -186,6 +191,7 @@ int cmd_timeline(int argc, char **argv)
     store_close(t.store);
     arena_destroy(t.arena);
     if (!ok) return common_fail(&c, &e);
+    /* What the run found is the exit status, as with `run`. */
     if (t.status == RUN_DEADLOCK) return err_exit_status(ERR_DEADLOCK);
     return t.status == RUN_OK ? 0 : err_exit_status(ERR_CHECK);
 }

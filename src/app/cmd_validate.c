@@ -1,5 +1,8 @@
 /* cmd_validate.c - mimdsim validate: simulated machines beside published figures, network levels
- * beside references. */
+ * beside references.
+ *
+ * Two questions with the same form of answer: does the machine file describe the machine that
+ * was measured, and does each network level do what a detailed simulator of networks does? */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +47,7 @@ static void print_row(const struct published *p, const struct outcome *o)
     else snprintf(published, sizeof published, "%.6g", p->value / p->scale);
     printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text,
            published);
+    /* A machine that lacks the quantity has no value and no error. */
     if (o->measured) printf("%11.5g %-7s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
     else printf("%11s %-7s %9s", "-", p->unit, "");
     printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict,
@@ -180,7 +184,7 @@ static bool keep(struct store *s, const struct published *p, const struct outcom
 /* The points shown so far, with their outcomes, for the summary. */
 struct table {
     int n;
-    const struct published **row;
+    const struct published **row; /* (n) borrowed */
     struct outcome *outcome;
 };
 
@@ -279,6 +283,7 @@ static bool go_through(const struct common *c, const struct published *p, int n,
     t->row = TAKE(a, n + 1, const struct published *);
     t->outcome = TAKE(a, n + 1, struct outcome);
     for (int i = 0; i < n; i++) {
+        /* Rows of other machines leave no gap in the table. */
         struct outcome *o = &t->outcome[t->n];
         if (strcmp(name, "all") != 0 && strcmp(name, p[i].machine) != 0) continue;
         if (!validation_measure(&p[i], o, a, e) || !keep(s, &p[i], o, e)) return false;
@@ -317,6 +322,7 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     if (!ok && s) store_rollback(s);
     store_close(s);
     if (!ok) return false;
+    /* Judged and stored: from here on only printing is left. */
     struct validation_summary sum = validation_summarize(t.row, t.outcome, t.n);
     struct contention row[CONTENTION_ROWS];
     /* Contention is shown for one machine only: it takes seconds for each. */
@@ -332,6 +338,7 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
 static void network_table(const struct netcheck *n)
 {
     const char *slash = strrchr(n->path, '/');
+    /* Columns are the levels, in the order of their cost. */
     printf("`%s`:\n\n| network | cases |", slash ? slash + 1 : n->path);
     for (int l = 0; l < LEVELS; l++) printf(" `%s` |", netcheck_level_name((enum network_level)l));
     printf("\n| --- | --- |");
@@ -343,6 +350,7 @@ static void network_table(const struct netcheck *n)
         bool seen = group && !n->row[g].counted;
         for (int k = 0; group && k < g && !seen; k++)
             seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
+        /* A group once, where its first case stands. */
         if (seen) continue;
         int cases = 0;
         for (int k = 0; k < n->nrow; k++)
@@ -360,6 +368,7 @@ static void network_table(const struct netcheck *n)
     putchar('\n');
 }
 
+/* Every file at every level; without FILE, those of tests/data/net. */
 static bool validate_network(const struct common *c, struct arena *a, struct err *e)
 {
     static const char *const file[] = {"makespan", "makespan_sensitivity", "collectives",
@@ -391,6 +400,7 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
     return true;
 }
 
+/* `network` is a word of its own; any other argument is a machine, or `all`. */
 int cmd_validate(int argc, char **argv)
 {
     struct common c;

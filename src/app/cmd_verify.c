@@ -1,5 +1,8 @@
 /* cmd_verify.c - mimdsim verify: every algorithm against reference vectors computed by other
- * people's programs. */
+ * people's programs.
+ *
+ * Nothing in a file can make it pass: tolerances follow from the condition of each number, and
+ * unknown keys are refused. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,9 +57,9 @@ static const struct argp_option options[] = {
 struct request {
     struct verify_options options;
     struct common common; /* json, quiet */
-    bool brief, markdown, strict;
-    const char **file;
-    int nfile;
+    bool brief, markdown, strict; /* forms of the report; whether a weakness fails, too */
+    const char **file; /* (nfile) borrowed from argv */
+    int nfile; /* at least 1 after parsing */
 };
 
 /* "X" or "X,Y". Y is 100 X where it is not given, as in the defaults: accelerations come from a
@@ -116,6 +119,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'q':
         r->common.quiet = true;
         break;
+    /* r->file has room for all words of the command line. */
     case ARGP_KEY_ARG:
         r->file[r->nfile++] = arg;
         break;
@@ -156,6 +160,7 @@ static int verify_all(const struct request *r, struct verify_report *report, str
             /* err_print and the text: *e lives only in this loop. */
             const char *text = arena_text(a, e.text);
             err_print(&e);
+            /* The columns need texts and numbers: empty ones, and NAN for what is not known. */
             report[i] = (struct verify_report){.path = r->file[i],
                                                .name = r->file[i],
                                                .group = "",
@@ -185,6 +190,7 @@ static bool any_failed(const struct request *r, const struct verify_report *repo
     return false;
 }
 
+/* Files in the order of the command line; the arena holds all reports until they are printed. */
 int cmd_verify(int argc, char **argv)
 {
     struct request r = {.options = {.parallel = true},
@@ -195,6 +201,7 @@ int cmd_verify(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &r);
     struct arena *a = arena_create();
     struct verify_report *report = TAKE(a, r.nfile, struct verify_report);
+    /* All files first, then the report: JSON is one document. */
     int status = verify_all(&r, report, a);
     bool failed = any_failed(&r, report);
     print_all(&r, report);

@@ -44,8 +44,8 @@ static unsigned group_of(int group)
 /* What argp's parser needs: least and most arguments. */
 struct parse {
     struct common *common;
-    int least, most;
-    struct err error;
+    int least, most; /* arguments that are not options */
+    struct err error; /* what was wrong, for the document */
 };
 
 /* Say what is wrong with the command line. argp_error ends the process, unless a document is
@@ -83,6 +83,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 {
     struct parse *p = state->input;
     struct common *c = p->common;
+    /* Each option is a field of struct common; what it means is the verb's matter. */
     switch (key) {
     case 'm':
         c->machine = arg;
@@ -214,6 +215,8 @@ bool common_wants_json(int argc, char **argv)
 void common_parse(struct common *c, int argc, char **argv, unsigned takes, const char *args,
                   const char *doc, int least, int most)
 {
+    /* What a verb does not take keeps its default: the default database and folder are the same
+     * for all. */
     memset(c, 0, sizeof *c);
     c->verb = argv[0];
     c->database = "mimdsim.db";

@@ -1,4 +1,7 @@
-/* contention.c - one pattern of messages at every level of the network (contention.h). */
+/* contention.c - one pattern of messages at every level of the network (contention.h).
+ *
+ * The levels agree on an empty network. What they make of an exchange among all, and between two
+ * halves, shows what a cheaper level would hide. */
 #include "app/contention.h"
 
 #include <math.h>
@@ -32,6 +35,7 @@ int contention_measure(const char *machine, struct contention row[CONTENTION_ROW
     int ranks = processors < CONTENTION_RANKS ? (int)processors / 2 * 2 : CONTENTION_RANKS, n = 0;
     for (int i = 0; i < CONTENTION_ROWS && ranks >= 4; i++) {
         row[n] = (struct contention){.quantity = pattern[i], .ranks = ranks};
+        /* A pattern that no level can run is left out. */
         n += measure(&m, &row[n]);
     }
     return n;

@@ -1,4 +1,7 @@
-/* explain_answer.c - confirming, sentences, maps; see explain_answer.h. */
+/* explain_answer.c - confirming, sentences, maps; see explain_answer.h.
+ *
+ * An answer is a sentence that a reader of the paper can check: which parameter, which value,
+ * how far from nominal, and whether the published range contains it. */
 #include "app/explain_answer.h"
 
 #include <math.h>
@@ -12,7 +15,7 @@
 
 /* The answer tried with the runs of the study: `asked` is false when the claim names no command. */
 struct confirmed {
-    bool asked, agrees;
+    bool asked, agrees; /* agrees: the study's own runs say that it holds */
     int nrun;
 };
 
@@ -21,6 +24,7 @@ struct confirmed {
  * time. */
 static bool confirm(struct explain_bench *b, struct explain_search *s, struct confirmed *c)
 {
+    /* up to 12 % further */
     enum { MOVES = 6 };
     double u[EXPLAIN_MOST_AXES];
     *c = (struct confirmed){0};
@@ -210,16 +214,19 @@ bool explain_answer_together(struct explain_bench *b, struct explain_search *s, 
     if (without)
         text_add(&t, "No point was found at which all claims hold, as there is none for %s alone. ",
                  without);
+    /* No claim can hold alone: there is nothing to ask for together. */
     if (!s) {
         text_free(&t);
         return true;
     }
     bool ok = !s->best.grade.holds || confirm(b, s, &c);
+    /* The variant in words: baseline and operators. */
     const char *baseline = s->best.grade.baseline;
     text_add(&variant, "%s%s", baseline ? baseline : "fastest serial",
              s->goal.operators == OPERATORS_DENSE ? ", dense" : ", structured");
     text_add(&t, without ? "The others, " : "All, ");
     add_ids(s->goal.subject, &t);
+    /* Where they hold together, and whether the study confirms it. */
     if (s->best.grade.holds) {
         text_add(&t, ", hold together for '%s' if ", variant.s);
         add_changes(s, s->best.u, !s->best.grade.holds, &t);
@@ -263,8 +270,10 @@ static void two_axes(const struct explain_search *s, int axis[2])
 }
 
 /* A factor, or the value itself where the nominal value is 0. */
+/* A number of an axis as the map has it. */
 static double shown(const struct explain_space *space, const double *u, int i)
 {
+    /* axes that go both ways are factors */
     bool factor = space->axis[i].least < 0;
     return factor ? exp(u[i]) : explain_space_value(space, u, i, 0);
 }
@@ -283,8 +292,8 @@ static void axis_label(const struct explain_space *space, int i, struct text *t)
 
 /* What is the same in all cells of a map. */
 struct map_frame {
-    int axis[2];
-    struct text label[2], variant;
+    int axis[2]; /* across, up */
+    struct text label[2], variant; /* of the axes; of what was judged */
 };
 
 /* A published bound of an axis as it is drawn, over the nominal value; NULL when there is none. */
@@ -350,6 +359,7 @@ static void map_point(const struct explain_search *s, const int *axis, int i, in
     memcpy(u, s->best.u, EXPLAIN_MOST_AXES * sizeof *u);
     for (int k = 0; k < 2; k++) {
         const struct explain_axis *a = &space->axis[axis[k]];
+        /* Even steps of u are even factors. */
         u[axis[k]] = a->least + (a->most - a->least) * at[k] / (map_size(s, axis) - 1);
     }
     explain_space_snap(space, u);

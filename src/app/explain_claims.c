@@ -23,20 +23,20 @@ enum { MOST_CLAIMS = 24, GOALS = 3, MOST_SEARCHES = GOALS * MOST_CLAIMS };
 /* One failing claim. */
 struct inquiry {
     struct explain_subject subject;
-    const struct claim_rule *rule;
+    const struct claim_rule *rule; /* borrowed */
     int first, ngoal;                   /* its searches: the claim's own variant first */
     const struct explain_search *shown; /* the search that answers for it */
 };
 
 struct inquest {
     struct explain_bench bench;
-    const struct claim_rules *rules;
+    const struct claim_rules *rules; /* all claims, as read from plots/claims */
     uint64_t seed;
     bool failing[MOST_CLAIMS], judged[MOST_CLAIMS]; /* of rules->rule; judged: can be told at all */
     int n;
-    struct inquiry claim[MOST_CLAIMS];
+    struct inquiry claim[MOST_CLAIMS]; /* (n) those that fail */
     struct explain_search *search; /* (nsearch) */
-    int nsearch;
+    int nsearch; /* at most GOALS for each */
 };
 
 /* --- which claims ----------------------------------------------------------------------------- */
@@ -193,6 +193,7 @@ static bool answer_together(struct inquest *q)
         if (same && can_hold(q, i)) rule[n++] = &q->rules->rule[i];
         else if (same) text_add(&without, "%s%s", without.length ? ", " : "", q->rules->rule[i].id);
     }
+    /* With each style of operators: one point for all must have one of them. */
     struct explain_subject *all = TAKE(q->bench.arena, 1, struct explain_subject);
     struct explain_search *search = TAKE(q->bench.arena, 2, struct explain_search);
     /* One claim is not "together". */

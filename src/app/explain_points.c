@@ -1,4 +1,7 @@
-/* explain_points.c - subjects, their runs, and the points that were made; see explain_points.h. */
+/* explain_points.c - subjects, their runs, and the points that were made; see explain_points.h.
+ *
+ * A point is judged by many runs. Each is therefore made once in the life of a
+ * database: a hash table in memory finds it, table explain_point keeps it. */
 #include "app/explain_points.h"
 
 #include <inttypes.h>
@@ -63,6 +66,7 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     enum { MOST_WORDS = 16 };
     const char *word[MOST_WORDS];
     int nword = 0;
+    /* Words are parts of a copy: strtok_r writes into it. */
     char *rest = arena_text(b->arena, line), *save = NULL;
     for (char *w = strtok_r(rest, " ", &save); w && nword < MOST_WORDS;
          w = strtok_r(NULL, " ", &save))
@@ -108,6 +112,7 @@ static bool one_machine(const struct explain_subject *s, struct err *e)
     return true;
 }
 
+/* One line is enough: a claim's lines are of one machine. */
 bool explain_machine(struct explain_bench *b, const struct claim_rule *rule, char machine[64])
 {
     struct run_spec *spec = NULL;
@@ -158,7 +163,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
 
 /* The state of reading stored points back. */
 struct loading {
-    struct explain_subject *subject;
+    struct explain_subject *subject; /* whose points are read */
     struct explain_bench *bench;
     struct explain_point *point; /* whose verdicts are being read */
 };
@@ -173,6 +178,7 @@ static int rule_of(const struct explain_subject *s, const char *id)
 
 enum { MOST_VERDICTS = 512 };
 
+/* To the verdicts of the point. */
 static void add_verdict(struct explain_point *p, const struct explain_verdict *v, struct arena *a)
 {
     /* Verdicts of a point come one after the other: the array grows in steps. */
@@ -282,12 +288,12 @@ bool explain_subject_make(struct explain_subject *s, struct explain_bench *b, co
 /* One batch: the runs of all its points, point by point. */
 struct batch {
     struct explain_bench *bench;
-    const struct explain_request *request;
-    struct run_spec *spec;
+    const struct explain_request *request; /* (n) the points, in their order */
+    struct run_spec *spec; /* (nspec) the runs of all points */
     int *of, nspec, kept; /* of: (nspec + 1) whose runs they are */
-    struct store *passing;
+    struct store *passing; /* the runs of one point at a time */
     struct explain_point *point; /* in the making */
-    struct text runs;
+    struct text runs; /* their hashes, for table explain_point */
     bool keep; /* false: for a look, nothing is stored */
 };
 
@@ -330,6 +336,7 @@ static bool keep_point(struct batch *t)
     const struct explain_request *q = &t->request[t->of[t->kept - 1]];
     char key[20];
     struct text settings = {0};
+    /* As text, since SQLite's integers are signed. */
     snprintf(key, sizeof key, "%016" PRIx64, t->point->key);
     explain_space_settings(&q->subject->space, q->u, &settings);
     const struct store_value value[] = {
@@ -433,6 +440,7 @@ bool explain_make(struct explain_bench *b, const struct explain_request *request
     struct arena *a = arena_create();
     int most = 1;
     for (int i = 0; i < n; i++) most += request[i].subject->nspec;
+    /* Room for all runs of all points, though only those with the right operators are made. */
     t.spec = TAKE(a, most, struct run_spec);
     t.of = TAKE(a, most, int);
     for (int i = 0; i < n; i++)

@@ -1,5 +1,5 @@
-/* explain_search.c - one axis at a time, simplexes from several starts, and what can be taken back; see
- * explain_search.h. */
+/* explain_search.c - one axis at a time, simplexes from several starts, and what can be taken
+ * back; see explain_search.h. */
 #include "app/explain_search.h"
 
 #include <gsl/gsl_errno.h>

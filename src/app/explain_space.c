@@ -126,6 +126,7 @@ bool explain_space_make(struct explain_space *s, const char *name, struct arena 
     if (!plan_machine(&library, other.s, &none, a, &mpich, &nmpich, &ignored)) nmpich = 0;
     text_free(&other);
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        /* An axis that this machine lacks is overwritten by the next one. */
         s->axis[s->n] = table[i];
         if (fill_axis(&s->axis[s->n], &m, origin, n, mpich, nmpich)) s->n++;
     }
@@ -142,14 +143,18 @@ static double three_digits(double x)
     static const double ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    /* two digits behind the first */
     int k = 2 - (int)floor(log10(x));
     if (abs(k) > 22) return x;
     return k >= 0 ? round(x * ten[k]) / ten[k] : round(x / ten[-k]) * ten[-k];
 }
 
+/* Values are rounded as they are printed, three digits or whole per cent: a point that is typed
+ * in again is the same point. */
 double explain_space_value(const struct explain_space *s, const double *u, int i, int k)
 {
     const struct explain_axis *x = &s->axis[i];
+    /* Unchanged is unchanged to the last bit, not rounded. */
     if (u[i] == 0) return x->nominal[k];
     switch (x->map) {
     case EXPLAIN_FACTOR:

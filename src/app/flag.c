@@ -13,6 +13,7 @@ static void drop(int *argc, char **argv, int at, int n)
     *argc -= n;
 }
 
+/* Every occurrence is removed: argp must not see any. */
 bool take_flag(int *argc, char **argv, const char *name)
 {
     bool found = false;

@@ -32,6 +32,7 @@ static bool store_row(struct store *s, const struct stability_report *r, int i, 
     return store_insert_row(s, "stability", 2, name, value, &stability_columns, &r->row[i], e);
 }
 
+/* Rows of a suite, numbered in their order. */
 bool keep_stability(struct store *s, const struct stability_report *r, struct err *e)
 {
     if (!store_begin(s, e)) return false;

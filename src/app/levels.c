@@ -29,7 +29,7 @@ bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *
 /* The errors that are known of one family's levels, from earlier ladders. */
 struct known {
     int n;
-    struct level_error level[MOST_LEVELS];
+    struct level_error level[MOST_LEVELS]; /* (n) the largest error of each */
 };
 
 /* (level, error, where it was measured) */

@@ -1,4 +1,7 @@
-/* main.c - choose the verb. */
+/* main.c - choose the verb.
+ *
+ * `mimdsim VERB ...`: the table of verbs is the whole interface; each verb reads the rest of the
+ * command line by itself and returns the exit status. */
 #include "config.h"
 
 #include <argp.h>
@@ -81,11 +84,13 @@ static int run_verb(const struct verb *v, int argc, char **argv)
     return finish(v->run(argc, argv));
 }
 
+/* Help, version, or a verb. */
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";
     /* argp's own errors end with the status for wrong usage. */
     argp_err_exit_status = err_exit_status(ERR_USAGE);
+    /* Nothing was asked for: help, but as an error. */
     if (argc < 2) {
         print_help(stderr);
         return err_exit_status(ERR_USAGE);

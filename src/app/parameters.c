@@ -1,4 +1,7 @@
-/* parameters.c - from the origins of machine files to rows of a table; see parameters.h. */
+/* parameters.c - from the origins of machine files to rows of a table; see parameters.h.
+ *
+ * Only values with a class of evidence are listed: the others are defaults of this program, of
+ * which the manual of keys tells. */
 #include "app/parameters.h"
 
 #include <string.h>
@@ -28,6 +31,7 @@ static int machines_of(const struct plan *plan, int nplan, const char **name)
 const char *parameters_range(const struct origin *o, struct arena *a)
 {
     if (!(o->max > o->min)) return "";
+    /* The unit is that of the field of the same name. */
     struct text key = {0}, range = {0};
     text_add(&key, "machine.%s", o->key);
     const struct field_table *table;

@@ -31,6 +31,7 @@ static const struct {
 static enum dimension dimension_of(enum probe_quantity q)
 {
     switch (q) {
+    /* a message size [B] */
     case PROBE_N_HALF: return SIZE;
     case PROBE_LINPACK:
     case PROBE_INNER_PRODUCT: return FLOPS;
@@ -217,6 +218,8 @@ static bool record(struct published *p, char *cell[COLUMNS], struct arena *a, st
     if (!read_quantity(p, cell[2], e) || !read_unit(p, e)) return false;
     if (!read_use(p, cell[9], e)) return false;
     if (!take_ranks(p, e)) return false;
+    /* All numbers of the row; empty ones have the value that stands for "not given": the range
+     * is then the value itself. */
     char at[32];
     /* The number in front of @. */
     snprintf(at, sizeof at, "%.*s", (int)strcspn(p->at_text, "@"), p->at_text);
@@ -243,6 +246,7 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
                        struct err *e)
 {
     int line = 0;
+    /* A line ends at \r\n or \n; the last one may have no end. */
     for (char *next; *s; s = next) {
         char *cell[COLUMNS];
         size_t length = strcspn(s, "\r\n");
@@ -251,6 +255,8 @@ static bool read_lines(const char *path, char *s, struct arena *a, struct publis
         next += *next == '\n';
         s[length] = '\0';
         line++;
+        /* The header is compared as a whole: columns that were moved would be read wrongly
+         * without a sign. */
         bool ok = line == 1 ? strcmp(s, header) == 0 ||
                                   err_set(e, ERR_DATA, "the header is not '%s'", header)
                             : split_row(s, cell) ||

@@ -87,6 +87,7 @@ static const char *short_name(const struct plan *p, int at)
 static void add_column(struct text *sql, const struct plan *p, int at)
 {
     const char *key = p->swept[at].key, *name = short_name(p, at);
+    /* No setting of the run: n and P are. */
     if (strcmp(key, "n_over_p") == 0) text_add(sql, ", r.n / r.P AS n_over_p");
     else
         text_add(sql,
@@ -109,6 +110,8 @@ static void make_sql(const struct plan *p, struct text *sql)
     text_add(sql, "%s%s", repeated ? ", r.rep" : "", last_sql);
 }
 
+/* The identities of the plan's runs as one parameter: a list of any length, and no text of a
+ * user in SQL. */
 bool run_table_print(struct store *s, const struct plan *p, bool json, FILE *out, struct err *e)
 {
     struct text keys = {0}, sql = {0};

@@ -69,6 +69,7 @@ static bool add_machine(struct sampler *p, const char *machine)
     for (int i = 0; i < p->nuncertain; i++)
         if (strcmp(p->uncertain[i].machine, machine) == 0) return true;
     if (!plan_machine(&m, machine, &none, p->arena, &origin, &n, p->e)) return false;
+    /* Room for all of this machine's values; the list is copied for each machine. */
     struct uncertain *u = TAKE(p->arena, p->nuncertain + n, struct uncertain);
     if (p->nuncertain) memcpy(u, p->uncertain, (size_t)p->nuncertain * sizeof *u);
     p->uncertain = u;
@@ -286,6 +287,7 @@ static bool run_samples(struct sampler *p)
     return ok && keep_meta(p, "samples_s", took) && keep_meta(p, "samples", hex);
 }
 
+/* Scenes, draws and plans, then one campaign of all samples. */
 bool sampling_run(const struct common *c, const struct claim_rules *rules, int nsample,
                   struct store *s, struct err *e)
 {

@@ -1,5 +1,7 @@
-/* scenes.c - see scenes.h. One after the other: times that are measured side by side disturb each
- * other. */
+/* scenes.c - see scenes.h. One after the other: times that are measured side by side disturb
+ * each other.
+ *
+ * What is stored is not measured again: host times of today would replace those of the study. */
 #include "app/scenes.h"
 
 #include <stdlib.h>

@@ -9,6 +9,7 @@
 
 enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 };
 
+/* NULL is no shard: then all runs are wanted. */
 bool shard_parse(const char *text, struct shard *out, struct err *e)
 {
     *out = (struct shard){0};
