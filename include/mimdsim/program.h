@@ -246,6 +246,11 @@ int64_t comm_now_ps(struct comm *c);
  * NULL and 0 when none did. */
 #define comm_output(c, output, n) comm_output_at((c), (output), (n), __FILE__, __LINE__)
 
+/* comm_error: for check: the relative error of a result, or of whatever `quantity` (at most 23
+ * letters) calls it. Above the program's tolerance, or not a number, it makes the run invalid. */
+#define comm_error(c, quantity, relative)                                                          \
+    comm_error_at((c), (quantity), (relative), __FILE__, __LINE__)
+
 /* comm_fail: end the run as failed, with a text as printf makes it. Does not return. */
 #define comm_fail(c, ...) comm_fail_at((c), __FILE__, __LINE__, __VA_ARGS__)
 
@@ -293,6 +298,8 @@ void *comm_memory_at(struct comm *c, int64_t bytes, const char *file, int line);
 void comm_publish_at(struct comm *c, int output, int64_t first, int64_t n, const double *data,
                      const char *file, int line);
 const double *comm_output_at(struct comm *c, int output, int64_t *n, const char *file, int line);
+void comm_error_at(struct comm *c, const char *quantity, double relative, const char *file,
+                   int line);
 __attribute__((noreturn, format(printf, 4, 5))) void
 comm_fail_at(struct comm *c, const char *file, int line, const char *format, ...);
 

@@ -96,10 +96,10 @@ struct mimdsim_program {
      * which a run is valid. 0: the same numbers. */
     double tolerance;
 
-    /* check: where there is no serial code to compare with, or more to be said: the relative error
-     * of the results (comm_output) of a run on comm_run_size ranks. Runs alone, on one processor,
-     * after the run. NULL: none. */
-    double (*check)(struct comm *c);
+    /* check: where there is no serial code to compare with, or more to be said: looks at the results
+     * of a run on comm_run_size ranks (comm_output) and states their errors (comm_error). Runs
+     * alone, on one processor, after the run. NULL: none. */
+    void (*check)(struct comm *c);
 
     /* estimate: costs by formula for `mimdsim explain`; the parameters are set. NULL: they are not
      * known. */
@@ -187,6 +187,7 @@ struct comm_functions {
     void (*publish)(struct comm *c, int output, int64_t first, int64_t n, const double *data,
                     const char *file, int line);
     const double *(*output)(struct comm *c, int output, int64_t *n, const char *file, int line);
+    void (*error)(struct comm *c, const char *quantity, double relative, const char *file, int line);
     void (*fail)(struct comm *c, const char *text, const char *file, int line);
 };
 

@@ -97,14 +97,26 @@ static struct text choice_of(const struct run_spec *s, const char *key)
     return t;
 }
 
+/* A number of a row, or a dash: what programs of one's own cost is known where they tell. */
+static void print_count(double x, int width, int digits)
+{
+    if (isnan(x)) printf(" %*s", width, "-");
+    else printf(" %*.*f", width, digits, x);
+}
+
 /* One line of the table. Without a model there is no formulation. */
 static void print_run(const struct run_spec *s, const struct run_estimate *r)
 {
     struct text level = choice_of(s, "machine.network.level"),
                 form = choice_of(s, "kernel.formulation");
-    printf("%-12.12s %-10s %-12s %-14s %8lld %8d %12.0f %12.3f %12.3f %10.4f %10.1f\n",
-           s->machine.name, s->kernel.name, r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody,
-           s->nrank, r->messages, r->bytes / 1e6, r->flops / 1e6, r->host_s, r->host_bytes / 1e6);
+    printf("%-12.12s %-10s %-12s %-14s %8lld %8d", s->machine.name, s->kernel.name,
+           r->nu > 0 ? form.s : "-", level.s, (long long)r->nbody, s->nrank);
+    print_count(r->messages, 12, 0);
+    print_count(r->bytes / 1e6, 12, 3);
+    print_count(r->flops / 1e6, 12, 3);
+    print_count(r->host_s, 10, 4);
+    print_count(r->host_bytes / 1e6, 10, 1);
+    printf("\n");
     text_free(&level);
     text_free(&form);
 }
@@ -130,7 +142,10 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     if (p->nrun && r[0].metre > 0 && (r[0].metre != 1 || r[0].kilogram != 1 || r[0].second != 1))
         printf("\nthe model computes in units of %.9g m, %.9g kg, %.9g s\n", r[0].metre,
                r[0].kilogram, r[0].second);
-    printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s, t.host_bytes / 1e6);
+    if (isnan(t.host_s)) printf("\nestimated: not known, the program declares no estimate\n");
+    else
+        printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s,
+               t.host_bytes / 1e6);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
         /* Whether the omission can change a result at all comes first. */

@@ -7,12 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/programs.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
 
 /* Keys of long options without a letter. */
-enum { KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT };
+enum {
+    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW
+};
 
 /* The last number is the group: it orders --help and decides which verbs have the option. */
 static const struct argp_option option_table[] = {
@@ -20,6 +23,8 @@ static const struct argp_option option_table[] = {
     {"set", 's', "KEY=VALUE", 0,
      "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; "
      "several values, as in n=16,32, are a sweep; may be repeated", 1},
+    {"allow-programs", KEY_ALLOW, NULL, 0,
+     "run also programs that the scenario names outside its own folder: they run with all your rights", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db; for paper: paper.db)", 2},
     {"force", KEY_FORCE, NULL, 0, "repeat runs that are already stored", 2},
     {"dir", KEY_DIR, "DIR", 0, "folder for figures (default figures)", 3},
@@ -101,6 +106,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case 'j':
         return set_jobs(c, arg, state);
+    case KEY_ALLOW:
+        c->allow_programs = true;
+        break;
     case KEY_FORCE:
         c->force = true;
         break;
@@ -247,7 +255,9 @@ struct plan_options common_plan(const struct common *c)
                                  .nset = c->nset,
                                  .set = c->set,
                                  .nkernel = c->kernel.n,
-                                 .kernel = c->kernel.name};
+                                 .kernel = c->kernel.name,
+                                 .program = programs_sheet,
+                                 .allow_programs = c->allow_programs};
 }
 
 /* The end of a failed verb: document, text, exit status. */

@@ -13,7 +13,7 @@ enum { MOST_SWEPT = 64 };
 /* Swept keys that have a column in every table, under another name. */
 static const char *const always[] = {"machine.name",  "kernel.name",           "kernel.formulation",
                                      "kernel.solver", "machine.network.level", "model.n",
-                                     "ranks"};
+                                     "ranks",         "program.n",             "program.file"};
 static const char *const fixed[] = {"machine",
                                     "kernel",
                                     "formulation",
@@ -37,7 +37,8 @@ static const char first_sql[] =
     " iif(r.nu > 0, r.solver, NULL) AS solver,"
     " iif(%s, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message'),"
     " NULL) AS message,"
-    " r.level, iif(r.nu > 0, r.n, NULL) AS n, r.P";
+    " r.level, iif(r.nu > 0 OR EXISTS (SELECT 1 FROM v_setting v WHERE v.run_id = r.id AND v.key = 'program.n'),"
+    " r.n, NULL) AS n, r.P";
 
 /* The rows of the plan, in its order: ?1 is a JSON array of [hash, seed, repetition]. */
 static const char last_sql[] =

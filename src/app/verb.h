@@ -41,6 +41,7 @@ struct common {
     const char *level;     /* --level, NULL: all */
     const char *format;    /* --format, NULL: the usual ones */
     bool brief, compare;
+    bool allow_programs;   /* --allow-programs */
     int jobs;              /* 0: as many as processors */
     struct catalogue kernel; /* the kernels there are */
     int narg;

@@ -95,7 +95,7 @@ struct program_type {
     /* open: look at r->spec and make r->own, rank, nbody, nu and units. False with ERR_CONFIG when this program cannot
      * run the settings (more ranks than bodies, a scene that it does not do), other kinds when a file is bad. */
     bool (*open)(struct program_run *r, struct err *e);
-
+    void (*close)(struct program_run *r); /* gives back what open, even if it failed, took beside arenas; or NULL */
     /* prepare: outputs, job and shared tables from `scratch`, which lives until the run has been judged or, the last
      * time, checked; costs no simulated time. */
     bool (*prepare)(struct program_run *r, struct arena *scratch, struct err *e);

@@ -2,6 +2,7 @@
 #include "run/catalogue.h"
 
 #include "base/check.h"
+#include "guest/guest_program.h"
 #include "kernel/programs.h"
 #include "sim/fiber.h"
 
@@ -15,6 +16,12 @@ struct catalogue catalogue_of_kernels(void)
         c.title[i] = k[i]->title;
     }
     return c;
+}
+
+const struct program_sheet *run_sheet(const char *image, const char *path, const char *hash,
+                                      struct arena *a, struct err *e)
+{
+    return guest_sheet(image, path, hash, a, e);
 }
 
 const char *run_fibers(void) { return fiber_backend(); }

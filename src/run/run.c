@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
+#include "guest/guest_program.h"
 #include "kernel/programs.h"
 #include "machine/node_cost.h"
 #include "run/launch.h"
@@ -50,15 +51,29 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
 
 /* --- one run ------------------------------------------------------------------------------------------------------ */
 
+/* Built in, or somebody's own. */
+static const struct program_type *type_of(const struct run_spec *spec)
+{
+    return spec->kernel.own ? guest_program(spec->program.kind) : program_find(spec->kernel.name);
+}
+
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
               struct program_run *r, struct err *e)
 {
-    *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    *r = (struct program_run){.type = type_of(spec), .spec = *spec, .arena = a};
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
+    if (!r->type && spec->kernel.own)
+        return err_set(e, ERR_CONFIG, "program '%s' is not at hand: only a scenario says where it is",
+                       spec->kernel.name);
     if (!r->type)
         return err_set(e, ERR_CONFIG, "no kernel is called '%s'; 'mimdsim kernels' lists them", spec->kernel.name);
     r->cache = cache_of(cache, r->type);
     return r->type->open(r, e);
+}
+
+void run_close(struct program_run *r)
+{
+    if (r->type && r->type->close) r->type->close(r);
 }
 
 /* The ranks once, with the settings that are in force now. */
@@ -155,6 +170,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
         verify(&r, scratch, out);
     }
     check_note_set(NULL, NULL);
+    run_close(&r);
     arena_destroy(scratch);
     arena_destroy(own);
     out->host_total_s = host_seconds() - begin;
@@ -197,6 +213,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->host_s = k.messages * per_message + k.flops * 0.6e-9 + spec->nrank * 1.5e-6;
         out->host_bytes = spec->nrank * (k.rank_bytes + STACK_PAGES_BYTES + 1400.0) + (double)out->nbody * 1200.0;
     }
+    run_close(&r);
     run_cache_destroy(cache);
     arena_destroy(own);
     return ok;

@@ -34,6 +34,9 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
               struct program_run *r, struct err *e);
 
+/* run_close: give back what an opened program took beside its arenas; also after run_open failed. */
+void run_close(struct program_run *r);
+
 /* What `mimdsim explain` shows of one run before it runs. */
 struct run_estimate {
     int64_t nbody, nu; /* bodies, degrees of freedom */

@@ -20,6 +20,7 @@ void vp_record_failure(struct vp *v, const char *file, int line, const char *tex
     if (w->stopped) return;
     w->stopped = true;
     w->failed = true;
+    /* What is not a call of comm.h has a text that says where it is. */
     char place[128] = "";
     if (file) snprintf(place, sizeof place, " (%s:%d)", vp_base_name(file), line);
     snprintf(r->text, sizeof r->text, "rank %d in %s at %.9g s%s: %s", v->comm.rank,

@@ -1,0 +1,242 @@
+/* guest_kernel.c - a program that declares itself by mimdsim/program.h, as a program of runs.
+ *
+ * Its results are those that its ranks publish. They are compared with what its first serial code
+ * publishes, by its own check, or by both. Serial codes run on one processor of the same machine,
+ * and their computing is counted as the ranks' is; so does the parallel code on one processor. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "guest/guest_program.h"
+#include "guest/guest_world.h"
+#include "guest/serial_answers.h"
+
+/* program_run.own */
+struct guest_run {
+    struct loader_template *reader; /* owned: a copy to read from, in which only estimate runs */
+    struct loader_instance *copy;
+    const struct mimdsim_program *declared; /* in that copy */
+    enum program_cost cost;
+    struct rank_program rank;
+    struct guest_world ranks; /* of the run */
+    struct guest_world *job;  /* = &ranks: what the ranks are given */
+    struct guest_results results;
+};
+
+static const char *const one_stage[] = {"program"};
+
+static size_t workspace_bytes(const void *job, int rank)
+{
+    (void)job, (void)rank;
+    return sizeof(struct guest_rank);
+}
+
+/* --- open, close ------------------------------------------------------------------------------ */
+
+static bool read_declaration(struct guest_run *g, const struct run_spec *spec, struct arena *a,
+                             struct err *e)
+{
+    static const struct loader_hooks none;
+    g->reader = loader_open(spec->program.image, e);
+    if (g->reader == NULL || !loader_reserve(g->reader, 1, &none, e)) return false;
+    g->copy = loader_instantiate(g->reader, 0, NULL, e);
+    if (g->copy == NULL) return false;
+    g->declared = guest_declared(g->copy);
+    if (g->declared == NULL)
+        return err_set(e, ERR_DATA, "%s declares no program any more", spec->program.file);
+    guest_parameters_set(g->declared, spec->program.parameters, a);
+    return true;
+}
+
+static enum program_cost cost_of(const struct guest_run *g, const struct program_spec *p)
+{
+    if (p->cost != PROGRAM_COST_DECLARED) return p->cost;
+    return g->declared->cost == MIMDSIM_COST_AUTHOR ? PROGRAM_COST_AUTHOR : PROGRAM_COST_BLOCKS;
+}
+
+static void make_rank(struct guest_run *g)
+{
+    const struct mimdsim_program *p = g->declared;
+    int n = 0;
+    while (n < MIMDSIM_STAGES && p->stage[n] != NULL) n++;
+    g->rank = (struct rank_program){
+        .nstage = n > 0 ? n : 1,
+        .stage_name = n > 0 ? p->stage : one_stage,
+        .workspace_bytes = workspace_bytes,
+        .run = guest_rank_run,
+        .foreign = true,
+        .timed = p->wildcards != 0,
+        .stack_bytes = p->stack_bytes > 0 ? p->stack_bytes : GUEST_STACK_BYTES,
+    };
+}
+
+static bool kernel_open(struct program_run *r, struct err *e)
+{
+    struct guest_run *g = TAKE(r->arena, 1, struct guest_run);
+    r->own = g;
+    if (r->spec.program.image == NULL)
+        return err_set(e, ERR_CONFIG, "program '%s' of a stored run is not at hand",
+                       r->spec.kernel.name);
+    if (!read_declaration(g, &r->spec, r->arena, e)) return false;
+    g->cost = cost_of(g, &r->spec.program);
+    make_rank(g);
+    r->rank = &g->rank;
+    return true;
+}
+
+static void kernel_close(struct program_run *r)
+{
+    struct guest_run *g = r->own;
+    if (g == NULL) return;
+    guest_world_close(&g->ranks);
+    guest_results_clear(&g->results);
+    loader_close(g->reader);
+}
+
+static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct err *e)
+{
+    struct guest_run *g = r->own;
+    memset(r->output, 0, sizeof r->output);
+    g->ranks = (struct guest_world){.spec = &r->spec,
+                                    .part = GUEST_RUN,
+                                    .cost = g->cost,
+                                    .memory = scratch,
+                                    .results = &g->results};
+    g->job = &g->ranks;
+    r->job = &g->job;
+    return guest_world_open(&g->ranks, &r->spec.machine.node, r->spec.nrank, e);
+}
+
+/* --- is the answer right? --------------------------------------------------------------------- */
+
+/* A part that did not end has no answer to compare with. */
+static void lose(struct run_result *out, const char *what, const char *why)
+{
+    if (out->status == RUN_OK) snprintf(out->text, sizeof out->text, "%.60s: %.1900s", what, why);
+    out->status = RUN_INVALID;
+}
+
+static void check_gaps(const struct guest_run *g, struct run_result *out)
+{
+    for (int i = 0; i < MIMDSIM_OUTPUTS && g->declared->output[i] != NULL; i++) {
+        const int64_t gap = guest_results_gap(&g->results.of[i]);
+        char text[120];
+        snprintf(text, sizeof text, "no rank published its element %lld", (long long)gap);
+        if (gap >= 0) lose(out, g->declared->output[i], text);
+    }
+}
+
+static void compare(const struct guest_run *g, const char *reference,
+                    const struct guest_results *with, struct run_result *out)
+{
+    for (int i = 0; i < MIMDSIM_OUTPUTS && g->declared->output[i] != NULL; i++) {
+        const struct guest_result *x = &g->results.of[i], *y = &with->of[i];
+        if (y->n == 0) continue; /* the serial code does not know it */
+        char text[160];
+        snprintf(text, sizeof text, "the ranks published %lld numbers, '%s' %lld", (long long)x->n,
+                 reference, (long long)y->n);
+        if (x->n != y->n) lose(out, g->declared->output[i], text);
+        program_check_add(out, g->declared->output[i], reference, guest_results_difference(x, y),
+                          g->declared->tolerance);
+    }
+}
+
+static void run_check(struct program_run *r, struct run_result *out)
+{
+    struct guest_run *g = r->own;
+    struct arena *memory = arena_create();
+    struct run_result *end = TAKE(memory, 1, struct run_result);
+    struct guest_results none = {0};
+    struct guest_world w = {.spec = &r->spec,
+                            .cost = g->cost,
+                            .memory = memory,
+                            .results = &none,
+                            .seen = &g->results,
+                            .check = out,
+                            .tolerance = g->declared->tolerance};
+    struct err e;
+    err_clear(&e);
+    if (!guest_alone(&w, GUEST_CHECK, g->rank.stack_bytes, memory, end, &e))
+        lose(out, "check", e.text);
+    else if (end->status != RUN_OK) lose(out, "check", end->text);
+    guest_results_clear(&none);
+    arena_destroy(memory);
+}
+
+static void kernel_check(struct program_run *r, struct arena *scratch, struct run_result *out)
+{
+    struct guest_run *g = r->own;
+    const struct mimdsim_serial *first = &g->declared->serial[0];
+    char why[1024] = "";
+    (void)scratch;
+    check_gaps(g, out);
+    if (first->run != NULL) {
+        const struct serial_answer *a = serial_answer(r->cache, &r->spec, GUEST_SERIAL, g->cost,
+                                                      g->rank.stack_bytes, why, (int)sizeof why);
+        if (a != NULL) compare(g, first->name, &a->results, out);
+        else lose(out, first->name, why);
+    }
+    if (g->declared->check != NULL) run_check(r, out);
+}
+
+/* --- what the speedup is measured against ----------------------------------------------------- */
+
+static void add_baseline(struct program_run *r, int part, const char *name, struct run_result *out)
+{
+    struct guest_run *g = r->own;
+    char why[1024];
+    const struct serial_answer *a =
+        serial_answer(r->cache, &r->spec, part, g->cost, g->rank.stack_bytes, why, (int)sizeof why);
+    if (a == NULL)
+        return; /* the first one's failure has been told; a parallel code may need more ranks */
+    struct baseline *b = &out->baseline[out->nbaseline++];
+    text_copy(b->name, sizeof b->name, name);
+    b->time_ps = a->time_ps;
+    b->work = a->work;
+}
+
+static void kernel_baselines(struct program_run *r, const struct work_price *price,
+                             struct arena *scratch, struct run_result *out)
+{
+    struct guest_run *g = r->own;
+    int n = 0;
+    (void)price, (void)scratch;
+    for (; n < MIMDSIM_SERIALS && g->declared->serial[n].run != NULL; n++)
+        add_baseline(r, GUEST_SERIAL + n, g->declared->serial[n].name, out);
+    program_fastest_add(out, 0);
+    /* Without a serial code the parallel one on one processor is all there is. */
+    if (n == 0 || r->spec.record.baselines == BASELINES_ALL)
+        add_baseline(r, GUEST_RUN, "parallel code on one processor", out);
+}
+
+static void kernel_estimate(const struct program_run *r, struct program_estimate *out)
+{
+    const struct guest_run *g = r->own;
+    struct mimdsim_estimate e = {NAN, NAN, NAN, NAN};
+    if (g->declared->estimate != NULL) {
+        const int64_t argument[4] = {r->spec.nrank, (int64_t)(intptr_t)&e};
+        loader_start(g->copy, 0, NULL);
+        loader_call(g->copy, (void *)g->declared->estimate, argument);
+    }
+    *out = (struct program_estimate){e.messages, e.bytes, e.flops, e.rank_bytes};
+}
+
+static const struct program_type kernel_type = {
+    .name = "program",
+    .title = "a program of your own",
+    .cache_create = serial_answers_create,
+    .cache_destroy = serial_answers_destroy,
+    .open = kernel_open,
+    .close = kernel_close,
+    .prepare = kernel_prepare,
+    .check = kernel_check,
+    .baselines = kernel_baselines,
+    .estimate = kernel_estimate,
+};
+
+const struct program_type *guest_program(enum program_kind kind)
+{
+    return kind == PROGRAM_KERNEL ? &kernel_type : NULL;
+}

@@ -1,0 +1,75 @@
+/* guest_results.c - see guest_results.h. */
+#include "guest/guest_results.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+
+/* Room for `n` elements; those that are new are not numbers, and given by nobody. */
+static void grow(struct guest_result *r, int64_t n)
+{
+    if (n > r->capacity) {
+        const int64_t capacity = n > 2 * r->capacity ? n : 2 * r->capacity;
+        r->x = realloc(r->x, (size_t)capacity * sizeof *r->x);
+        r->given = realloc(r->given, (size_t)capacity);
+        CHECK(r->x != NULL && r->given != NULL);
+        r->capacity = capacity;
+    }
+    for (int64_t i = r->n; i < n; i++) r->x[i] = NAN, r->given[i] = 0;
+    if (n > r->n) r->n = n;
+}
+
+bool guest_results_put(struct guest_results *r, int output, int64_t first, int64_t n,
+                       const double *data, char *why, int size)
+{
+    if (first < 0 || n < 0 || first > GUEST_MOST_NUMBERS - n) {
+        snprintf(why, (size_t)size, "publishes elements %lld to %lld of a result; expected 0 to %d",
+                 (long long)first, (long long)first + n - 1, GUEST_MOST_NUMBERS - 1);
+        return false;
+    }
+    struct guest_result *to = &r->of[output];
+    grow(to, first + n);
+    /* Two ranks with different numbers for one element: whose would count? */
+    for (int64_t i = 0; i < n; i++) {
+        if (to->given[first + i]) {
+            snprintf(why, (size_t)size, "publishes element %lld of a result again",
+                     (long long)(first + i));
+            return false;
+        }
+        to->given[first + i] = 1;
+        to->x[first + i] = data[i];
+    }
+    return true;
+}
+
+int64_t guest_results_gap(const struct guest_result *r)
+{
+    const unsigned char *gap = r->n > 0 ? memchr(r->given, 0, (size_t)r->n) : NULL;
+    return gap != NULL ? gap - r->given : -1;
+}
+
+double guest_results_difference(const struct guest_result *x, const struct guest_result *y)
+{
+    double largest = 0, scale = 0;
+    if (x->n != y->n) return NAN;
+    for (int64_t i = 0; i < x->n; i++) {
+        const double d = fabs(x->x[i] - y->x[i]);
+        /* Equal infinities differ by NaN, and that is told, too: no result should be infinite. */
+        if (isnan(d)) return NAN;
+        largest = fmax(largest, d);
+        scale = fmax(scale, fabs(y->x[i]));
+    }
+    return scale > 0 ? largest / scale : largest;
+}
+
+void guest_results_clear(struct guest_results *r)
+{
+    for (int i = 0; i < MIMDSIM_OUTPUTS; i++) {
+        free(r->of[i].x);
+        free(r->of[i].given);
+    }
+    memset(r, 0, sizeof *r);
+}

@@ -1,0 +1,187 @@
+/* guest_world.c - images loaded and priced, ranks begun and ended; see guest_world.h. */
+#include "guest/guest_world.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/picoseconds.h"
+#include "base/progress.h"
+#include "loader/block_costs.h"
+#include "vp/world.h"
+
+/* --- what the loader asks for ----------------------------------------------------------------- */
+
+static int64_t now_ps(void *context) { return comm_now_ps(((struct guest_rank *)context)->comm); }
+
+/* Counted blocks have their price already. What host time costs is taken whenever blocks are told:
+ * it includes what the simulator did meanwhile, so it is an upper bound. */
+static void elapse_ps(void *context, int64_t ps)
+{
+    struct guest_rank *g = context;
+    switch (g->world->cost) {
+    case PROGRAM_COST_BLOCKS:
+        comm_elapse(g->comm, ps);
+        return;
+    case PROGRAM_COST_HOST: {
+        const double now = host_seconds();
+        comm_elapse(g->comm, ps_rounded((now - g->host_s) * 1e12 * g->world->spec->program.factor));
+        g->host_s = host_seconds();
+        return;
+    }
+    default:
+        return; /* the program says what it costs */
+    }
+}
+
+static void sleep_ps(void *context, int64_t ps)
+{
+    comm_elapse(((struct guest_rank *)context)->comm, ps);
+}
+
+static void output(void *context, int stream, const char *data, size_t n)
+{
+    const struct guest_rank *g = context;
+    (void)g;
+    fwrite(data, 1, n, stream == 2 ? stderr : stdout);
+}
+
+static void fail(void *context, const char *text)
+{
+    struct guest_rank *g = context;
+    g->comm->file = NULL; /* the text says where */
+    g->comm->type->end_run(g->comm, text);
+}
+
+static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, fail};
+
+/* --- images ----------------------------------------------------------------------------------- */
+
+static void *at_address(const void *image, uint64_t address, size_t size)
+{
+    return loader_template_at(image, address, size);
+}
+
+/* Every block of the code gets its price on this machine before copies are made. */
+static bool price_blocks(struct guest_world *w, struct err *e)
+{
+    struct block_table table;
+    size_t size;
+    table.entry = loader_template_section(w->image, BLOCK_TABLE_SECTION, &size);
+    if (table.entry == NULL || w->cost != PROGRAM_COST_BLOCKS) return true;
+    table.n = size / sizeof *table.entry;
+    table.address = loader_template_address(w->image, table.entry);
+    return block_costs_patch(&table, at_address, w->image, &w->node, w->spec->program.factor, e);
+}
+
+bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank, struct err *e)
+{
+    char why[256];
+    w->node = node_cost_make(node);
+    w->image = loader_open(w->spec->program.image, e);
+    if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
+        return false;
+    /* Collectives by the rules of the machine's software, unless a rank chooses one by name. */
+    if (!collective_rules_parse(w->spec->machine.software.collectives, w->rule, &w->nrule, why,
+                                (int)sizeof why))
+        return err_set(e, ERR_CONFIG, "machine.software.collectives: %s", why);
+    return true;
+}
+
+void guest_world_close(struct guest_world *w)
+{
+    loader_close(w->image);
+    w->image = NULL;
+}
+
+/* --- ranks ------------------------------------------------------------------------------------ */
+
+static void *function_of(const struct mimdsim_program *p, int part)
+{
+    if (part == GUEST_RUN) return (void *)p->run;
+    if (part == GUEST_CHECK) return (void *)p->check;
+    return (void *)p->serial[part - GUEST_SERIAL].run;
+}
+
+/* A kernel that calls exit has not reached its end. */
+static void refuse_exit(struct guest_rank *g, int status)
+{
+    char text[80];
+    snprintf(text, sizeof text, "called exit(%d) before its end", status);
+    g->comm->type->end_run(g->comm, text);
+}
+
+void guest_rank_run(struct comm *c, const void *job, void *workspace)
+{
+    struct guest_rank *g = workspace;
+    struct guest_world *w = *(struct guest_world *const *)job;
+    struct err e;
+    char name[] = "program";
+    char *argv[] = {name, NULL};
+    err_clear(&e);
+    g->comm = c;
+    g->world = w;
+    g->instance = loader_instantiate(w->image, comm_rank(c), g, &e);
+    if (g->instance == NULL) c->type->end_run(c, e.text);
+    /* Its parameters are written before anything of it runs, constructors included. */
+    g->declared = guest_declared(g->instance);
+    guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
+    struct mimdsim_host *host = loader_host(g->instance);
+    host->comm = &guest_calls;
+    host->comm_rank = (struct comm *)g;
+    g->host_s = host_seconds();
+    struct loader_outcome end = loader_start(g->instance, 1, argv);
+    const int64_t argument[4] = {(int64_t)(intptr_t)g};
+    if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);
+    if (end.exited) refuse_exit(g, end.status);
+    loader_exit(g->instance, 0);
+}
+
+/* --- one processor ---------------------------------------------------------------------------- */
+
+/* The run's machine with one processor of one node: no network, no noise. */
+static struct machine_spec one_processor(const struct machine_spec *m)
+{
+    struct machine_spec one = *m;
+    one.topology.family = TOPOLOGY_CROSSBAR;
+    one.topology.ndim = 1;
+    one.topology.dims[0] = 1;
+    one.topology.nodes_per_router = 1;
+    one.placement.kind = PLACEMENT_LINEAR;
+    one.placement.nlist = 0;
+    one.network.level = LEVEL_LOGGP;
+    one.noise.compute_cv = 0;
+    one.noise.background_load = 0;
+    /* Serial codes may have a rate of their own. */
+    if (one.node.serial_rate > 0) one.node.flop_rate = one.node.serial_rate;
+    return one;
+}
+
+static void one_rank(struct comm *c, void *context)
+{
+    struct guest_world *w = context;
+    struct guest_rank *g = arena_take(w->memory, sizeof *g);
+    guest_rank_run(c, &w, g);
+}
+
+bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct arena *a,
+                 struct run_result *out, struct err *e)
+{
+    static const char *const stage[] = {"serial"};
+    const struct machine_spec one = one_processor(&w->spec->machine);
+    const struct record_spec nothing = {0};
+    w->part = part;
+    const struct world_load load = {.nrank = 1,
+                                    .program = one_rank,
+                                    .context = w,
+                                    .nstage = 1,
+                                    .stage_name = stage,
+                                    .largest_message = -1,
+                                    .foreign = true,
+                                    .stack_bytes = stack_bytes};
+    const bool made =
+        guest_world_open(w, &one.node, 1, e) && world_run(&one, &load, &nothing, 0, a, out, e);
+    guest_world_close(w);
+    return made;
+}

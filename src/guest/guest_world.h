@@ -1,0 +1,82 @@
+/* guest_world.h - ranks of one image: what they share, what each has; private to room guest. */
+#ifndef GUEST_GUEST_WORLD_H
+#define GUEST_GUEST_WORLD_H
+
+#include <mimdsim/host.h>
+#include <mimdsim/program_abi.h>
+
+#include "base/arena.h"
+#include "comm/collective_rules.h"
+#include "comm/comm.h"
+#include "guest/guest_results.h"
+#include "loader/loader.h"
+#include "machine/node_cost.h"
+#include "measure/run_result.h"
+#include "spec/run_spec.h"
+
+enum { GUEST_STACK_BYTES = 8 << 20, GUEST_LINE = 512 };
+
+/* Which function of the image the ranks execute. */
+enum guest_part { GUEST_RUN, GUEST_CHECK, GUEST_SERIAL /* and those that follow: serial codes */ };
+
+/* All ranks of one image in one run, or one processor with a serial code. */
+struct guest_world {
+    const struct run_spec *spec;      /* of the run it belongs to */
+    struct loader_template *image;    /* owned */
+    int part;                         /* enum guest_part */
+    enum program_cost cost;           /* how its computing is counted */
+    struct node_cost node;            /* what counted operations cost on a processor */
+    struct arena *memory;             /* what comm_memory takes; borrowed */
+    struct guest_results *results;    /* what it publishes; borrowed */
+    const struct guest_results *seen; /* what a check looks at; NULL: nothing */
+    int nrule;
+    struct collective_rule rule[COLLECTIVE_MAX_RULES]; /* of the machine's software */
+    struct run_result *check;                          /* where comm_error goes; NULL: nowhere */
+    double tolerance;
+    bool asked_size; /* a rank asked how many ranks the run has */
+};
+
+/* One rank. What the program knows as struct comm is this. */
+struct guest_rank {
+    struct comm *comm;
+    struct guest_world *world;
+    struct loader_instance *instance;
+    const struct mimdsim_program *declared;                         /* in this rank's own copy */
+    const struct collective_algorithm *algorithm[COLLECTIVE_KINDS]; /* by comm_algorithm */
+    double host_s; /* cost by host time: when the rank last went on */
+};
+
+/* guest_calls: the functions behind mimdsim/program.h. */
+extern const struct comm_functions guest_calls;
+
+/* guest_declared: the declaration in an instance, as far as it is long and ours; the rest is zero.
+ * NULL: the image declares none. */
+const struct mimdsim_program *guest_declared(const struct loader_instance *i);
+
+/* guest_parameters_set: write the values of "NAME = VALUE" lines into the variables of a copy. */
+void guest_parameters_set(const struct mimdsim_program *p, const char *lines, struct arena *a);
+
+/* guest_parameter_field: a declared parameter as a field for program_parameter_text, in `a`. False
+ * with a clause in `why`. */
+bool guest_parameter_field(const struct mimdsim_parameter *p, struct field *f, struct arena *a,
+                           char *why, int size);
+
+/* guest_world_open: load the image, with its blocks priced for the machine of `node`, for nrank
+ * ranks. False with the error; guest_world_close gives everything back, also then. */
+bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank,
+                      struct err *e);
+void guest_world_close(struct guest_world *w);
+
+/* guest_rank_run: the text of one rank (rank_program.run): job is its world, workspace a
+ * guest_rank. */
+void guest_rank_run(struct comm *c, const void *job, void *workspace);
+
+/* guest_alone: run part `part` of the image on one processor of the run's machine.
+ *
+ *   out  out  as of world_run, arrays in `a`; what the part publishes is in w->results
+ *
+ *   Returns false with the error when it could not be made. */
+bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct arena *a,
+                 struct run_result *out, struct err *e);
+
+#endif
