@@ -1,12 +1,13 @@
 /* arena.c - a bump allocator over mapped blocks.
  *
- * Blocks come from mmap, so a large array costs only the pages that are touched, and fresh pages are zero already:
- * `dirty` remembers how far a block was ever used, and only below it must a new take be cleared by hand. Blocks
- * double in size, so the number of system calls is logarithmic in what a run needs. After a release the next block is
- * kept for the next take: a loop around a mark near a block's end does not map and unmap each time round.
+ * Blocks come from mmap, so a large array costs only the pages that are touched, and fresh pages
+ * are zero already: `dirty` remembers how far a block was ever used, and only below it must a new
+ * take be cleared by hand. Blocks double in size, so the number of system calls is logarithmic in
+ * what a run needs. After a release the next block is kept for the next take: a loop around a mark
+ * near a block's end does not map and unmap each time round.
  *
- * Under the address sanitizer what was released is poisoned and takes are kept apart, so that overruns and uses
- * after release are seen, and the blocks are roots of the leak detector. */
+ * Under the address sanitizer what was released is poisoned and takes are kept apart, so that
+ * overruns and uses after release are seen, and the blocks are roots of the leak detector. */
 #include "base/arena.h"
 
 #include <stdbool.h>
@@ -41,7 +42,15 @@ enum { GAP = 64 };
 enum { GAP = 0 };
 #endif
 
-enum { ALIGN = 64, FIRST_BLOCK = 1 << 18, HUGE_BLOCK = 1 << 22, LARGEST_BLOCK = 1 << 28, PAGE = 4096 };
+/* ALIGN: a cache line, enough for any type and for vector loads. Blocks from HUGE_BLOCK on may use
+ * large pages; beyond LARGEST_BLOCK they do not double any more. */
+enum {
+    ALIGN = 64,
+    FIRST_BLOCK = 1 << 18,
+    HUGE_BLOCK = 1 << 22,
+    LARGEST_BLOCK = 1 << 28,
+    PAGE = 4096
+};
 
 /* The head of a block lies in its own first bytes; takes start at ALIGN. */
 struct block {
@@ -51,7 +60,8 @@ struct block {
     size_t dirty;        /* bytes beyond this offset were never handed out: still zero */
     size_t before;       /* bytes in use in the blocks below */
 };
-_Static_assert(sizeof(struct block) <= ALIGN, "the head of a block fits in front of its first take");
+_Static_assert(sizeof(struct block) <= ALIGN,
+               "the head of a block fits in front of its first take");
 
 struct arena {
     struct block *top;   /* the block in use, NULL at first */
@@ -60,6 +70,7 @@ struct arena {
     size_t peak;
 };
 
+/* Nothing is mapped before the first take. */
 struct arena *arena_create(void)
 {
     struct arena *a = calloc(1, sizeof *a);
@@ -68,6 +79,8 @@ struct arena *arena_create(void)
     return a;
 }
 
+/* Poisoned memory must be clean again before it goes back to the system, since the next mapping at
+ * the address would inherit it. */
 static void block_unmap(struct block *b)
 {
     if (!b) return;
@@ -94,10 +107,11 @@ static struct block *block_map(struct arena *a, size_t size)
     size_t capacity = (ALIGN + size + PAGE - 1) / PAGE * PAGE;
     if (capacity < a->next) capacity = a->next;
     if (a->next < LARGEST_BLOCK) a->next *= 2;
-    struct block *b =
-        mmap(NULL, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    struct block *b = mmap(NULL, capacity, PROT_READ | PROT_WRITE,
+                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (b == MAP_FAILED) check_memory(capacity);
-    /* A block of many takes fills from below, so large pages only save faults; a single large array may stay sparse. */
+    /* A block of many takes fills from below, so large pages only save faults; a single large array
+     * may stay sparse. */
     if (capacity >= HUGE_BLOCK && size <= capacity / 8) madvise(b, capacity, MADV_HUGEPAGE);
     ROOT_ADD(b, capacity);
     *b = (struct block){.capacity = capacity, .used = ALIGN, .dirty = ALIGN};
@@ -107,8 +121,10 @@ static struct block *block_map(struct arena *a, size_t size)
 /* arena_grow: make a block with `size` free bytes the top. */
 static struct block *arena_grow(struct arena *a, size_t size)
 {
+    /* The block kept by an earlier release, if it is large enough. */
     struct block *b = a->spare;
     a->spare = NULL;
+    /* Too small for this take: given back rather than kept for a later one. */
     if (b && b->capacity - ALIGN < size) {
         block_unmap(b);
         b = NULL;
@@ -122,11 +138,13 @@ static struct block *arena_grow(struct arena *a, size_t size)
 
 void *arena_take(struct arena *a, size_t size)
 {
+    /* What a negative number becomes as size_t; rounding up below cannot wrap. */
     if (size >= SIZE_MAX / 2) check_memory(size);
     size_t room = (size + ALIGN - 1) / ALIGN * ALIGN + GAP;
     struct block *b = a->top;
     if (!b || b->capacity - b->used < room) b = arena_grow(a, room);
     char *p = (char *)b + b->used;
+    /* Only what was handed out before needs clearing; fresh pages of the mapping are zero. */
     if (b->used < b->dirty) {
         size_t old = b->dirty - b->used;
         UNPOISON(p, old < size ? old : size);
@@ -135,6 +153,7 @@ void *arena_take(struct arena *a, size_t size)
     POISON(p + size, room - size);
     b->used += room;
     if (b->dirty < b->used) b->dirty = b->used;
+    /* Peak of what is in use, not of what is mapped: it is compared with estimates. */
     size_t in_use = b->before + b->used - ALIGN;
     if (in_use > a->peak) a->peak = in_use;
     return p;
@@ -146,6 +165,7 @@ char *arena_text(struct arena *a, const char *s)
     return memcpy(arena_take(a, n), s, n);
 }
 
+/* A mark is a place: O(1), and it needs no entry anywhere. */
 struct arena_mark arena_mark(struct arena *a)
 {
     return (struct arena_mark){a->top, a->top ? a->top->used : 0};
@@ -179,6 +199,7 @@ void arena_release(struct arena *a, struct arena_mark m)
     }
     if (!a->top) return;
     CHECK(m.used <= a->top->used);
+    /* Uses after release are seen by the sanitizer, also without a new take. */
     POISON((char *)a->top + m.used, a->top->used - m.used);
     a->top->used = m.used;
 }

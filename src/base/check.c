@@ -1,4 +1,5 @@
-/* check.c - the last words before abort: place, condition, and what the run in progress says of itself. */
+/* check.c - the last words before abort: place, condition, and what the run in progress says of
+ * itself. */
 #include "base/check.h"
 
 #include <stdio.h>
@@ -12,7 +13,8 @@ struct check_note {
     void *context;
 };
 
-/* The only writable datum outside a run: without it, base would have to know the clock in order to print it. */
+/* The only writable datum outside a run: without it, base would have to know the clock in order to
+ * print it. */
 static _Thread_local struct check_note check_note;
 
 void check_note_set(void (*describe)(void *context, char *buffer, int size), void *context)
@@ -23,19 +25,22 @@ void check_note_set(void (*describe)(void *context, char *buffer, int size), voi
 void check_memory(size_t bytes)
 {
     fprintf(stderr,
-            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` shows how much a run needs\n",
+            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` shows how "
+            "much a run needs\n",
             (double)bytes / (1 << 20));
     _exit(ERR_INTERNAL_STATUS); /* a worker's copy of the parent's output is not its own to flush */
 }
 
+/* abort() and not exit(): a core dump shows the state, and nothing is written on the way out. */
 void check_failed(const char *file, int line, const char *cond)
 {
     char note[512] = "";
     struct check_note told = check_note;
     check_note = (struct check_note){0}; /* a failing describe must not come back here for ever */
     if (told.describe) told.describe(told.context, note, (int)sizeof note);
+    /* What was printed before belongs in front of the message. */
     fflush(stdout);
-    fprintf(stderr, "mimdsim: internal error at %s:%d: CHECK(%s) failed%s%s\n", file, line, cond, note[0] ? "; " : "",
-            note);
+    fprintf(stderr, "mimdsim: internal error at %s:%d: CHECK(%s) failed%s%s\n", file, line, cond,
+            note[0] ? "; " : "", note);
     abort();
 }

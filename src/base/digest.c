@@ -1,9 +1,14 @@
-/* digest.c - SHA-256 (FIPS 180-4). */
+/* digest.c - SHA-256 (FIPS 180-4).
+ *
+ * Written out here instead of linking a library of cryptography: identities need one function, the
+ * same on every host, and no secrecy. Texts are hashed whole, so that there is no state to keep
+ * between calls. */
 #include "base/digest.h"
 
 #include <string.h>
 
-/* First 32 bits of the fractional parts of the cube roots of the first 64 primes (FIPS 180-4, 4.2.2). */
+/* First 32 bits of the fractional parts of the cube roots of the first 64 primes (FIPS
+ * 180-4, 4.2.2). */
 static const uint32_t K[64] = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -41,6 +46,7 @@ static void sha256_block(uint32_t h[8], const unsigned char *block)
     sha256_schedule(block, w);
     memcpy(v, h, sizeof v);
     for (int t = 0; t < 64; t++) {
+        /* The working variables a .. h are v[0] .. v[7]; a round shifts them by one place. */
         uint32_t a = v[0], e = v[4];
         uint32_t s1 = rotate_right(e, 6) ^ rotate_right(e, 11) ^ rotate_right(e, 25);
         uint32_t t1 = v[7] + s1 + ((e & v[5]) ^ (~e & v[6])) + K[t] + w[t];
@@ -50,18 +56,22 @@ static void sha256_block(uint32_t h[8], const unsigned char *block)
         v[4] += t1;
         v[0] = t1 + t2;
     }
+    /* Added to the hash so far: what makes the function hard to run backwards. */
     for (int i = 0; i < 8; i++) h[i] += v[i];
 }
 
 void digest_sha256_hex(const void *data, size_t size, char hex[65])
 {
-    uint32_t h[8] = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+    uint32_t h[8] = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                     0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
     const unsigned char *p = data;
     size_t rest = size;
+    /* Whole blocks first, then the padded tail. */
     for (; rest >= 64; rest -= 64, p += 64) sha256_block(h, p);
 
     /* Padding (5.1.1): one bit, zeros, and the length in bits in the last eight bytes. */
     unsigned char tail[128] = {0};
+    /* Where the length does not fit behind the rest, a second block holds it. */
     size_t ntail = rest < 56 ? 64 : 128;
     if (rest > 0) memcpy(tail, p, rest);
     tail[rest] = 0x80;

@@ -8,10 +8,12 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Short work says nothing at all; a log file gets a line now and then. */
 static const double PATIENCE = 1.0;        /* s without a word */
 static const double TTY_INTERVAL = 0.1;    /* s between lines on a terminal */
 static const double FILE_INTERVAL = 10.0;  /* s between lines elsewhere */
 
+/* A monotonic clock does not jump when the computer's time is set. */
 static double clock_seconds(clockid_t clock)
 {
     struct timespec t;
@@ -19,6 +21,7 @@ static double clock_seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Host time is for people only: no result depends on it. */
 double host_seconds(void) { return clock_seconds(CLOCK_MONOTONIC); }
 
 double host_processor_seconds(void) { return clock_seconds(CLOCK_PROCESS_CPUTIME_ID); }
@@ -38,9 +41,11 @@ long host_peak_bytes(void)
     return use.ru_maxrss * 1024;
 }
 
+/* quiet and tty are asked once: they do not change while a program runs. */
 struct progress progress_make(const char *what, double total, bool quiet)
 {
-    struct progress p = {.what = what, .total = total, .quiet = quiet, .tty = isatty(STDERR_FILENO)};
+    struct progress p = {
+        .what = what, .total = total, .quiet = quiet, .tty = isatty(STDERR_FILENO)};
     p.start = host_seconds();
     p.last = p.start;
     return p;
@@ -58,19 +63,24 @@ static void span_text(double s, char buffer[32])
 bool progress_due(const struct progress *p)
 {
     if (p->quiet) return false;
-    double due = !p->tty ? p->last + FILE_INTERVAL : p->shown ? p->last + TTY_INTERVAL : p->start + PATIENCE;
+    /* On a terminal the first line waits for PATIENCE, then the line is redrawn. */
+    double due = !p->tty    ? p->last + FILE_INTERVAL
+                 : p->shown ? p->last + TTY_INTERVAL
+                            : p->start + PATIENCE;
     return host_seconds() >= due;
 }
 
 void progress_show(struct progress *p, double done)
 {
     if (!progress_due(p)) return;
+    /* The rest at the mean rate so far. */
     double now = host_seconds(), rate = done / (now - p->start);
     char left[32], state[96];
+    /* Before the first result there is no rate to tell. */
     if (rate > 0) {
         span_text((p->total - done) / rate, left);
-        snprintf(state, sizeof state, "%.0f %% (%.10g of %.10g, %.3g/s), %s left", 100 * done / p->total, done,
-                 p->total, rate, left);
+        snprintf(state, sizeof state, "%.0f %% (%.10g of %.10g, %.3g/s), %s left",
+                 100 * done / p->total, done, p->total, rate, left);
     } else snprintf(state, sizeof state, "0 of %.10g", p->total);
     fprintf(stderr, "%s%s: %s%s%s%s", p->tty ? "\r" : "", p->what, state, p->detail ? "; " : "",
             p->detail ? p->detail : "", p->tty ? "\033[K" : "\n");
@@ -79,6 +89,7 @@ void progress_show(struct progress *p, double done)
     p->shown = true;
 }
 
+/* The line is wiped out, so that what follows begins at the margin. */
 void progress_end(struct progress *p)
 {
     if (p->shown && p->tty) fputs("\r\033[K", stderr);

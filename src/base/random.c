@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 
+/* 0 < k < 64; compilers make one instruction of it. */
 static uint64_t rotate_left(uint64_t x, int k)
 {
     return (x << k) | (x >> (64 - k));
@@ -26,10 +27,12 @@ struct random random_make(uint64_t seed, uint64_t a, uint64_t b)
     x = splitmix64(&x) + a;
     x = splitmix64(&x) + b;
     struct random r;
+    /* Four mixed words: never all zero in practice, which would be the one bad state. */
     for (int i = 0; i < 4; i++) r.s[i] = splitmix64(&x);
     return r;
 }
 
+/* xoshiro256** (Blackman and Vigna 2021): period 2^256 - 1, four words of state, no divisions. */
 uint64_t random_u64(struct random *r)
 {
     uint64_t *s = r->s, result = rotate_left(s[1] * 5, 7) * 9, t = s[1] << 17;
@@ -49,6 +52,8 @@ double random_uniform(struct random *r, double lo, double hi)
     return x < hi ? x : lo; /* rounding may reach hi */
 }
 
+/* Marsaglia's polar method (1964). The second number of each pair is thrown away: keeping it would
+ * be hidden state, and streams must be equal whatever was drawn before. */
 double random_normal(struct random *r)
 {
     for (;;) {

@@ -18,34 +18,42 @@ static int min3(int a, int b, int c)
     return m < c ? m : c;
 }
 
+/* Letter case is no misspelling worth a place in the distance. */
 static bool same_letter(char a, char b)
 {
     return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
 
-/* edit_distance: insertions, deletions, replacements and swaps of neighbours (optimal string alignment). */
+/* edit_distance: insertions, deletions, replacements and swaps of neighbours (optimal string
+ * alignment; Damerau 1964). O(na nb) time, three rows of memory: a swap looks two rows back. */
 static int edit_distance(const char *a, size_t na, const char *b, size_t nb)
 {
+    /* row[i % 3] holds the distances of the first i letters of a to all beginnings of b. */
     int row[3][NEAREST_MAX + 1];
     for (size_t j = 0; j <= nb; j++) row[0][j] = (int)j;
     for (size_t i = 1; i <= na; i++) {
         int *now = row[i % 3], *last = row[(i + 2) % 3], *before = row[(i + 1) % 3];
         now[0] = (int)i;
         for (size_t j = 1; j <= nb; j++) {
-            now[j] = min3(last[j] + 1, now[j - 1] + 1, last[j - 1] + !same_letter(a[i - 1], b[j - 1]));
-            bool swap = i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) && same_letter(a[i - 2], b[j - 1]);
+            now[j] =
+                min3(last[j] + 1, now[j - 1] + 1, last[j - 1] + !same_letter(a[i - 1], b[j - 1]));
+            bool swap = i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) &&
+                        same_letter(a[i - 2], b[j - 1]);
             if (swap && before[j - 2] + 1 < now[j]) now[j] = before[j - 2] + 1;
         }
     }
     return row[na % 3][nb];
 }
 
-/* text_abbreviated: the shortest name that `word` (three letters or more) begins, NULL when there is none. */
-static const char *text_abbreviated(const char *word, size_t length, const char *const *names, int n)
+/* text_abbreviated: the shortest name that `word` (three letters or more) begins, NULL when there
+ * is none. An abbreviation is far away by edits, but near for a person. */
+static const char *text_abbreviated(const char *word, size_t length, const char *const *names,
+                                    int n)
 {
     const char *shortest = NULL;
     for (int k = 0; k < n && length >= 3; k++)
-        if (strncasecmp(word, names[k], length) == 0 && (!shortest || strlen(names[k]) < strlen(shortest)))
+        if (strncasecmp(word, names[k], length) == 0 &&
+            (!shortest || strlen(names[k]) < strlen(shortest)))
             shortest = names[k];
     return shortest;
 }
@@ -54,12 +62,14 @@ const char *text_nearest(const char *word, const char *const *names, int n)
 {
     size_t length = strlen(word);
     if (length > NEAREST_MAX) return NULL;
+    /* A third of the letters may be wrong, and one more. */
     int best = 2 + (int)length / 3; /* one more than the largest allowed */
     const char *nearest = NULL;
     for (int k = 0; k < n; k++) {
         size_t other = strlen(names[k]);
         if (other > NEAREST_MAX) continue;
         int d = edit_distance(word, length, names[k], other);
+        /* The first of several equally near names wins: the order of the list decides. */
         if (d < best) {
             best = d;
             nearest = names[k];
@@ -68,6 +78,7 @@ const char *text_nearest(const char *word, const char *const *names, int n)
     return nearest ? nearest : text_abbreviated(word, length, names, n);
 }
 
+/* Doubling: n characters cost O(n) copies in total. One byte more for the end. */
 void text_reserve(struct text *t, size_t n)
 {
     size_t need = t->length + n + 1;
@@ -83,6 +94,7 @@ void text_add(struct text *t, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
+    /* Twice: once to know the length, once to write. */
     int n = vsnprintf(NULL, 0, format, args);
     va_end(args);
     CHECK(n >= 0);
@@ -93,6 +105,7 @@ void text_add(struct text *t, const char *format, ...)
     t->length += (size_t)n;
 }
 
+/* Without formatting, for the long texts of identities. */
 void text_add_bytes(struct text *t, const char *s, size_t n)
 {
     text_reserve(t, n);
@@ -101,12 +114,14 @@ void text_add_bytes(struct text *t, const char *s, size_t n)
     t->s[t->length] = '\0';
 }
 
+/* An empty text may be used again. */
 void text_free(struct text *t)
 {
     free(t->s);
     *t = (struct text){0};
 }
 
+/* As strlcpy, but places may overlap. */
 void text_copy(char *buffer, size_t size, const char *s)
 {
     CHECK(size > 0);
@@ -116,6 +131,7 @@ void text_copy(char *buffer, size_t size, const char *s)
     buffer[n] = '\0';
 }
 
+/* 15 digits are enough for most, 17 for all doubles: the shortest that reads back is taken. */
 void text_real(char buffer[32], double x)
 {
     for (int digits = 15; digits <= 17; digits++) {

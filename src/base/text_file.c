@@ -19,6 +19,7 @@ bool text_read_file(struct text *t, const char *path, struct err *e)
     t->s[t->length] = '\0';
     int failure = ferror(in) ? errno : 0;
     fclose(in);
+    /* A part of a file is no file. */
     if (failure) return err_set_at(e, ERR_IO, path, 0, "cannot read: %s", strerror(failure));
     return true;
 }

@@ -1,9 +1,10 @@
 /* units.c - quantities with units, read and written without a rounding too many.
  *
- * A unit is a symbol with an optional prefix. Its factor is kept as 10^e10 2^e2 times a rest that is 1 for all but
- * degrees and atomic masses: the power of ten joins the decimal exponent of the number's text before the one rounding
- * to binary, and the power of two is exact. So "60 ns" is the double nearest to 6e-8, which 60 * 1e-9 is not, and the
- * printer, which only moves the decimal point, always reads back. */
+ * A unit is a symbol with an optional prefix. Its factor is kept as 10^e10 2^e2 times a rest that
+ * is 1 for all but degrees and atomic masses: the power of ten joins the decimal exponent of the
+ * number's text before the one rounding to binary, and the power of two is exact. So "60 ns" is the
+ * double nearest to 6e-8, which 60 * 1e-9 is not, and the printer, which only moves the decimal
+ * point, always reads back. */
 #include "base/units.h"
 
 #include <ctype.h>
@@ -18,6 +19,7 @@
 
 enum { UP = 1, DOWN = 2, BINARY = 4 }; /* prefixes that a symbol takes */
 
+/* Powers of ten join the number's decimal exponent, powers of two are exact factors. */
 static const struct prefix {
     const char *name;
     int kind, e10, e2;
@@ -29,7 +31,8 @@ static const struct prefix {
 };
 enum { NPREFIX = sizeof PREFIXES / sizeof PREFIXES[0], NSYMBOL = 10, NAME_SIZE = 24 };
 
-/* One symbol: its prefixes, and its factor to the SI unit: rest 10^e10 2^e2 (rest 0 stands for 1). */
+/* One symbol: its prefixes, and its factor to the SI unit: rest 10^e10 2^e2 (rest 0 stands for
+ * 1). */
 struct symbol {
     const char *name;
     int prefixes, e10, e2;
@@ -38,8 +41,9 @@ struct symbol {
 
 static const double DEGREE = 0.017453292519943295; /* pi / 180 */
 
-/* One kind: how messages call it, an example, its SI symbol for SQL, the symbols that may be written (the first is
- * the one printed), and the decimal exponents between which the printer chooses prefixes. */
+/* One kind: how messages call it, an example, its SI symbol for SQL, the symbols that may be
+ * written (the first is the one printed), and the decimal exponents between which the printer
+ * chooses prefixes. */
 static const struct kind {
     const char *name, *example, *si;
     struct symbol symbol[NSYMBOL];
@@ -84,6 +88,7 @@ static const struct kind *kind_of(enum unit unit)
     return &KINDS[unit];
 }
 
+/* What messages, examples and SQL call a kind. */
 const char *units_name(enum unit unit)
 {
     return kind_of(unit)->name;
@@ -99,7 +104,7 @@ const char *units_si(enum unit unit)
     return kind_of(unit)->si;
 }
 
-/* --- reading ---------------------------------------------------------------------------------------------------- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 /* prefix_fits: "" fits every symbol, another prefix those that name its kind. */
 static bool prefix_fits(const struct prefix *p, const struct symbol *s)
@@ -111,10 +116,14 @@ static bool prefix_fits(const struct prefix *p, const struct symbol *s)
 static bool unit_find(const struct kind *k, const char *name, const struct prefix **prefix,
                       const struct symbol **symbol)
 {
+    /* "m" is also a prefix: every split of the name into prefix and symbol is tried, within one
+     * kind, where none is ambiguous. */
     for (const struct symbol *s = k->symbol; s < k->symbol + NSYMBOL && s->name; s++) {
         for (const struct prefix *p = PREFIXES; p < PREFIXES + NPREFIX; p++) {
             size_t n = strlen(p->name);
-            if (!prefix_fits(p, s) || strncmp(name, p->name, n) != 0 || strcmp(name + n, s->name) != 0) continue;
+            if (!prefix_fits(p, s) || strncmp(name, p->name, n) != 0 ||
+                strcmp(name + n, s->name) != 0)
+                continue;
             *prefix = p;
             *symbol = s;
             return true;
@@ -123,12 +132,14 @@ static bool unit_find(const struct kind *k, const char *name, const struct prefi
     return false;
 }
 
-/* unit_spelling: one spelling for the ways people write the same unit: one space between words, `*` and the middle
- * dot as a space, the Greek mu as u, the degree sign, the angstrom sign and the superscript two in letters. */
+/* unit_spelling: one spelling for the ways people write the same unit: one space between words, `*`
+ * and the middle dot as a space, the Greek mu as u, the degree sign, the angstrom sign and the
+ * superscript two in letters. */
 static void unit_spelling(const char *text, char *name, size_t size)
 {
-    static const char *const same[][2] = {{"\u00b5", "u"}, {"\u03bc", "u"}, {"\u00b0", "deg"}, {"\u00c5", "angstrom"},
-                                          {"\u212b", "angstrom"}, {"\u00b2", "^2"}, {"\u00b7", " "}, {"*", " "}};
+    static const char *const same[][2] = {
+        {"\u00b5", "u"},        {"\u03bc", "u"},  {"\u00b0", "deg"}, {"\u00c5", "angstrom"},
+        {"\u212b", "angstrom"}, {"\u00b2", "^2"}, {"\u00b7", " "},   {"*", " "}};
     size_t n = 0;
     name[0] = '\0';
     while (*text && n + 1 < size) {
@@ -141,6 +152,7 @@ static void unit_spelling(const char *text, char *name, size_t size)
             eaten = strlen(same[i][0]);
         }
         text += eaten;
+        /* Blanks: none at the beginning, never two. */
         if (next[0] == ' ' && (n == 0 || name[n - 1] == ' ')) continue;
         text_copy(name + n, size - n, next);
         n += strlen(name + n);
@@ -148,8 +160,9 @@ static void unit_spelling(const char *text, char *name, size_t size)
     if (n > 0 && name[n - 1] == ' ') name[n - 1] = '\0';
 }
 
-/* number_span: length of a decimal number at s ([+-] digits [. digits] [e [+-] digits]), 0 when there is none; the
- * mantissa's length goes to *mantissa. So "inf", "nan" and hexadecimal numbers are none. */
+/* number_span: length of a decimal number at s ([+-] digits [. digits] [e [+-] digits]), 0 when
+ * there is none; the mantissa's length goes to *mantissa. So "inf", "nan" and hexadecimal numbers
+ * are none. */
 static size_t number_span(const char *s, size_t *mantissa)
 {
     size_t i = s[0] == '+' || s[0] == '-', digits = 0;
@@ -159,6 +172,7 @@ static size_t number_span(const char *s, size_t *mantissa)
     *mantissa = i;
     if (digits == 0) return 0;
     if (s[i] != 'e' && s[i] != 'E') return i;
+    /* "1 e" is a number and a unit that begins with e. */
     size_t j = i + 1 + (s[i + 1] == '+' || s[i + 1] == '-');
     if (!isdigit((unsigned char)s[j])) return i;
     while (isdigit((unsigned char)s[j])) j++;
@@ -167,20 +181,24 @@ static size_t number_span(const char *s, size_t *mantissa)
 
 enum { NUMBER_MAX = 400 }; /* characters of a mantissa; nobody writes more on purpose */
 
-/* scaled: the number of `span` characters at s, times 10^e10, rounded once. */
+/* scaled: the number of `span` characters at s, times 10^e10, rounded once: the exponents are added
+ * in the text, before strtod makes a double of it. */
 static double scaled(const char *s, size_t mantissa, size_t span, int e10)
 {
     char joined[NUMBER_MAX + 32];
     long exponent = span > mantissa ? strtol(s + mantissa + 1, NULL, 10) : 0;
+    /* Far outside the range of doubles: cut off before the sum could overflow. */
     if (exponent > 100000) exponent = 100000;
     if (exponent < -100000) exponent = -100000;
     snprintf(joined, sizeof joined, "%.*se%ld", (int)mantissa, s, exponent + e10);
     return strtod(joined, NULL);
 }
 
-/* unit_suggest: the unit of kind k whose name differs from `name` by letter case alone, or else the nearest. */
+/* unit_suggest: the unit of kind k whose name differs from `name` by letter case alone, or else the
+ * nearest. */
 static bool unit_suggest(const struct kind *k, const char *name, char *suggestion)
 {
+    /* All names of the kind; a few dozen. */
     char text[NSYMBOL * NPREFIX][NAME_SIZE];
     const char *names[NSYMBOL * NPREFIX];
     int n = 0;
@@ -204,20 +222,25 @@ static bool unit_wrong(enum unit unit, const char *name, char *why, int size)
     const struct prefix *prefix;
     const struct symbol *symbol;
     char suggestion[NAME_SIZE];
+    /* The right unit of another kind: say which. */
     for (int i = 0; i < UNIT_KINDS && !other; i++)
         if (unit_find(&KINDS[i], name, &prefix, &symbol)) other = &KINDS[i];
     if (unit == UNIT_NONE && other)
-        snprintf(why, (size_t)size, "unexpected unit '%s'; expected %s such as '%s'", name, k->name, k->example);
-    else if (other)
-        snprintf(why, (size_t)size, "'%s' is the unit of %s; expected %s such as '%s'", name, other->name, k->name,
+        snprintf(why, (size_t)size, "unexpected unit '%s'; expected %s such as '%s'", name, k->name,
                  k->example);
-    else if (name[0] == 'K' && name[1] != 'i' && unit_suggest(k, name, suggestion) && suggestion[0] == 'k')
-        snprintf(why, (size_t)size, "ambiguous unit '%s'; write '%s' for 1000 or 'Ki%s' for 1024", name, suggestion,
-                 name + 1);
+    else if (other)
+        snprintf(why, (size_t)size, "'%s' is the unit of %s; expected %s such as '%s'", name,
+                 other->name, k->name, k->example);
+    /* Capital K: 1000 or 1024? Not guessed. */
+    else if (name[0] == 'K' && name[1] != 'i' && unit_suggest(k, name, suggestion) &&
+             suggestion[0] == 'k')
+        snprintf(why, (size_t)size, "ambiguous unit '%s'; write '%s' for 1000 or 'Ki%s' for 1024",
+                 name, suggestion, name + 1);
     else if (unit != UNIT_NONE && unit_suggest(k, name, suggestion))
         snprintf(why, (size_t)size, "unknown unit '%s'; did you mean '%s'?", name, suggestion);
     else
-        snprintf(why, (size_t)size, "'%s' is not the unit of %s; expected for example '%s'", name, k->name, k->example);
+        snprintf(why, (size_t)size, "'%s' is not the unit of %s; expected for example '%s'", name,
+                 k->name, k->example);
     return false;
 }
 
@@ -239,29 +262,37 @@ bool units_parse(const char *text, enum unit unit, double *value, char *why, int
     while (isspace((unsigned char)*text)) text++;
     size_t span = number_span(text, &mantissa);
     if (span == 0 || mantissa > NUMBER_MAX) {
-        snprintf(why, (size_t)size, "'%.40s' does not start with a finite decimal number; expected %s such as '%s'",
+        snprintf(why, (size_t)size,
+                 "'%.40s' does not start with a finite decimal number; expected %s such as '%s'",
                  text, k->name, k->example);
         return false;
     }
     unit_spelling(text + span, name, sizeof name);
+    /* Units are never assumed. */
     if (unit != UNIT_NONE && name[0] == '\0') {
         snprintf(why, (size_t)size, "no unit; expected %s such as '%s'", k->name, k->example);
         return false;
     }
-    if (name[0] != '\0' && !unit_find(k, name, &prefix, &symbol)) return unit_wrong(unit, name, why, size);
-    double x = ldexp(scaled(text, mantissa, span, prefix->e10 + symbol->e10), prefix->e2 + symbol->e2);
+    if (name[0] != '\0' && !unit_find(k, name, &prefix, &symbol))
+        return unit_wrong(unit, name, why, size);
+    /* One rounding in scaled; ldexp is exact but at the ends of the range. */
+    double x =
+        ldexp(scaled(text, mantissa, span, prefix->e10 + symbol->e10), prefix->e2 + symbol->e2);
     if (symbol->rest != 0) x *= symbol->rest;
+    /* Overflow, or a number that is not zero and became it. */
     if (!isfinite(x) || (x == 0 && has_digit(text, mantissa))) {
-        snprintf(why, (size_t)size, "'%.40s' is too %s for a double", text, x == 0 ? "small" : "large");
+        snprintf(why, (size_t)size, "'%.40s' is too %s for a double", text,
+                 x == 0 ? "small" : "large");
         return false;
     }
     *value = x;
     return true;
 }
 
-/* --- writing ---------------------------------------------------------------------------------------------------- */
+/* --- writing ---------------------------------------------------------------------------------- */
 
-/* shortest_digits: the fewest decimal digits (without point) and the exponent of the first that read back to x > 0. */
+/* shortest_digits: the fewest decimal digits (without point) and the exponent of the first that
+ * read back to x > 0. Tried from one digit on: printing is rare, and 17 always suffice. */
 static int shortest_digits(double x, char digits[20], int *exponent)
 {
     char s[40];
@@ -274,34 +305,42 @@ static int shortest_digits(double x, char digits[20], int *exponent)
     return n;
 }
 
-/* decimal: x > 0 as digits times 10^-shift, in plain notation where that is short. Exact: only the point moves. */
+/* decimal: x > 0 as digits times 10^-shift, in plain notation where that is short. Exact: only the
+ * point moves. */
 static void decimal(double x, int shift, char *buffer, size_t size)
 {
     char digits[20];
     int exponent, n = shortest_digits(x, digits, &exponent);
     exponent -= shift;
+    /* Plain notation only where it does not need long rows of zeros. */
     if (exponent < -5 || exponent > 16)
-        snprintf(buffer, size, "%c%s%.*se%d", digits[0], n > 1 ? "." : "", n - 1, digits + 1, exponent);
+        snprintf(buffer, size, "%c%s%.*se%d", digits[0], n > 1 ? "." : "", n - 1, digits + 1,
+                 exponent);
     else if (exponent < 0)
         snprintf(buffer, size, "0.%.*s%.*s", -exponent - 1, "0000000000", n, digits);
     else if (exponent >= n - 1)
         snprintf(buffer, size, "%.*s%.*s", n, digits, exponent - n + 1, "00000000000000000000");
     else
-        snprintf(buffer, size, "%.*s.%.*s", exponent + 1, digits, n - exponent - 1, digits + exponent + 1);
+        snprintf(buffer, size, "%.*s.%.*s", exponent + 1, digits, n - exponent - 1,
+                 digits + exponent + 1);
 }
 
-/* print_exponent: the power of 1000 of the prefix that leaves one to three digits before the point, within the kind. */
+/* print_exponent: the power of 1000 of the prefix that leaves one to three digits before the point,
+ * within the kind. */
 static int print_exponent(const struct kind *k, double x)
 {
     char digits[20];
     int exponent;
-    if (x == 0 || !isfinite(x) || k->print_min == k->print_max) return k->print_max < 0 ? k->print_min : 0;
+    /* Kinds without a choice of prefixes; percent has a fixed one. */
+    if (x == 0 || !isfinite(x) || k->print_min == k->print_max)
+        return k->print_max < 0 ? k->print_min : 0;
     shortest_digits(x, digits, &exponent);
     int thousands = (exponent >= 0 ? exponent : exponent - 2) / 3 * 3;
     if (thousands < k->print_min) return k->print_min;
     return thousands > k->print_max ? k->print_max : thousands;
 }
 
+/* "" where no prefix has these exponents: the number then stands without. */
 static const char *prefix_name(int e10, int e2)
 {
     for (const struct prefix *p = PREFIXES; p < PREFIXES + NPREFIX; p++)
@@ -309,6 +348,7 @@ static const char *prefix_name(int e10, int e2)
     return "";
 }
 
+/* Sizes by powers of 1024 where they are whole, everything else by powers of 1000. */
 void units_print(double value, enum unit unit, char *buffer, int size)
 {
     const struct kind *k = kind_of(unit);
@@ -321,9 +361,11 @@ void units_print(double value, enum unit unit, char *buffer, int size)
             e2 += 10;
         }
     if (e2 == 0) e10 = print_exponent(k, x);
+    /* Not numbers that can be read; they appear in messages only. */
     if (!isfinite(x)) text_copy(number, sizeof number, isnan(x) ? "nan" : "inf");
     else if (x == 0) text_copy(number, sizeof number, "0");
     else decimal(x, e10, number, sizeof number);
+    /* The first symbol of the kind: the one that is printed. */
     const char *name = k->symbol[0].name ? k->symbol[0].name : "";
     snprintf(buffer, (size_t)size, "%s%s%s%s%s", signbit(value) && !isnan(value) ? "-" : "", number,
              name[0] ? " " : "", unit == UNIT_PERCENT ? "" : prefix_name(e10, e2), name);
