@@ -4,6 +4,8 @@
 void angle_sincos_batch(int n, const real *restrict x, real *restrict s, real *restrict c)
 {
     real largest = 0;
+    /* One test for all angles, so that the loop below has no branch and becomes vector code. A "not
+     * a number" is never larger, and comes out of the loop as one. */
     for (int i = 0; i < n; i++) largest = real_fabs(x[i]) > largest ? real_fabs(x[i]) : largest;
 #if REAL_BITS == 64
     if (largest <= ANGLE_REDUCED) {

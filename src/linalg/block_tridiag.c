@@ -1,10 +1,14 @@
-/* block_tridiag.c - block Cholesky of a symmetric positive definite block tridiagonal system (block_tridiag.h).
+/* block_tridiag.c - block Cholesky of a symmetric positive definite block tridiagonal system
+ * (block_tridiag.h).
  *
- * With G_i D'_i G_i^T = D_i: M_i = L_i G_{i-1}^-T (in place of L_i), D_i -= M_i D'^-1_{i-1} M_i^T. */
+ * With G_i D'_i G_i^T = D_i: M_i = L_i G_{i-1}^-T (in place of L_i), D_i -= M_i D'^-1_{i-1} M_i^T.
+ */
 #include "linalg/block_tridiag.h"
 
 #include <stddef.h>
 
+/* Every row has room for the largest block: a product instead of a table of places, at the price of
+ * memory that small blocks do not use. */
 struct block_tridiag block_tridiag_make(struct arena *a, int nrow, const unsigned char *size)
 {
     struct block_tridiag t = {.nrow = nrow, .size = size};
@@ -13,7 +17,8 @@ struct block_tridiag block_tridiag_make(struct arena *a, int nrow, const unsigne
     return t;
 }
 
-/* reduce: M = L G^-T in place, D -= M D'^-1 M^T; L is (n x c), G of order c. */
+/* reduce: M = L G^-T in place, D -= M D'^-1 M^T; L is (n x c), G of order c: one step of block
+ * Thomas (physics 5.1), row by row of M. */
 static void reduce(int n, int c, const real *G, real *L, real *D, struct work *w)
 {
     for (int i = 0; i < n; i++) {
@@ -21,6 +26,7 @@ static void reduce(int n, int c, const real *G, real *L, real *D, struct work *w
         for (int k = 0; k < c; k++)
             for (int j = 0; j < k; j++) row[k] -= G[packed_index(k, j)] * row[j];
         for (int k = 0; k < c; k++) scaled[k] = G[packed_index(k, k)] * row[k];
+        /* The lower triangle of the symmetric update; an empty neighbour changes nothing. */
         for (int j = 0; j <= i; j++) {
             if (c == 0) continue;
             real sum = scaled[0] * L[j * c];
@@ -28,15 +34,19 @@ static void reduce(int n, int c, const real *G, real *L, real *D, struct work *w
             D[packed_index(i, j)] -= sum;
         }
     }
-    w->flop += (uint64_t)(dense_triangular_flops(c, n) + dense_symmetric_flops(n, c) + (c > 0 ? packed_size(n) : 0));
+    w->flop += (uint64_t)(dense_triangular_flops(c, n) + dense_symmetric_flops(n, c) +
+                          (c > 0 ? packed_size(n) : 0));
     w->call += 2;
 }
 
+/* Serial by nature: row i needs the finished row i - 1. Backward stable (physics 8.4). */
 int block_tridiag_factor(struct block_tridiag *t, struct work *w)
 {
     for (int i = 0; i < t->nrow; i++) {
         real *D = t->D + (size_t)i * BLOCK_PACKED;
-        if (i > 0) reduce(t->size[i], t->size[i - 1], D - BLOCK_PACKED, t->L + (size_t)i * BLOCK_FULL, D, w);
+        if (i > 0)
+            reduce(t->size[i], t->size[i - 1], D - BLOCK_PACKED, t->L + (size_t)i * BLOCK_FULL, D,
+                   w);
         if (!dense_factor(t->size[i], D, D, w)) return i;
     }
     return -1;
@@ -45,7 +55,8 @@ int block_tridiag_factor(struct block_tridiag *t, struct work *w)
 void block_tridiag_solve(const struct block_tridiag *t, int m, real *x, struct work *w)
 {
     const int stride = BLOCK_MAX * m;
-    for (int i = 0; i < t->nrow; i++) { /* z_i = G^-1 (r_i - M_i D'^-1 z_{i-1}), kept as D'^-1 z_i */
+    /* z_i = G^-1 (r_i - M_i D'^-1 z_{i-1}), kept as D'^-1 z_i */
+    for (int i = 0; i < t->nrow; i++) {
         const int c = t->size[i], n = i > 0 ? t->size[i - 1] : 0;
         const real *G = t->D + (size_t)i * BLOCK_PACKED, *M = t->L + (size_t)i * BLOCK_FULL;
         real *z = x + (size_t)i * stride, *before = z - (i > 0 ? stride : 0);

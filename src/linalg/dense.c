@@ -1,7 +1,7 @@
 /* dense.c - operations on very small dense matrices (dense.h).
  *
- * Columns of right-hand sides are the inner, contiguous dimension, so that compilers turn them into vectors without
- * changing the order of any sum. */
+ * Columns of right-hand sides are the inner, contiguous dimension, so that compilers turn them into
+ * vectors without changing the order of any sum. */
 #include "linalg/dense.h"
 
 #include <string.h>
@@ -14,6 +14,7 @@ static void account(struct work *w, int flops, int div)
     w->call++;
 }
 
+/* L D L^T by rows: each row is finished before the next begins, so that G may be A. */
 bool dense_factor(int c, const real *A, real *G, struct work *w)
 {
     account(w, dense_factor_flops(c), c);
@@ -31,12 +32,14 @@ bool dense_factor(int c, const real *A, real *G, struct work *w)
             g[j] = row[j] * G[packed_index(j, j)];
             pivot -= row[j] * g[j];
         }
+        /* Not positive definite, or not a number. */
         if (!(pivot > 0)) return false;
         g[i] = 1 / pivot;
     }
     return true;
 }
 
+/* B <- L^-1 B with a unit diagonal: rows from the top. */
 void dense_forward(int c, int m, const real *G, real *B, struct work *w)
 {
     account(w, c * (c - 1) * m, 0);
@@ -47,6 +50,7 @@ void dense_forward(int c, int m, const real *G, real *B, struct work *w)
         }
 }
 
+/* The diagonal is stored as its inverse: a product. */
 void dense_scale(int c, int m, const real *G, real *B, struct work *w)
 {
     w->flop += (uint64_t)(c * m);
@@ -56,6 +60,7 @@ void dense_scale(int c, int m, const real *G, real *B, struct work *w)
     }
 }
 
+/* B <- L^-T B: rows from the bottom, L read by columns. */
 void dense_backward(int c, int m, const real *G, real *B, struct work *w)
 {
     account(w, c * (c - 1) * m, 0);
@@ -73,6 +78,8 @@ void dense_solve(int c, int m, const real *G, real *B, struct work *w)
     dense_backward(c, m, G, B, w);
 }
 
+/* The loop over rows of B is outside, so that the inner loop runs along contiguous rows of C. The
+ * first product is stored, not added to zero. */
 void dense_product(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
 {
     account(w, dense_product_flops(a, b, k), 0);
@@ -80,10 +87,12 @@ void dense_product(int a, int b, int k, const real *A, const real *B, real *C, s
     for (int i = 0; i < a; i++)
         for (int l = 0; l < k; l++) {
             const real f = A[i * k + l];
-            for (int j = 0; j < b; j++) C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
+            for (int j = 0; j < b; j++)
+                C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
         }
 }
 
+/* The sum over l is the outer loop: A is read along its rows though it enters transposed. */
 void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C, struct work *w)
 {
     account(w, dense_product_flops(a, b, k), 0);
@@ -91,7 +100,8 @@ void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C
     for (int l = 0; l < k; l++)
         for (int i = 0; i < a; i++) {
             const real f = A[l * a + i];
-            for (int j = 0; j < b; j++) C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
+            for (int j = 0; j < b; j++)
+                C[i * b + j] = l > 0 ? C[i * b + j] + f * B[l * b + j] : f * B[j];
         }
 }
 
@@ -101,6 +111,7 @@ void dense_subtract(int n, real *a, const real *b, struct work *w)
     for (int i = 0; i < n; i++) a[i] -= b[i];
 }
 
+/* Gauss-Jordan in place: column k of the matrix becomes column k of the inverse. */
 bool dense_invert(int c, real *A, struct work *w)
 {
     account(w, 2 * c * c * c, c);
@@ -108,6 +119,7 @@ bool dense_invert(int c, real *A, struct work *w)
         const real pivot = A[k * c + k];
         if (!(real_fabs(pivot) > 0)) return false;
         const real inverse = 1 / pivot;
+        /* The pivot's row, then all other rows; their column k starts anew from zero. */
         A[k * c + k] = 1;
         for (int j = 0; j < c; j++) A[k * c + j] *= inverse;
         for (int i = 0; i < c; i++) {
@@ -120,7 +132,8 @@ bool dense_invert(int c, real *A, struct work *w)
     return true;
 }
 
-/* swap_rows: exchange rows p and q of an (n x m) matrix. */
+/* swap_rows: exchange rows p and q of an (n x m) matrix. Data are moved: the matrices are too small
+ * for a table of rows to pay. */
 static void swap_rows(real *A, int m, int p, int q)
 {
     for (int j = 0; j < m; j++) {
@@ -130,6 +143,8 @@ static void swap_rows(real *A, int m, int p, int q)
     }
 }
 
+/* Pivoting matters here: the matrices (physics 6.3, U + P22 dI) are neither symmetric nor
+ * definite. */
 bool dense_solve_general(int n, int m, real *A, real *B, struct work *w)
 {
     account(w, 2 * n * n * n / 3 + 2 * n * n * m, n);
@@ -150,6 +165,7 @@ bool dense_solve_general(int n, int m, real *A, real *B, struct work *w)
         }
         A[k * n + k] = inverse; /* kept for the way back */
     }
+    /* Back substitution with the inverse pivots. */
     for (int i = n - 1; i >= 0; i--) {
         for (int k = i + 1; k < n; k++)
             for (int j = 0; j < m; j++) B[i * m + j] -= A[i * n + k] * B[k * m + j];
