@@ -1,4 +1,7 @@
-/* column.c - values out of rows, and rows as SQL, JSON and aligned text. */
+/* column.c - values out of rows, and rows as SQL, JSON and aligned text.
+ *
+ * A table is walked, never a struct: whoever adds a result adds a row to its table, and every
+ * output has it. Tables are short; nothing in here is worth an index. */
 #include "measure/column.h"
 
 #include <inttypes.h>
@@ -7,8 +10,10 @@
 
 #include "base/check.h"
 
+/* More than any table has; sort_keys checks it. */
 enum { MOST_COLUMNS = 128 };
 
+/* Absent where the table says that this number means nothing (no loops: 0 rows). */
 static void set_int(const struct column *c, int64_t x, struct column_value *v)
 {
     if ((c->absent == ABSENT_ZERO && x <= 0) || (c->absent == ABSENT_NEGATIVE && x < 0)) return;
@@ -16,13 +21,17 @@ static void set_int(const struct column *c, int64_t x, struct column_value *v)
     v->integer = x;
 }
 
+/* "Not a number" and infinity are absent: no database and no JSON could hold them. */
 static void set_real(const struct column *c, double x, struct column_value *v)
 {
-    if (!isfinite(x) || (c->absent == ABSENT_ZERO && x <= 0) || (c->absent == ABSENT_NEGATIVE && x < 0)) return;
+    if (!isfinite(x) || (c->absent == ABSENT_ZERO && x <= 0) ||
+        (c->absent == ABSENT_NEGATIVE && x < 0))
+        return;
     v->kind = VALUE_REAL;
     v->real = x;
 }
 
+/* Borrowed: texts live in the row, or in the value's own buffer. */
 static void set_text(const char *s, struct column_value *v)
 {
     if (s == NULL) return;
@@ -30,15 +39,18 @@ static void set_text(const char *s, struct column_value *v)
     v->text = s;
 }
 
+/* A value outside the enum is a mistake of the program, not of its input. */
 static void set_word(const struct column *c, unsigned x, struct column_value *v)
 {
     CHECK(x < (unsigned)c->nword);
     set_text(c->word[x], v);
 }
 
+/* One value: known at all? made by a function? else read from its place by its kind. */
 void column_read(const struct column *c, const void *row, struct column_value *v)
 {
     v->kind = VALUE_ABSENT;
+    /* Not known: absent, and the place is not even looked at. */
     if (c->known != NULL && !c->known(row)) return;
     if (c->value != NULL) {
         c->value(c, row, v);
@@ -46,8 +58,10 @@ void column_read(const struct column *c, const void *row, struct column_value *v
     }
     /* The struct that holds the value: the row, or what one of its members points to. */
     const char *base = row;
+    /* memcpy, since the type of the pointer is not known here. */
     if (c->part > 0) memcpy(&base, base + c->part - 1, sizeof base);
     const void *at = base + c->offset;
+    /* Each kind from its C type to one of four kinds of value. */
     switch (c->kind) {
     case COLUMN_INT: set_int(c, *(const int *)at, v); break;
     case COLUMN_INT64: set_int(c, *(const int64_t *)at, v); break;
@@ -60,6 +74,7 @@ void column_read(const struct column *c, const void *row, struct column_value *v
         v->kind = VALUE_BOOL;
         v->integer = *(const bool *)at;
         break;
+    /* SQLite's integers are signed: a fingerprint of 64 bits is a text. */
     case COLUMN_HEX:
         snprintf(v->buffer, sizeof v->buffer, "%016" PRIx64, *(const uint64_t *)at);
         set_text(v->buffer, v);
@@ -67,8 +82,9 @@ void column_read(const struct column *c, const void *row, struct column_value *v
     }
 }
 
-/* --- the database ------------------------------------------------------------------------------------------------- */
+/* --- the database ----------------------------------------------------------------------------- */
 
+/* SQLite's types for STRICT tables. */
 static const char *sql_type(enum column_kind kind)
 {
     switch (kind) {
@@ -81,19 +97,25 @@ static const char *sql_type(enum column_kind kind)
     }
 }
 
+/* Enums become CHECK constraints: the database refuses what the program does not know. The line of
+ * documentation stands behind each column as an SQL comment. */
 void columns_define(const struct column_table *t, struct text *sql)
 {
     for (int i = 0; i < t->n; i++) {
         const struct column *c = &t->column[i];
         if (c->flags & COLUMN_NO_SQL) continue;
+        /* No column without its line in the manual. */
         CHECK(c->doc != NULL);
-        text_add(sql, "    %s %s%s", c->name, sql_type(c->kind), c->flags & COLUMN_NULL ? "" : " NOT NULL");
+        text_add(sql, "    %s %s%s", c->name, sql_type(c->kind),
+                 c->flags & COLUMN_NULL ? "" : " NOT NULL");
+        /* name TYPE [NOT NULL] [CHECK (..)], -- documentation */
         if (c->nword > 0) text_add(sql, " CHECK (%s IN (", c->name);
         for (int k = 0; k < c->nword; k++) text_add(sql, "%s'%s'", k > 0 ? ", " : "", c->word[k]);
         text_add(sql, "%s, -- %s\n", c->nword > 0 ? "))" : "", c->doc);
     }
 }
 
+/* Names for an INSERT, in the order of the table; how many there are. */
 int columns_list(const struct column_table *t, struct text *sql)
 {
     int n = 0;
@@ -105,11 +127,12 @@ int columns_list(const struct column_table *t, struct text *sql)
     return n;
 }
 
-/* --- JSON --------------------------------------------------------------------------------------------------------- */
+/* --- JSON ------------------------------------------------------------------------------------- */
 
 static const char *json_name(const struct column *c) { return c->key != NULL ? c->key : c->name; }
 
-/* The columns that JSON shows, by key. Returns how many. */
+/* The columns that JSON shows, by key. Returns how many. Sorted, so that documents can be compared
+ * by text; insertion sort, once for a whole list of rows. */
 static int sort_keys(const struct column_table *t, const struct column *sorted[MOST_COLUMNS])
 {
     int n = 0;
@@ -118,13 +141,15 @@ static int sort_keys(const struct column_table *t, const struct column *sorted[M
         const struct column *c = &t->column[i];
         int at = n;
         if (c->flags & COLUMN_NO_JSON) continue;
-        for (; at > 0 && strcmp(json_name(sorted[at - 1]), json_name(c)) > 0; at--) sorted[at] = sorted[at - 1];
+        for (; at > 0 && strcmp(json_name(sorted[at - 1]), json_name(c)) > 0; at--)
+            sorted[at] = sorted[at - 1];
         sorted[at] = c;
         n++;
     }
     return n;
 }
 
+/* json_scale: users of JSON get seconds where the database has picoseconds. */
 static void json_value(const struct column *c, const struct column_value *v, struct json *j)
 {
     switch (v->kind) {
@@ -146,6 +171,7 @@ static void json_row(const struct column *const *sorted, int n, const void *row,
         const struct column *c = sorted[i];
         struct column_value v = {0};
         const bool known = c->known == NULL || c->known(row);
+        /* A list that is not known has no key; a value has one, with null. */
         if (!known && (c->flags & COLUMN_OPTIONAL || c->json != NULL)) continue;
         json_key(j, json_name(c));
         if (c->json != NULL) {
@@ -164,7 +190,9 @@ void columns_json(const struct column_table *t, const void *row, struct json *j)
     json_row(sorted, sort_keys(t, sorted), row, j);
 }
 
-void columns_json_list(const struct column_table *t, const void *row, int n, size_t size, struct json *j)
+/* The keys are sorted once for all rows. */
+void columns_json_list(const struct column_table *t, const void *row, int n, size_t size,
+                       struct json *j)
 {
     const struct column *sorted[MOST_COLUMNS];
     const int nkey = sort_keys(t, sorted);
@@ -173,8 +201,9 @@ void columns_json_list(const struct column_table *t, const void *row, int n, siz
     json_end(j);
 }
 
-/* --- the terminal ------------------------------------------------------------------------------------------------- */
+/* --- the terminal ----------------------------------------------------------------------------- */
 
+/* Heads are as wide as their cells, which keeps the columns aligned. */
 void columns_title(const struct column_table *t, FILE *out)
 {
     for (int i = 0; i < t->n; i++) {
@@ -185,6 +214,7 @@ void columns_title(const struct column_table *t, FILE *out)
     fputc('\n', out);
 }
 
+/* Digits and form are the column's: a time needs others than a ratio. */
 static void print_real(const struct column *c, double x, FILE *out)
 {
     if (c->scale != 0) x *= c->scale;
@@ -195,11 +225,13 @@ static void print_real(const struct column *c, double x, FILE *out)
     }
 }
 
+/* "-" where nothing is known, so that every line has all cells. */
 void columns_cells(const struct column_table *t, const void *row, FILE *out)
 {
     for (int i = 0; i < t->n; i++) {
         const struct column *c = &t->column[i];
         struct column_value v = {0};
+        /* Not a column of the terminal. */
         if (c->title == NULL) continue;
         if (c->before != NULL) fputs(c->before, out);
         column_read(c, row, &v);

@@ -1,6 +1,8 @@
 /* cost.c - seconds of the machine to picoseconds, once (cost.h). */
 #include "vp/cost.h"
 
+/* Overheads as whole picoseconds, times per byte as doubles: a byte may cost less than one. The
+ * saving of short messages is at most the overhead (spec/software_spec.c): never negative. */
 static struct message_cost message_cost_make(const struct software_segment *s, int64_t below)
 {
     return (struct message_cost){
@@ -17,6 +19,7 @@ static struct message_cost message_cost_make(const struct software_segment *s, i
 struct software_cost software_cost_make(const struct software_spec *s)
 {
     struct software_segment list[SOFTWARE_MAX_SEGMENTS];
+    /* The processors know segments alone, as the network does. */
     const int n = software_segments(s, list);
     struct software_cost cost = {
         .kernel_time = sim_from_seconds(s->kernel_time),
@@ -25,6 +28,7 @@ struct software_cost software_cost_make(const struct software_spec *s)
         .kernel_byte = s->kernel_per_byte * SIM_PS_PER_S,
         .shared_byte = s->shared_bandwidth > 0 ? SIM_PS_PER_S / s->shared_bandwidth : 0,
     };
+    /* A segment ends where the next begins; the last never. */
     for (int i = 0; i < n; i++)
         cost.message[i] = message_cost_make(&list[i], i + 1 < n ? list[i + 1].from : INT64_MAX);
     return cost;

@@ -1,9 +1,11 @@
-/* rendezvous.c - large messages: request to send, clear to send, data. Both ends' software reacts without waiting for
- * its kernel (asynchronous progress), so a hand-shake costs two zero-byte trips and the machine's software time. The
- * sender's request is complete when the clear to send is there, that of a synchronous message when its data arrived. */
+/* rendezvous.c - large messages: request to send, clear to send, data. Both ends' software reacts
+ * without waiting for its kernel (asynchronous progress), so a hand-shake costs two zero-byte trips
+ * and the machine's software time. The sender's request is complete when the clear to send is
+ * there, that of a synchronous message when its data arrived. */
 #include "base/check.h"
 #include "vp/vp.h"
 
+/* The three parts travel as the same message with another size and start. */
 static void travel(struct message *m, struct vp *from, struct vp *to, int64_t bytes, sim_ps ready)
 {
     m->net.bytes = bytes;
@@ -11,6 +13,7 @@ static void travel(struct message *m, struct vp *from, struct vp *to, int64_t by
     vp_launch(from->world, m, from, to);
 }
 
+/* Request to send: 0 bytes, so that it never waits for room at the receiver. */
 void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
 {
     m->kind = MESSAGE_REQUEST_TO_SEND;
@@ -25,6 +28,8 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
     travel(m, v, m->to, 0, v->clock);
 }
 
+/* The receive is posted and the request is there: clear to send, after the software's time. What
+ * contention has cost so far is kept in `delay`. */
 void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
 {
     (void)r;
@@ -44,6 +49,8 @@ static void release_sender(struct message *m, int state)
     vp_notify(m->from, s, m->net.arrival);
 }
 
+/* Clear to send has arrived: the data leave. A synchronous protocol holds the sender until they
+ * have arrived, any other lets it go on now. */
 static void cleared(struct message *m)
 {
     bool held = message_cost(&m->from->world->software, m->bytes)->protocol == PROTOCOL_SYNCHRONOUS;
@@ -54,6 +61,7 @@ static void cleared(struct message *m)
     travel(m, m->from, m->to, m->bytes, m->net.arrival);
 }
 
+/* Data never come before a receive matched: that is what the handshake was for. */
 void rendezvous_deliver(struct message *m)
 {
     if (m->kind == MESSAGE_CLEAR_TO_SEND) {
@@ -62,6 +70,7 @@ void rendezvous_deliver(struct message *m)
     }
     CHECK(m->kind == MESSAGE_DATA && m->receive);
     struct comm_request *r = m->receive;
+    /* Delays of request and answer count as contention of the whole message. */
     m->net.uncontended -= m->delay;
     release_sender(m, REQUEST_DELIVERED);
     r->active = REQUEST_MATCHED;
