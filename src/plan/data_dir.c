@@ -2,7 +2,11 @@
  * own.
  *
  * What was found is remembered in the environment as MIMDSIM_DATA, so that programs started from
- * here look in the same place. */
+ * here look in the same place.
+ *
+ * A name without a slash and without .yaml is looked up in these folders, anything else is a
+ * path. So, on the command line, a file in the working directory cannot take the place of a
+ * shipped one by its name alone. */
 #include "plan/data_dir.h"
 
 #include <dirent.h>
@@ -14,8 +18,10 @@
 #include "base/text.h"
 #include "plan/plan.h"
 
+/* Longer paths are not found; more files of one kind are not listed. */
 enum { PATH_LENGTH = 1024, MAX_NAMES = 4096 };
 
+/* Whether `dir` is such a folder: it has both. */
 static bool holds_data(const char *dir)
 {
     char path[PATH_LENGTH + 16];
@@ -41,15 +47,20 @@ static bool beside_binary(char dir[PATH_LENGTH])
     return false;
 }
 
+/* Found once per process: the environment has it from then on. The folder exists when this
+ * program was built or installed, so there is no error. */
 const char *plan_data_dir(void)
 {
     char dir[PATH_LENGTH];
     const char *given = getenv("MIMDSIM_DATA");
     if (given != NULL && given[0] != '\0') return given;
+    /* Order: the environment, beside the binary, the source tree that it was built from,
+     * installed. */
     const char *found = MIMDSIM_DATADIR;
     if (beside_binary(dir)) found = dir;
     else if (holds_data(MIMDSIM_SRCDIR)) found = MIMDSIM_SRCDIR;
     setenv("MIMDSIM_DATA", found, 1);
+    /* The environment owns the text: `dir` ends with this function. */
     const char *kept = getenv("MIMDSIM_DATA");
     return kept != NULL ? kept : MIMDSIM_DATADIR;
 }
@@ -59,10 +70,12 @@ static void user_dir(char *dir, size_t size)
 {
     const char *xdg = getenv("XDG_DATA_HOME"), *home = getenv("HOME");
     dir[0] = '\0';
+    /* The XDG base directory specification: a relative path there is ignored. */
     if (xdg != NULL && xdg[0] == '/') snprintf(dir, size, "%s/mimdsim", xdg);
     else if (home != NULL && home[0] == '/') snprintf(dir, size, "%s/.local/share/mimdsim", home);
 }
 
+/* By its form: whether there is such a file does not matter. */
 static bool is_path(const char *name)
 {
     size_t n = strlen(name);
@@ -79,10 +92,12 @@ const char *data_dir_of(const char *path, struct arena *a)
     return dir;
 }
 
+/* What a scenario or a machine is called: its file without folder and ending. */
 const char *data_dir_stem(const char *path, struct arena *a)
 {
     const char *slash = strrchr(path, '/');
     char *stem = arena_text(a, slash != NULL ? slash + 1 : path);
+    /* only these endings: "a.b" is the stem of a.b.yaml */
     char *dot = strrchr(stem, '.');
     if (dot != NULL && dot != stem && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0))
         *dot = '\0';
@@ -94,6 +109,7 @@ static const char *probe(const char *dir, const char *what, const char *name, co
                          struct arena *a)
 {
     char path[2 * PATH_LENGTH];
+    /* Both slashes only where something stands before them. */
     int n = snprintf(path, sizeof path, "%s%s%s%s%s%s", dir, dir[0] != '\0' ? "/" : "", what,
                      what[0] != '\0' ? "/" : "", name, ending);
     if (n >= (int)sizeof path || access(path, F_OK) != 0) return NULL;
@@ -109,6 +125,8 @@ static const char *nearest_name(const char *what, const char *name, struct arena
     return text_nearest(name, names, n);
 }
 
+/* A path: beside the file that names it (`near`), or from the working directory on the command
+ * line. */
 static const char *find_path(const char *what, const char *name, const char *near, struct arena *a,
                              struct err *e)
 {
@@ -116,6 +134,7 @@ static const char *find_path(const char *what, const char *name, const char *nea
     if (path == NULL && (name[0] == '/' || near == NULL || near[0] == '\0'))
         path = probe("", "", name, "", a);
     if (path != NULL) return path;
+    /* Perhaps the name of a shipped file was meant. */
     const char *meant = nearest_name(what, data_dir_stem(name, a), a);
     if (meant == NULL) err_set(e, ERR_NO_INPUT, "no file '%s'", name);
     else
@@ -124,6 +143,7 @@ static const char *find_path(const char *what, const char *name, const char *nea
     return NULL;
 }
 
+/* Why `name` was not found. A file of that name in the working directory is the usual reason. */
 static void not_found(const char *what, const char *name, struct arena *a, struct err *e)
 {
     const char *near = nearest_name(what, name, a);
@@ -139,11 +159,15 @@ static void not_found(const char *what, const char *name, struct arena *a, struc
                 name, plan_data_dir(), what, what);
 }
 
+/* The file that `name` means, or NULL with *e set: what is near, and which verb lists what there
+ * is. */
 const char *data_dir_find(const char *what, const char *name, const char *near, struct arena *a,
                           struct err *e)
 {
     char user[PATH_LENGTH];
     if (is_path(name)) return find_path(what, name, near, a, e);
+    /* A name: beside the file that names it, shipped, then the user's own. Shipped names cannot
+     * be replaced. */
     const char *path = near != NULL && name[0] != '\0' ? probe(near, "", name, ".yaml", a) : NULL;
     if (path == NULL && name[0] != '\0') path = probe(plan_data_dir(), what, name, ".yaml", a);
     user_dir(user, sizeof user);
@@ -153,6 +177,7 @@ const char *data_dir_find(const char *what, const char *name, const char *near, 
     return path;
 }
 
+/* For qsort. */
 static int compare_names(const void *a, const void *b)
 {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -163,12 +188,14 @@ static int add_names(const char *dir, const char *what, const char **names, int 
 {
     char path[2 * PATH_LENGTH];
     if (snprintf(path, sizeof path, "%s/%s", dir, what) >= (int)sizeof path) return n;
+    /* figures are queries */
     const char *ending = strcmp(what, "plots") == 0 ? ".sql" : ".yaml";
     DIR *d = opendir(path);
     if (d == NULL) return n;
     for (struct dirent *entry; n < MAX_NAMES && (entry = readdir(d)) != NULL;) {
         size_t length = strlen(entry->d_name);
         size_t end = strlen(ending);
+        /* Hidden files, and what is no file of this kind. */
         if (entry->d_name[0] == '.' || length <= end ||
             strcmp(entry->d_name + length - end, ending) != 0)
             continue;
@@ -183,6 +210,7 @@ static int add_names(const char *dir, const char *what, const char **names, int 
 const char **data_dir_names(const char *what, struct arena *a, int *n)
 {
     char user[PATH_LENGTH];
+    /* Shipped and own names together, sorted, each once. */
     const char **names = TAKE(a, MAX_NAMES, const char *);
     int count = add_names(plan_data_dir(), what, names, 0, a), kept = 0;
     user_dir(user, sizeof user);
@@ -194,6 +222,7 @@ const char **data_dir_names(const char *what, struct arena *a, int *n)
     return names;
 }
 
+/* A scenario names figures before any is drawn: a misspelt name is told with its line. */
 bool data_dir_has_figure(const char *name, const char *file, int line, struct arena *a,
                          struct err *e)
 {

@@ -21,19 +21,19 @@ enum { MAX_RUNS = 100000, MAX_BODIES = 1 << 27 };
 
 /* What holds for all runs on one machine. */
 struct start {
-    const char *name;
-    struct run_spec run;
-    struct start *next;
+    const char *name; /* as it was asked for */
+    struct run_spec run; /* machine and base settings applied */
+    struct start *next; /* the one that was made before */
 };
 
 struct expansion {
     struct plan *plan;
     const struct scenario *scenario;
     struct err *err;
-    struct start *starts;
+    struct start *starts; /* made so far, newest first */
     int point[SCENARIO_MAX_AXES]; /* where each axis stands */
     struct identity *identity;    /* owned */
-    struct machine_changes changes;
+    struct machine_changes changes; /* of the machines seen so far */
 };
 
 /* The settings of the present point in the order in which they act; `list` needs naxis + 2
@@ -42,6 +42,7 @@ static int lists_of(const struct expansion *x, const struct setting_list **list)
 {
     const struct scenario *s = x->scenario;
     int n = 0;
+    /* base, then one point of each axis, then the command line: the last one wins */
     list[n++] = &s->base;
     for (int i = 0; i < s->naxis; i++) list[n++] = &s->axis[i].point[x->point[i]];
     list[n++] = &s->set;
@@ -61,6 +62,7 @@ static const struct setting *last_of(const struct expansion *x,
     return found;
 }
 
+/* Settings by what they decide; `program.n` and `model.n` are the same n. */
 static bool is_machine(const struct setting *s) { return s->kind == SETTING_MACHINE; }
 static bool is_ranks(const struct setting *s) { return strcmp(s->key, "ranks") == 0; }
 static bool is_ratio(const struct setting *s) { return s->kind == SETTING_N_OVER_P; }
@@ -69,12 +71,15 @@ static bool is_bodies(const struct setting *s)
     return strcmp(s->key, "model.n") == 0 || strcmp(s->key, "program.n") == 0;
 }
 
+/* The machine is read, and the base settings are applied to it, once for all points on this
+ * machine. Returns NULL with *e set. */
 static struct start *start_make(struct expansion *x, const struct setting *machine)
 {
     struct arena *a = x->plan->arena;
     struct machine_file m;
     struct err why;
     int ntable;
+    /* A name in a scenario is looked up beside it, one of the command line is not. */
     bool in_file = machine->line > 0;
     err_clear(&why);
     if (!machine_file_read(&m, machine->text, in_file ? x->scenario->dir : NULL, a, &why)) {
@@ -99,6 +104,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     return s;
 }
 
+/* The start of the present point; machines are few, so a list is searched. */
 static struct start *start_of(struct expansion *x)
 {
     const struct setting *machine = last_of(x, is_machine);
@@ -121,6 +127,7 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
         return err_set_at(x->err, ERR_DATA, x->scenario->path, 1,
                           "ranks is missing; expected a number, a list, or 'n' for one rank per "
                           "body");
+    /* Three numbers of which two determine the third: n = n_over_p x P, or P = n. */
     if (ratio != NULL && bodies != NULL)
         return err_set_at(x->err, ERR_DATA, ratio->file, ratio->line,
                           "n_over_p determines n already; remove '%s' (line %d)", bodies->key,
@@ -130,6 +137,7 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
                           "n_over_p needs ranks as numbers, not 'n'");
     if (ranks->kind == SETTING_RANKS_ARE_N) run->nrank = run->model.nbody;
     if (ratio == NULL) return true;
+    /* 64 bits: the product may pass INT_MAX before it is refused. */
     int64_t n = (int64_t)ratio->number * run->nrank;
     if (n > MAX_BODIES)
         return err_set_at(x->err, ERR_CONFIG, ratio->file, ratio->line,
@@ -139,14 +147,17 @@ static bool resolve_sizes(struct expansion *x, struct run_spec *run)
     return true;
 }
 
+/* Whether the point fits its machine, with a message at the place that the user can change. */
 static bool check_fits(struct expansion *x, const struct run_spec *run)
 {
     const struct setting *ranks = last_of(x, is_ranks);
     const struct machine_spec *m = &run->machine;
     int64_t n = machine_spec_processors(m);
+    /* `ranks: n`: the place to change is that of n. */
     if (ranks->kind == SETTING_RANKS_ARE_N && last_of(x, is_bodies) != NULL)
         ranks = last_of(x, is_bodies);
     if (!machine_file_check(m, ranks->file, ranks->line, x->err)) return false;
+    /* A list of places must have one for every rank. */
     if (m->placement.kind == PLACEMENT_LIST && m->placement.nlist < run->nrank)
         return err_set_at(x->err, ERR_CONFIG, ranks->file, ranks->line,
                           "%d ranks, but machine.placement.list names %d processors", run->nrank,
@@ -156,6 +167,7 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
                           "%d ranks, but machine '%s' has %lld processors; reduce ranks or enlarge "
                           "machine.topology.dims",
                           run->nrank, m->name, (long long)n);
+    /* Only of a chain is the number of bodies known before it is built. */
     if (run->model.generator == MODEL_SERIAL_CHAIN && kernel_spec_needs_model(&run->kernel) &&
         run->model.nbody < run->nrank)
         return err_set_at(
@@ -188,8 +200,10 @@ static bool resolve_path(struct expansion *x, struct run_spec *run)
              m->path);
     struct err ignored;
     err_clear(&ignored);
+    /* Beside the scenario first, then from the working directory. */
     bool relative = m->path[0] != '/' && text_read_file(&file, path, &ignored);
     if (!relative && !text_read_file(&file, m->path, x->err)) return text_free(&file), false;
+    /* The content identifies the run: the file may move, or change under its name. */
     digest_sha256_hex(file.s, file.length, run->model_file);
     text_free(&file);
     if (!relative) return true;
@@ -204,6 +218,7 @@ static bool resolve_path(struct expansion *x, struct run_spec *run)
  * business. */
 static void note_refusal(struct expansion *x, struct run_spec *run)
 {
+    /* check_fits writes to x->err: for its time that is `why`. */
     struct err why, *others = x->err;
     err_clear(&why);
     x->err = &why;
@@ -211,6 +226,7 @@ static void note_refusal(struct expansion *x, struct run_spec *run)
     x->err = others;
     if (fits) return;
     struct plan *p = x->plan;
+    /* The first reason is told when no point can run. */
     if (p->nrefused++ == 0) p->refusal = why;
     char place[sizeof why.file + 24] = "";
     if (why.line > 0) snprintf(place, sizeof place, "%s:%d: ", why.file, why.line);
@@ -237,6 +253,7 @@ static int make_point(struct expansion *x, struct run_spec *run)
     const struct start *start = start_of(x);
     const struct scenario *s = x->scenario;
     if (start == NULL) return -1;
+    /* Later settings win: the base (in the start), the axes in order, then --set. */
     *run = start->run;
     for (int i = 0; i < s->naxis; i++) {
         const struct setting_list *list = &s->axis[i].point[x->point[i]];
@@ -255,6 +272,7 @@ static int make_point(struct expansion *x, struct run_spec *run)
 /* The next point; false behind the last. */
 static bool advance(struct expansion *x)
 {
+    /* As an odometer: the last axis turns fastest. */
     for (int i = x->scenario->naxis - 1; i >= 0; i--) {
         if (++x->point[i] < x->scenario->axis[i].npoint) return true;
         x->point[i] = 0;
@@ -262,6 +280,7 @@ static bool advance(struct expansion *x)
     return false;
 }
 
+/* All points in order; repetitions of one follow each other. */
 static bool expand_points(struct expansion *x, int64_t capacity)
 {
     struct plan *p = x->plan;
@@ -271,6 +290,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         int made = make_point(x, &run[p->nrun]);
         if (made < 0) return false;
         if (made == 0) continue;
+        /* Without anything random all repetitions would be the same run. */
         const bool repeats = run_spec_is_random(&p->run[p->nrun]) && !p->run[p->nrun].refused;
         const int repetitions = repeats ? x->scenario->repetitions : 1;
         for (int rep = 1; rep < repetitions; rep++) {
@@ -279,6 +299,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         }
         p->nrun += repetitions;
     } while (advance(x));
+    /* Nothing can run: that is an error, not a plan. */
     if (p->nrun > 0 && p->nrefused == p->nrun) {
         *x->err = p->refusal;
         return false;
@@ -287,6 +308,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
     return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "'only' excludes all runs");
 }
 
+/* The product of all axes and repetitions, filtered by `only`. */
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
 {
     struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena}};
@@ -319,6 +341,7 @@ static const char *why_idle(const struct plan *p, const struct setting *s)
     return why;
 }
 
+/* One remark per key and reason. */
 static void add_unused(struct plan *p, const char *key, const char *why)
 {
     struct text t = {0};
@@ -337,6 +360,8 @@ static void add_unused_of(struct plan *p, const struct setting_list *list)
     }
 }
 
+/* Settings that act in no run of the plan are told: a solver of a program that has none is
+ * usually a mistake. */
 void expand_unused(struct plan *p, const struct scenario *s)
 {
     int ntable, n = 1;

@@ -1,5 +1,8 @@
 /* machine_changes.c - how the machine of a run differs from the shipped one; see
- * machine_changes.h. */
+ * machine_changes.h.
+ *
+ * A claim counts only runs on machines as shipped, so every run stores what was changed, as
+ * JSON, and a hash of the machine that it was compared with. */
 #include "plan/machine_changes.h"
 
 #include <string.h>
@@ -43,6 +46,8 @@ static void describe(const struct machine_spec *m, struct text *out)
     text_free(&all);
 }
 
+/* The machine of that name as shipped; without text when there is none. A user's own machine of
+ * the same name does not count. */
 static struct shipped_machine *read_shipped(const char *name, struct arena *a)
 {
     struct shipped_machine *s = TAKE(a, 1, struct shipped_machine);
@@ -52,6 +57,7 @@ static struct shipped_machine *read_shipped(const char *name, struct arena *a)
     err_clear(&ignored);
     s->name = arena_text(a, name);
     text_add(&path, "%s/machines/%s.yaml", plan_data_dir(), name);
+    /* A name with a slash would lead out of the folder. */
     if (!strchr(name, '/') && access(path.s, R_OK) == 0 &&
         machine_file_read(&file, path.s, NULL, a, &ignored)) {
         describe(&file.spec, &text);
@@ -91,8 +97,10 @@ static void add_differences(struct text *out, const char *own, const char *shipp
         const char *end = strchrnul(line, '\n'),
                    *equals = memmem(line, (size_t)(end - line), " = ", 3);
         if (equals) {
+            /* The key without "machine.", as machine files have it. */
             const char *key = line + strlen(prefix), *value = equals + 3;
             size_t length = (size_t)(end - value);
+            /* A key that the shipped text lacks is newer than it: a difference, too. */
             const char *there = line_of(shipped, line, (size_t)(value - line));
             if (!there || strcspn(there, "\n") != length || memcmp(there, value, length) != 0) {
                 text_add(out, "%s", out->length > 1 ? ", " : "");
@@ -105,6 +113,7 @@ static void add_differences(struct text *out, const char *own, const char *shipp
     }
 }
 
+/* Read once per plan and name. */
 static const struct shipped_machine *shipped(struct machine_changes *c, const char *name)
 {
     for (struct shipped_machine *s = c->known; s; s = s->next)
@@ -114,8 +123,11 @@ static const struct shipped_machine *shipped(struct machine_changes *c, const ch
     return c->known = s;
 }
 
+/* Notes in *run what differs. The texts live in c->arena, as long as the plan. */
 void machine_changes_note(struct machine_changes *c, struct run_spec *run)
 {
+    /* Runs of a sweep mostly share their machine: the last answer is kept. Structs are compared
+     * as bytes, since specs begin as zeros. */
     if (!c->any || memcmp(&c->last, &run->machine, sizeof c->last) != 0) {
         const struct shipped_machine *s = shipped(c, run->machine.name);
         struct text own = {0}, changes = {0};
@@ -123,6 +135,7 @@ void machine_changes_note(struct machine_changes *c, struct run_spec *run)
         text_add(&changes, "{");
         if (s->text && strcmp(own.s, s->text) != 0) add_differences(&changes, own.s, s->text);
         text_add(&changes, "}");
+        /* NULL: nothing to compare with; "{}": as shipped. */
         c->text = s->text ? arena_text(c->arena, changes.s) : NULL;
         c->hash = s->hash;
         memcpy(&c->last, &run->machine, sizeof c->last);

@@ -1,5 +1,8 @@
-/* plan.c - the face of the room: a scenario to runs, a machine to values with their origins, lists,
- * checks. */
+/* plan.c - the face of the room: a scenario to runs, a machine to values with their origins,
+ * lists, checks.
+ *
+ * Everything that a user may have written wrongly is found here, before anything runs: after
+ * plan_read every run is complete, checked and identified. */
 #include "plan/plan.h"
 
 #include <string.h>
@@ -12,11 +15,13 @@
 #include "plan/scenario_file.h"
 #include "spec/spec_fields.h"
 
+/* Whether every name of a program in the list is known; else the nearest one is told. */
 static bool kernels_exist(const struct setting_list *list, const struct plan_options *o,
                           struct err *e)
 {
     for (int i = 0; i < list->n; i++) {
         const struct setting *s = &list->at[i];
+        /* only settings that name a program */
         bool known = strcmp(s->key, "kernel.name") != 0;
         for (int k = 0; !known && k < o->nkernel; k++) known = strcmp(s->text, o->kernel[k]) == 0;
         if (known) continue;
@@ -32,6 +37,7 @@ static bool kernels_exist(const struct setting_list *list, const struct plan_opt
 /* Kernels are built in above this room, so their names come with the options. */
 static bool all_kernels_exist(const struct scenario *s, const struct plan_options *o, struct err *e)
 {
+    /* Without a list nobody wants to know. */
     if (o == NULL || o->nkernel == 0) return true;
     if (!kernels_exist(&s->base, o, e)) return false;
     for (int i = 0; i < s->naxis; i++)
@@ -40,6 +46,7 @@ static bool all_kernels_exist(const struct scenario *s, const struct plan_option
     return kernels_exist(&s->set, o, e);
 }
 
+/* Whether values of the setting sort and align as numbers: those with units are texts. */
 static bool is_number(const struct setting *s)
 {
     if (s->field == NULL) return s->kind == SETTING_N_OVER_P;
@@ -49,6 +56,7 @@ static bool is_number(const struct setting *s)
     return plain && s->field->unit == UNIT_NONE;
 }
 
+/* Keys of a point that are not listed yet. */
 static void add_swept(struct plan *p, const struct setting_list *list)
 {
     for (int i = 0; i < list->n; i++) {
@@ -59,16 +67,19 @@ static void add_swept(struct plan *p, const struct setting_list *list)
     }
 }
 
+/* The keys that vary, in the order of the file: tables have a column for each. */
 static void list_swept(struct plan *p, const struct scenario *s)
 {
     int n = 0;
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) n += s->axis[i].point[j].n;
+    /* room for all settings of all points, though most are of the same keys */
     p->swept = TAKE(p->arena, n + 1, struct plan_swept);
     for (int i = 0; i < s->naxis; i++)
         for (int j = 0; j < s->axis[i].npoint; j++) add_swept(p, &s->axis[i].point[j]);
 }
 
+/* From the scenario to its runs. Names are checked first, so that a mistake costs no expansion. */
 static bool fill(struct plan *p, struct scenario *s, const struct plan_options *o,
                  struct err *e)
 {
@@ -83,11 +94,13 @@ static bool fill(struct plan *p, struct scenario *s, const struct plan_options *
     return true;
 }
 
+/* Everything of the plan lives in its arena; a failed plan is empty. */
 bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e)
 {
     struct scenario s;
     *p = (struct plan){.arena = arena_create()};
     if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
+    /* Perhaps it is a file of another kind: then that is told instead. */
     plan_free(p);
     file_kind_refuse(name, FILE_SCENARIO, e);
     return false;
@@ -99,12 +112,16 @@ void plan_free(struct plan *p)
     *p = (struct plan){0};
 }
 
+/* As `run` would read the file, without running. A file of neither kind is read as a scenario,
+ * whose messages say what is missing. */
 bool plan_check_file(const char *path, const struct plan_options *o, struct err *e)
 {
+    /* A program, a machine or a scenario, by name and content. */
     struct plan p = {.arena = arena_create()};
     struct scenario s;
     struct machine_file m;
     struct plan_options programs = {0};
+    /* Only what reads programs: --set and --machine are not the file's. */
     if (o != NULL) programs.program = o->program, programs.program_context = o->program_context;
     if (program_file_is(path)) {
         const bool made = scenario_file_read(&s, path, &programs, p.arena, e);
@@ -115,11 +132,13 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
     bool fine = root != NULL;
     if (fine && file_kind_of_tree(root) == FILE_MACHINE) {
         struct text as_path = {0};
+        /* "./" in front: a name without a slash would be looked up among the shipped machines. */
         text_add(&as_path, "%s%s", strchr(path, '/') == NULL ? "./" : "", path);
         fine = machine_file_read(&m, as_path.s, NULL, p.arena, e);
         text_free(&as_path);
     } else if (fine) {
         fine = scenario_file_tree(&s, root, path, &programs, p.arena, e) && fill(&p, &s, o, e);
+        /* A point that cannot run is an error of the file, which `run` would only report. */
         if (fine && p.nrefused > 0) *e = p.refusal, fine = false;
     }
     plan_free(&p);
@@ -142,14 +161,17 @@ static bool set_machine(struct machine_file *m, const char *set, struct arena *a
     if (!setting_make(&s, name, arena_text(a, equals + 1), "--set", 0, a, e)) return false;
     if (strncmp(full, "machine.", 8) != 0 || s.kind != SETTING_FIELD)
         return err_set_at(e, ERR_DATA, "--set", 0, "%s: not a setting of a machine", name);
+    /* By way of a run: settings apply to runs. */
     run.machine = m->spec;
     setting_apply(&s, &run, a);
     m->spec = run.machine;
+    /* The value comes from the command line from now on, without evidence. */
     m->value[field_find(&machine_table, full + 8)] =
         (struct machine_value){.text = s.text, .file = "--set", .evidence = "", .source = ""};
     return machine_file_check(&m->spec, "--set", 0, e);
 }
 
+/* A value for people, with where it comes from. */
 static struct origin origin_make(const char *key, const char *value, const struct machine_value *v)
 {
     return (struct origin){.key = key,
@@ -163,6 +185,7 @@ static struct origin origin_make(const char *key, const char *value, const struc
                            .max = v->max};
 }
 
+/* All values of the machine in the order of the table, then its published figures. */
 static int list_origins(const struct machine_file *m, struct origin *list, struct arena *a)
 {
     int n = 0;
@@ -183,6 +206,7 @@ static int list_origins(const struct machine_file *m, struct origin *list, struc
     return n;
 }
 
+/* A machine without a scenario. The origins are listed after --set, so that they say "--set". */
 bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o,
                   struct arena *a, struct origin **origin, int *norigin, struct err *e)
 {
@@ -196,12 +220,14 @@ bool plan_machine(struct machine_spec *m, const char *name, const struct plan_op
     *m = file.spec;
     if (origin == NULL) return true;
     *origin = TAKE(a, machine_table.nfield + file.npublished, struct origin);
+    /* texts live in the caller's arena */
     *norigin = list_origins(&file, *origin, a);
     return true;
 }
 
 /* ---- lists */
 
+/* The title of a machine or the question of a scenario; of a file that cannot be read, why. */
 static const char *title_of(const char *what, const char *name, struct arena *a)
 {
     struct err e;

@@ -1,4 +1,7 @@
-/* program_file.c - see program_file.h. */
+/* program_file.c - see program_file.h.
+ *
+ * A program declares its parameters: they become keys like any other, with ranges, units and
+ * nearest names. To know them the program must be opened before the scenario is read. */
 #include "plan/program_file.h"
 
 #include <limits.h>
@@ -17,11 +20,12 @@ enum { MOST_BODIES = 1 << 27 };
 /* A program of the scenario, by the name under which its settings know it. */
 struct scenario_program {
     const char *name;
-    const struct program_sheet *sheet;
+    const struct program_sheet *sheet; /* what it declares, kind and hash */
 };
 
 /* --- which files ------------------------------------------------------------------------------ */
 
+/* With its dot; a dot in a folder's name is none. */
 static const char *ending_of(const char *name)
 {
     const char *slash = strrchr(name, '/'), *dot = strrchr(name, '.');
@@ -38,6 +42,7 @@ static bool is_elf(const char *path)
     return yes;
 }
 
+/* By its ending, or by its content where it has none that is known. */
 bool program_file_is(const char *name)
 {
     static const char *const ending[] = {".c",   ".cc",  ".cpp", ".cxx", ".C",   ".f",    ".F",
@@ -47,6 +52,7 @@ bool program_file_is(const char *name)
     return is_elf(name);
 }
 
+/* A program alone is a scenario of its own: a few numbers of ranks on a well-known machine. */
 struct node *program_file_scenario(const char *name, struct arena *a, struct err *e)
 {
     /* A quoted name of YAML: a quote in it is doubled. */
@@ -61,8 +67,8 @@ struct node *program_file_scenario(const char *name, struct arena *a, struct err
 
 /* What is being collected; `typed` names come from the command line. */
 struct collection {
-    struct scenario *scenario;
-    const struct plan_options *options;
+    struct scenario *scenario; /* whose programs are opened */
+    const struct plan_options *options; /* who opens programs, and whether any may be */
     struct arena *arena;
     struct err *err;
 };
@@ -90,6 +96,7 @@ static const char *path_of(const struct collection *x, const char *name, bool ty
     return path;
 }
 
+/* A scenario may come from a stranger: it must not name programs elsewhere on this computer. */
 static bool refuse_outside(const struct collection *x, const char *name, int line)
 {
     return err_set_at(
@@ -99,6 +106,7 @@ static bool refuse_outside(const struct collection *x, const char *name, int lin
         name);
 }
 
+/* One program of the scenario, opened once however often it is named. */
 static bool add_program(struct collection *x, const char *name, bool typed, int line)
 {
     struct scenario *s = x->scenario;
@@ -108,6 +116,7 @@ static bool add_program(struct collection *x, const char *name, bool typed, int 
     if (s->nprogram == SCENARIO_MAX_PROGRAMS)
         return err_set_at(x->err, ERR_DATA, file, line, "more than %d programs",
                           SCENARIO_MAX_PROGRAMS);
+    /* In this order: does it exist, may it be used, can this verb use it, does it open. */
     if (access(path, F_OK) != 0)
         return err_set_at(x->err, ERR_NO_INPUT, file, line,
                           "program '%.120s': there is no such file", path);
@@ -155,11 +164,14 @@ static const char *set_names(const char *set)
     return NULL;
 }
 
+/* All programs that the scenario names, opened. It needs no order of keys: the tree is searched
+ * first. */
 bool program_file_collect(struct scenario *s, struct node *root, const struct plan_options *o,
                           struct arena *a, struct err *e)
 {
     static const struct plan_options none;
     struct collection x = {s, o != NULL ? o : &none, a, e};
+    /* a --set program= takes the place of the file's */
     bool replaced = false;
     /* The command line takes the place of what the file says, which is then not looked at. */
     for (int i = 0; o != NULL && i < o->nset; i++) {
@@ -186,6 +198,7 @@ void program_file_entitle(struct scenario *s, struct arena *a)
 
 /* --- keys ------------------------------------------------------------------------------------- */
 
+/* Whether some program of the scenario has a parameter of this name. */
 static bool is_declared(const struct scenario *s, const char *name)
 {
     for (int i = 0; i < s->nprogram; i++)
@@ -193,6 +206,7 @@ static bool is_declared(const struct scenario *s, const char *name)
     return false;
 }
 
+/* The whole key of a short name, "chunk" for "program.chunk"; others as they are. */
 const char *program_file_key(const struct scenario *s, const char *key, struct arena *a)
 {
     /* Words of scenarios keep their meaning, but for n: the size of a problem is what it says. */
@@ -205,16 +219,19 @@ const char *program_file_key(const struct scenario *s, const char *key, struct a
     return full;
 }
 
+/* Short names of parameters to their whole keys, in one mapping. */
 static void rename_keys(const struct scenario *s, struct node *mapping, struct arena *a)
 {
     for (struct node *n = mapping->child; n != NULL; n = n->next)
         if (n->key != NULL) n->key = program_file_key(s, n->key, a);
 }
 
+/* After this the scenario is read as any other. */
 void program_file_rename(const struct scenario *s, struct node *root, struct arena *a)
 {
     if (s->nprogram == 0) return;
     rename_keys(s, root, a);
+    /* Keys occur at the top, in a sweep and in the points of variants. */
     struct node *sweep = document_find(root, "sweep");
     if (sweep != NULL) rename_keys(s, sweep, a);
     /* The points of `variant` are mappings of settings, at the top or in a sweep. */
@@ -225,6 +242,7 @@ void program_file_rename(const struct scenario *s, struct node *root, struct are
             rename_keys(s, n, a);
 }
 
+/* A key that is none may be a misspelt parameter: those are asked first. */
 bool program_file_unknown(const struct scenario *s, const char *key, const char *file, int line,
                           struct err *e)
 {
@@ -246,6 +264,7 @@ static const char *name_of(const struct setting *p) { return p->key + strlen("pr
 /* A key below `program` that no program declares: what there is. */
 static bool refuse_parameter(const struct scenario *s, const struct setting *p, struct err *e)
 {
+    /* keys below `program` that every program has */
     static const char *const own[] = {"file", "arguments", "cost", "factor"};
     const char *name[SCENARIO_MAX_PROGRAMS * 8];
     int n = 0, most = (int)(sizeof name / sizeof *name);
@@ -278,7 +297,9 @@ static bool check_setting(const struct scenario *s, struct setting *p, struct ar
     if (p->kind != SETTING_PARAMETER) return true;
     for (int i = 0; i < s->nprogram; i++) {
         const struct field *f = program_sheet_find(s->program[i].sheet, name_of(p));
+        /* another program declares it */
         if (f == NULL) continue;
+        /* the last one: any will do for tables, all agree on the value */
         p->field = f;
         if (program_parameter_text(f, p->text, a, why, (int)sizeof why) == NULL)
             return err_set_at(e, ERR_DATA, p->file, p->line, "%s: '%.80s': %s (%s of program %s)",
@@ -295,6 +316,7 @@ static bool check_list(const struct scenario *s, struct setting_list *list, stru
     return true;
 }
 
+/* Every value against the programs that declare its name: in the base, in all points, in --set. */
 bool program_file_check(struct scenario *s, struct arena *a, struct err *e)
 {
     if (!check_list(s, &s->base, a, e)) return false;
@@ -314,6 +336,7 @@ static const struct setting *last_of(const struct setting_list *const *list, int
     return found;
 }
 
+/* The sheet of the run's program; NULL: it has none of its own. */
 static const struct program_sheet *sheet_of(const struct scenario *s, const struct run_spec *run)
 {
     for (int i = 0; i < s->nprogram; i++)
@@ -334,6 +357,8 @@ static const char *value_at(const struct field *f, const struct setting_list *co
     return value;
 }
 
+/* The program of a point: its kind and hash are part of the run, its name takes the kernel's
+ * place. */
 bool program_file_choose(const struct scenario *s, struct run_spec *run,
                          const struct setting_list *const *list, int n, struct err *e)
 {
@@ -351,6 +376,7 @@ bool program_file_choose(const struct scenario *s, struct run_spec *run,
     p->kind = sheet->kind;
     p->image = sheet->image;
     text_copy(p->hash, sizeof p->hash, sheet->hash);
+    /* Names are compared as bytes: nothing of a longer one may stay behind. */
     memset(run->kernel.name, 0, sizeof run->kernel.name);
     text_copy(run->kernel.name, sizeof run->kernel.name, sheet->name);
     run->kernel.own = true;
@@ -364,13 +390,16 @@ bool program_file_choose(const struct scenario *s, struct run_spec *run,
     return true;
 }
 
+/* All parameters of the point's program, with defaults, as lines: they identify the run. */
 bool program_file_parameters(const struct scenario *s, struct run_spec *run,
                              const struct setting_list *const *list, int n, struct arena *a,
                              struct err *e)
 {
     const struct program_sheet *sheet = sheet_of(s, run);
+    /* n_over_p fixes n, whatever its parameter says. */
     const struct setting *ratio = last_of(list, n, "n_over_p");
     if (run->program.file[0] == '\0' || sheet->nparameter == 0) return true;
+    /* "name = value" lines, in the order of the declaration. */
     struct text lines = {0};
     for (int i = 0; i < sheet->nparameter; i++) {
         const struct field *f = &sheet->parameter[i];

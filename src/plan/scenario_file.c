@@ -1,8 +1,11 @@
-/* scenario_file.c - scenarios/NAME.yaml: which keys there are at the top, lists as axes, and --set
- * on top.
+/* scenario_file.c - scenarios/NAME.yaml: which keys there are at the top, lists as axes, and
+ * --set on top.
  *
- * A list where a single value belongs is an axis of the sweep; the first axis in the file changes
- * slowest. */
+ * A list where a single value belongs is an axis of the sweep; the first axis in the file
+ * changes slowest.
+ *
+ * Nothing is expanded here: a scenario is lists of settings, each with the line that it comes
+ * from, and room for messages about any of them. */
 #include "plan/scenario_file.h"
 
 #include <stdio.h>
@@ -12,6 +15,7 @@
 #include "plan/data_dir.h"
 #include "plan/program_file.h"
 
+/* Fields whose single value is a list: there a list is no sweep. */
 static bool is_list_field(const char *key)
 {
     const struct field_table *t;
@@ -21,6 +25,7 @@ static bool is_list_field(const char *key)
            f->kind == FIELD_PAIR_LIST || f->kind == FIELD_SEGMENTS;
 }
 
+/* A list of pairs begins with "[[" by itself. */
 static bool is_pair_list(const char *key)
 {
     const struct field_table *t;
@@ -51,6 +56,7 @@ static bool add_setting(struct setting_list *list, const char *key, const char *
 
 /* ---- axes */
 
+/* For setting_walk: a value into the list that `context` is. */
 static bool add_leaf(void *context, const char *key, const struct node *leaf, const char *file,
                      struct arena *a, struct err *e)
 {
@@ -90,9 +96,11 @@ static const char *axis_group(const char *name)
     return group ? name : NULL;
 }
 
+/* An axis from its list. It sets one key (values), or several below a group (mappings). */
 static bool add_axis(struct scenario *s, const char *name, const struct node *list,
                      struct arena *a, struct err *e)
 {
+    /* What it sweeps: a key, a group, or both ("kernel" is a short name and a group). */
     const char *group = axis_group(name), *full = setting_key(name),
                *key = setting_is_key(full) ? full : NULL;
     if (key == NULL && group == NULL) return program_file_unknown(s, name, s->path, list->line, e);
@@ -117,11 +125,12 @@ static bool add_axis(struct scenario *s, const char *name, const struct node *li
 /* ---- the file */
 
 struct top {
-    struct scenario *scenario;
-    struct arena *arena;
-    struct err *err;
+    struct scenario *scenario; /* being read */
+    struct arena *arena; /* of the scenario's texts */
+    struct err *err; /* set by the first key that makes no sense */
 };
 
+/* A key at the top with a value that makes no sense. Returns false. */
 static bool refuse(struct top *t, const struct node *n, const char *expected)
 {
     return err_set_at(t->err, ERR_DATA, t->scenario->path, n->line, "%s: '%.80s': %s", n->key,
@@ -141,6 +150,7 @@ static bool read_question(struct top *t, const struct node *n)
     return true;
 }
 
+/* Through the checks of a field, for the same messages as everywhere. */
 static bool read_repetitions(struct top *t, const struct node *n)
 {
     static const struct field count = {
@@ -152,6 +162,7 @@ static bool read_repetitions(struct top *t, const struct node *n)
     return refuse(t, n, why);
 }
 
+/* Figures must exist: a misspelt one would show up at the end of the study. */
 static bool read_figures(struct top *t, const struct node *n)
 {
     struct scenario *s = t->scenario;
@@ -166,6 +177,7 @@ static bool read_figures(struct top *t, const struct node *n)
     return true;
 }
 
+/* Two conditions are known by their text: a language of conditions would be more to learn. */
 static bool read_condition(struct top *t, const struct node *n, const char *text)
 {
     if (text != NULL && strcmp(text, "n >= ranks") == 0)
@@ -192,6 +204,7 @@ static bool read_sweep(struct top *t, const struct node *n)
 }
 
 typedef bool top_fn(struct top *t, const struct node *n);
+/* Keys at the top that are no settings. */
 static const struct top_key {
     const char *name;
     top_fn *read;
@@ -204,6 +217,7 @@ enum { NTOP = sizeof top_keys / sizeof *top_keys };
 /* A key that is no setting: the nearest of this file's own keys before any other. */
 static bool unknown_top(struct top *t, const struct node *n)
 {
+    /* Keys at the top in one list, so that the nearest of all is found. */
     const char *names[NTOP + 9] = {"machine", "model",  "kernel", "ranks",   "seed",
                                    "record",  "n",      "n_over_p", "program"};
     for (int i = 0; i < NTOP; i++) names[9 + i] = top_keys[i].name;
@@ -214,10 +228,12 @@ static bool unknown_top(struct top *t, const struct node *n)
                       "unknown key '%.120s'; did you mean '%s'?", n->key, near);
 }
 
+/* A setting at the top; a list where a single value belongs is an axis. */
 static bool read_setting(struct top *t, const struct node *n)
 {
     struct scenario *s = t->scenario;
     const char *key = setting_key(n->key);
+    /* setting_walk takes a mapping: one with this key alone. */
     struct node only = *n, parent = {.kind = NODE_MAP, .count = 1, .child = &only};
     if (!setting_is_key(key) && !setting_is_group(n->key)) return unknown_top(t, n);
     if (n->kind == NODE_LIST && !is_list_field(key))
@@ -272,6 +288,7 @@ static bool set_axis(struct scenario *s, const char *key, const char *list, int 
     err_clear(&why);
     char *line = TAKE(a, strlen(list) + 6, char);
     sprintf(line, list[0] == '[' ? "v: %s" : "v: [%s]", list);
+    /* The list is read as YAML, so that quotes and brackets mean the same as in a file. */
     struct node *root = document_parse_settings(line, strlen(line), "--set", a, &why);
     const char *path = s->path;
     if (root == NULL || root->child->kind != NODE_LIST)
@@ -280,6 +297,7 @@ static bool set_axis(struct scenario *s, const char *key, const char *list, int 
                           key);
     for (struct node *n = root->child->child; n != NULL; n = n->next) n->line = 0;
     root->child->line = 0;
+    /* Messages of add_axis name the command line. */
     s->path = "--set";
     bool fine = add_axis(s, key, root->child, a, e);
     if (fine) move_axis(s, at);
@@ -298,6 +316,7 @@ static int remove_axis(struct scenario *s, const char *full)
     return s->naxis;
 }
 
+/* What --set replaces; a key is at most once in a list. */
 static void remove_setting(struct setting_list *list, const char *full)
 {
     for (int i = 0; i < list->n; i++) {
@@ -307,6 +326,8 @@ static void remove_setting(struct setting_list *list, const char *full)
     }
 }
 
+/* One --set: it replaces an axis or a value of the file, in the axis's place, so that the order
+ * of runs stays. */
 static bool read_set(struct scenario *s, const char *set, struct arena *a, struct err *e)
 {
     const char *equals = strchr(set, '=');
@@ -319,6 +340,7 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     name[equals - set] = '\0';
     name = (char *)program_file_key(s, name, a);
     const char *full = setting_key(name);
+    /* No setting of a run, but of the scenario: it has a reader of its own. */
     if (strcmp(name, "repetitions") == 0) {
         struct scenario named = {.path = "--set", .repetitions = s->repetitions};
         struct top t = {.scenario = &named, .arena = a, .err = e};
@@ -346,6 +368,7 @@ static void drop_overruled(struct scenario *s, const char *set, const char *file
     remove_setting(&s->base, file);
 }
 
+/* The command line on top of the file; --machine is the last word. */
 static bool read_options(struct scenario *s, const struct plan_options *o, struct arena *a,
                          struct err *e)
 {
@@ -365,6 +388,8 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     return add_setting(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
 }
 
+/* Programs first, as they add keys; then the keys of the file in order, so that axes keep
+ * theirs; the command line last. */
 bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
                         const struct plan_options *o, struct arena *a, struct err *e)
 {
@@ -385,6 +410,7 @@ bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
     return check_axes(s, e) && read_options(s, o, a, e);
 }
 
+/* A file of settings, or a program, for which a scenario is made. */
 bool scenario_file_read(struct scenario *s, const char *name, const struct plan_options *o,
                         struct arena *a, struct err *e)
 {

@@ -1,5 +1,9 @@
 /* setting.c - keys of files and of --set find their field; values are tried before they are
- * kept. */
+ * kept.
+ *
+ * A setting is a key, a text and the place where it was written; the field tables (room spec)
+ * say what it means. The text is tried on a spare run at once, while file and line are at hand,
+ * and applied to each run later, when it cannot fail any more. */
 #include "plan/setting.h"
 
 #include <string.h>
@@ -10,6 +14,7 @@
 
 enum { KEY_LENGTH = 256, MAX_CANDIDATES = 256 };
 
+/* Short names of the most used keys. */
 const char *setting_key(const char *key)
 {
     static const char *const shorts[][2] = {{"n", "model.n"},
@@ -38,6 +43,7 @@ static bool is_parameter(const char *key)
     return key[n + 1] != '\0' && strchr(key + n + 1, '.') == NULL;
 }
 
+/* Whether the key sets something, as opposed to a group of settings. */
 bool setting_is_key(const char *key)
 {
     const struct field_table *t;
@@ -45,6 +51,7 @@ bool setting_is_key(const char *key)
     return strcmp(key, "n_over_p") == 0 || settable(key, &t) != NULL;
 }
 
+/* Only segments of message software are lists of mappings; a mapping anywhere else is a group. */
 bool setting_takes_maps(const char *key)
 {
     const struct field_table *t;
@@ -55,12 +62,14 @@ bool setting_takes_maps(const char *key)
     return f != NULL && f->kind == FIELD_SEGMENTS;
 }
 
+/* Whether `key` is the beginning, up to a dot, of some field's key: "machine.network". */
 bool setting_is_group(const char *key)
 {
     int ntable;
     size_t length = strlen(key);
     const struct field_table *const *tables = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) {
+        /* A table is a group itself; groups below it are parts of its keys. */
         size_t prefix = strlen(tables[i]->prefix);
         if (prefix > 0 && strcmp(tables[i]->prefix, key) == 0) return true;
         bool below =
@@ -74,8 +83,10 @@ bool setting_is_group(const char *key)
     return false;
 }
 
+/* n_over_p is no field: it becomes n when the number of ranks is known. */
 static bool make_number(struct setting *s, struct err *e)
 {
+    /* as a field, for its checks and messages */
     static const struct field count = {
         .key = "n_over_p", .kind = FIELD_INT, .min = 1, .max = 1 << 20};
     char why[256];
@@ -91,10 +102,13 @@ static const char *tolerance_of(const struct setting *s)
     const size_t n = sizeof tolerance_word - 1;
     if (strcmp(s->key, "machine.network.level") != 0 || strncmp(s->text, tolerance_word, n) != 0)
         return NULL;
+    /* A blank must follow the word, and something the blank. */
     const char *rest = s->text + n + strspn(s->text + n, " ");
     return rest > s->text + n && *rest ? rest : NULL;
 }
 
+/* What kind of setting it is, and whether its value makes sense. 'auto-tolerance 2 %' is two
+ * settings in one text: the second hangs on the first. */
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line,
                   struct arena *a, struct err *e)
 {
@@ -115,7 +129,9 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     }
     s->field = settable(s->key, &s->table);
     if (s->field == NULL && is_parameter(s->key)) return s->kind = SETTING_PARAMETER, true;
+    /* Not a field: a parameter that a program may declare, or nothing. */
     if (s->field == NULL) return setting_unknown("", key, file, line, e);
+    /* Only a trial: what it allocates goes again. */
     struct arena_mark mark = arena_mark(a);
     bool fine =
         field_set(s->field, (char *)&trial + s->table->offset, text, a, why, (int)sizeof why);
@@ -123,6 +139,7 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
 }
 
+/* Cannot fail: setting_make has tried the same text. */
 void setting_apply(const struct setting *s, struct run_spec *run, struct arena *a)
 {
     char why[512];
@@ -148,6 +165,7 @@ static int candidates(const char *group, char name[][KEY_LENGTH], const char **l
                      tables[i]->prefix[0] ? "." : "", tables[i]->field[j].key);
             if (length > 0 && (strncmp(full, group, length) != 0 || full[length] != '.')) continue;
             snprintf(name[n], KEY_LENGTH, "%s", full + length + (length > 0));
+            /* Inside a group only the next word; equal ones follow each other in the table. */
             if (length > 0) name[n][strcspn(name[n], ".")] = '\0';
             if (n == 0 || strcmp(name[n], name[n - 1]) != 0) n++;
         }
@@ -156,6 +174,7 @@ static int candidates(const char *group, char name[][KEY_LENGTH], const char **l
     return n;
 }
 
+/* The message of a key that is none: what was meant, or what there is. Returns false. */
 bool setting_unknown(const char *group, const char *key, const char *file, int line, struct err *e)
 {
     char name[MAX_CANDIDATES][KEY_LENGTH];
@@ -163,6 +182,7 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     char in[KEY_LENGTH + 8] = "";
     int n = candidates(group, name, list);
     const char *near = text_nearest(key, list, n);
+    /* The key exists, but not here: a machine's title, or what the plan fills in itself. */
     if (near != NULL && strcmp(near, key) == 0)
         return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s' here: it cannot be set",
                           key);
@@ -170,6 +190,7 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     if (near != NULL)
         return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?",
                           key, in, near);
+    /* No near name: list what the group has; of all settings that would be too long. */
     struct text all = {0};
     for (int i = 0; i < n && group[0] != '\0'; i++)
         text_add(&all, "%s %s", i > 0 ? "," : "; expected one of", list[i]);
@@ -180,11 +201,13 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     return false;
 }
 
+/* The text of a value, plain or in {value: ...}; NULL with *e set. */
 const char *setting_value(const char *key, const struct node *leaf, const char *file,
                           struct arena *a, struct err *e)
 {
     const struct node *value = leaf;
     if (leaf->kind == NODE_MAP) value = document_find(leaf, "value");
+    /* A list of mappings has a form of its own as text. */
     bool maps = value != NULL && value->child != NULL && value->child->kind == NODE_MAP;
     if (maps && value->kind == NODE_LIST && setting_takes_maps(key)) {
         const char *text = document_flow_maps(value, a);
@@ -201,6 +224,8 @@ const char *setting_value(const char *key, const struct node *leaf, const char *
     return NULL;
 }
 
+/* Keys may be nested or dotted, "kernel: {solver: cr}" or "kernel.solver: cr"; `prefix` is what
+ * stands above. Each value is handed to `leaf` with its whole key. */
 bool setting_walk(const struct node *mapping, const char *prefix, const char *file,
                   setting_leaf_fn *leaf, void *context, struct arena *a, struct err *e)
 {
@@ -209,6 +234,8 @@ bool setting_walk(const struct node *mapping, const char *prefix, const char *fi
         int length =
             snprintf(key, sizeof key, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", n->key);
         if (length >= (int)sizeof key) return setting_unknown(prefix, n->key, file, n->line, e);
+        /* Short names count at the top only, and not where a group of the same name is meant
+         * (kernel, machine). */
         bool may_be_short =
             prefix[0] == '\0' && (n->kind != NODE_MAP || !setting_is_group(key));
         const char *full = may_be_short ? setting_key(key) : key;
