@@ -146,6 +146,7 @@ static void unit_spelling(const char *text, char *name, size_t size)
         char letter[2] = {isspace((unsigned char)*text) ? ' ' : *text, '\0'};
         const char *next = letter;
         size_t eaten = 1;
+        /* One of the listed signs, or the letter itself. */
         for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
             if (strncmp(text, same[i][0], strlen(same[i][0])) != 0) continue;
             next = same[i][1];

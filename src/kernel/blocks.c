@@ -210,6 +210,8 @@ void blocks_resolve(struct blocks *b, struct work *w)
     /* The sum for the previous interface row, vectors only. */
     for (int i = 0; i < cs * m; i++) b->message[i] = 0;
     for (int i = b->lo; i < last; i++) {
+        /* As eliminate_inside, for vectors: y for the way back, v for the next row and the
+         * interface. */
         const int cn = b->size[i + 1];
         block_row_reduce(b->size[i], cs, cn, m, b->factor + (i - b->lo) * b->factor_stride,
                          blocks_row_r(b, i), red->y, red->out_a, red->out_b, w);
@@ -227,6 +229,7 @@ void blocks_resolve(struct blocks *b, struct work *w)
         dense_subtract(c * m, red->r, b->message, w);
         work_report(comm, w);
     }
+    /* The interface rows with the factors of the first solution, then back as before. */
     reduction_rerun(red, TAG_REDUCE, w);
     back(b, w);
 }

@@ -32,7 +32,7 @@ static int64_t weight(int c)
 }
 
 /* split: first body of every rank: equal numbers, larger blocks first, or nearly equal weights.
- * With more ranks than bodies all zero: such a run is refused before it uses the layout. */
+ * With more ranks than bodies there is nothing to split; dynamics_kernel.c refuses such a run. */
 static int *split(const unsigned char *size, int n, int nrank, bool balanced, struct arena *a)
 {
     int *first = TAKE(a, nrank + 1, int);

@@ -189,6 +189,7 @@ void closure_solve(struct closure *cl, real *const *acceleration, struct work *w
     for (int side = 0; side < 2 * s->nloop; side++) {
         const int c = s->loop[side / 2].c;
         const int64_t bytes = c * (cl->m + 1) * (int64_t)sizeof(real);
+        /* Rank 0 looks at every side, the others at their own. */
         if (s->owner[side] < 0 || (k != 0 && s->owner[side] != k)) continue;
         if (s->owner[side] == k) contribute(cl, side, acceleration[side], cl->contribution, w);
         work_report(comm, w);

@@ -117,6 +117,7 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
         joint = own_joint(k, v);
         below = own_compound(k, v);
         if (op->to != me) {
+            /* A compound's parts lie one behind the other: one copy for all matrices and betas. */
             memcpy(k->message, below.p11, (size_t)size * sizeof(real));
             memcpy(q, t->q + t->q_at[local_of(k, v)], (size_t)b->nq * sizeof(real));
             if (nactive) memcpy(active, joint.active, (size_t)nactive * sizeof(real));

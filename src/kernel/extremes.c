@@ -53,7 +53,7 @@ bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residu
     real worst = largest_size(0, 1, &residual);
     r->before = 1;
     largest_everywhere(c, tag, 1, &worst);
-    /* 1e6 eps: six digits lost are normal for a long chain; less is not worth a refinement. */
+    /* 1e6 eps: below it inverse dynamics would add more rounding errors than it removes. */
     return worst > (real)1e6 * REAL_EPSILON;
 }
 

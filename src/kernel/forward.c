@@ -38,6 +38,7 @@ void forward_carve(struct forward *f, struct carve *c, const struct kernel_job *
     f->gain = CARVE(c, f->direct || refine ? SPACE * m : 0, real);
     f->gain_left = CARVE(c, SPACE, real);
     f->z = CARVE(c, SPACE * m, real);
+    /* The paper's form multiplies with D and E after the solution: they are kept. */
     f->D = CARVE(c, f->direct ? 0 : SQUARE * m, real);
     f->E = CARVE(c, f->direct ? 0 : SQUARE * (m + 1), real);
     f->message = CARVE(c, 14, real);
@@ -268,6 +269,7 @@ static void paper_solution(struct forward *f, const real *active)
     struct chain *ch = &f->chain;
     const int inner = ch->job->spec->kernel.inner_refinements;
     real y[SPACE];
+    /* A FS = -B FT. */
     forward_begin_forces(f, active, false);
     for (int i = ch->lo; i < ch->hi; i++) {
         const int d = forward_subspace(f, i)->d;

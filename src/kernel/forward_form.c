@@ -133,6 +133,7 @@ void forward_operator_form(struct forward *f, bool terms)
             ch->work.flop += SCREW_ADD_FLOP;
             if (watch) scale = largest_size(scale, SPACE, moved);
         }
+        /* The direct form keeps the velocity terms in the constraint (physics 4.5). */
         if (bias) {
             screw_sub(z, chain_at(ch, ch->b, i));
             ch->work.flop += SCREW_ADD_FLOP;

@@ -193,6 +193,7 @@ void scan_motion(struct scan *s, int tag, real *v, struct work *w)
                 transform_motion(s->dense, s->in, T, v, w);
                 work_report(c, w);
             }
+            /* The value before this step's update, as in the first scan. */
             comm_send(c, k + d, tag + j, s->incoming ? v : s->in, SCREW_BYTES);
         }
         if (k < d) continue;

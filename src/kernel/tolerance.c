@@ -8,9 +8,8 @@ static double precision_scale(enum precision p)
     return p == PRECISION_FLOAT ? 0x1p-24 / 0x1p-53 : 1;
 }
 
-/* Errors of the accelerations grow like n^2 (physics 8.2, families with a stretched shape); 100
- * bodies are the unit, since below them rounding does not depend on n. 1e-2 is the end of any
- * trust. */
+/* Errors of the accelerations grow like n^2 in chains of a stretched shape (physics 8.2); up to 100
+ * bodies one tolerance is enough. 1e-2 is the end of any trust. */
 double references_tolerance(const struct kernel_spec *k, int n)
 {
     double size = fmax(1, n / 100.0), base = k->formulation == FORMULATION_PAPER ? 1e-8 : 1e-10;

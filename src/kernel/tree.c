@@ -184,6 +184,8 @@ static void jump(struct tree *t, int j, real *E, bool first, int tag)
         if (first && a >= 0) memcpy(t->base_pose, T, XFORM_NUMBERS * sizeof(real));
         return;
     }
+    /* The ancestor's composite continues ours, to its own ancestor or, for loops, down to the
+     * base. */
     const bool further = tree_plan_ancestor(plan, j, a) >= 0,
                composes = first && (further || t->poses);
     comm_recv(t->comm, a, tag + j, t->in, composes ? PAIR_BYTES : VECTOR_BYTES);

@@ -211,8 +211,8 @@ static void rake_round(struct tree_plan *p, struct forest *f, const int *alive, 
 }
 
 /* merge_round: compounds with their only child, from the base on, each in one pair at most: pairs
- * of a round are independent and run at the same time. Greedy from the top, every chain of k
- * compounds gives floor(k / 2) pairs. */
+ * of a round are independent and run at the same time. Greedy from the top, a chain of k compounds
+ * gives about k / 2 pairs. */
 static void merge_round(struct tree_plan *p, struct forest *f, const int *alive, int nalive,
                         int *used)
 {

@@ -46,6 +46,7 @@ INLINE void products(const int c, const int n, const int first, const int width,
                      const real *restrict Y, const real *restrict Z, const real *restrict y,
                      real *restrict out)
 {
+    /* S packed, v behind it: as they are sent (block_row.h). */
     real *restrict v = out + packed_size(n);
     for (int i = 0; i < n; i++) {
         real sum[BLOCK_MAX] = {0};
@@ -88,6 +89,7 @@ INLINE bool eliminate(const int c, const int nl, const int nu, const int m, cons
         for (int j = 0; j < nu; j++) Y[i * width + nl + j] = U[i * nu + j];
         for (int j = 0; j < m; j++) y[i * m + j] = r[i * m + j];
     }
+    /* Y = G^-1 [L U], y = G^-1 r; then Z and y scaled by D'^-1. */
     forward(c, width, factor, Y);
     forward(c, m, factor, y);
     for (int i = 0; i < c; i++) {
@@ -214,6 +216,7 @@ void block_row_resubstitute(int c, int nl, int nu, int m, const real *factor, re
             y[i * m + l] -= d * sum;
         }
     }
+    /* x = G^-T (..): rows from the bottom. */
     for (int i = c - 1; i >= 0; i--)
         for (int j = i + 1; j < c; j++)
             for (int l = 0; l < m; l++) y[i * m + l] -= factor[packed_index(j, i)] * y[j * m + l];

@@ -1,8 +1,8 @@
 /* eigen.c - cyclic Jacobi.
  *
- * For the few constraints of closed loops (physics 7.4): n is small, the eigenvectors are wanted, and
- * Jacobi finds small eigenvalues of a scaled definite matrix to high relative accuracy (Demmel and
- * Veselic 1992), which decides the rank. O(n^3) a sweep, converging quadratically. */
+ * For the few constraints of closed loops (physics 7.4): n is small, the eigenvectors are wanted,
+ * and Jacobi finds small eigenvalues of a scaled definite matrix to high relative accuracy (Demmel
+ * and Veselic 1992), which decides the rank. O(n^3) a sweep, converging quadratically. */
 #include "linalg/eigen.h"
 
 #include <stddef.h>

@@ -29,6 +29,7 @@ struct topology *topology_create(const struct topology_spec *s, struct arena *a,
                 t->type->name);
         return NULL;
     }
+    /* Sets sizes, ports, classes and the longest route, or says why it cannot. */
     if (!t->type->create(t, a, e)) return NULL;
     /* Families whose dims do not count nodes: nodes_per_router on each router. Processors are
      * numbered in an int, so that the product must fit. */

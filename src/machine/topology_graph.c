@@ -153,6 +153,7 @@ static bool graph_create(struct topology *t, struct arena *a, struct err *e)
     g->next = TAKE(a, n, int *);
     g->distance = TAKE(a, n, int);
     g->queue = TAKE(a, n, int);
+    /* Everything is indexed before the first search. */
     graph_index(g, all, nlink, t);
     t->state = g;
     t->nrouter = n;

@@ -56,6 +56,7 @@ static bool torus_shape(struct torus *g, struct topology *t, struct err *e)
                            t->type->name);
     }
     for (int d = 0; d < s->ndim; d++) {
+        /* Links of a line, then of the dimension; both directions are numbered apart. */
         g->per_line[d] = g->wraps && g->radix[d] > 1 ? g->radix[d] : g->radix[d] - 1;
         g->base[d] = (int)nlink;
         g->count[d] = (int)(nrouter / s->dims[d] * g->per_line[d]);

@@ -160,6 +160,7 @@ static sim_ps channels_give(struct flits *g, int r, sim_ps now)
 {
     struct resource *o = &g->fabric.resource[r];
     for (;;) {
+        /* Of all requests that are due and find a channel, the one whose turn it is. */
         struct leg **best = NULL;
         sim_ps again = SIM_NEVER;
         int channel = -1;
@@ -282,6 +283,7 @@ static sim_ps resource_send(struct flits *g, int r, sim_ps now)
         int i = (x->next + k) % n;
         struct leg *l = x->vc[i].owner;
         if (!l) continue;
+        /* Another worm also has the link in mind: look again after this flit. */
         waits = waits || go;
         if (go) continue;
         sim_ps at = flit_ready(g, l, now);

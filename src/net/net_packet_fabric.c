@@ -47,6 +47,7 @@ static sim_ps fastest_flit(const struct net *n)
 static bool cut_through_config(const struct net *n, struct err *e)
 {
     const struct network_spec *w = &n->machine->network;
+    /* A flit arrives after tau, its credit comes back a credit latency after it has left. */
     sim_ps flit = fastest_flit(n), trip = n->tau + (n->credit > flit ? n->credit : flit);
     int64_t least = (trip + flit - 1) / flit;
     if (w->buffer_flits < least)

@@ -50,8 +50,8 @@ bool sim_step(struct sim *s)
 {
     struct event e;
     if (!event_queue_pop(&s->queue, &e)) return false;
-    /* Durations are cut off at PS_TOO_LONG, so that a time past PS_LAST has not wrapped yet; its next
-     * sum might. The run ends before this event, and sim_beyond says why. */
+    /* Durations are cut off at PS_TOO_LONG, so that a time past PS_LAST has not wrapped yet; its
+     * next sum might. The run ends before this event, and sim_beyond says why. */
     if (__builtin_expect(e.time > PS_LAST, 0)) {
         s->beyond = true;
         return false;
