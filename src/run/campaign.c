@@ -19,14 +19,16 @@
 #include "measure/run_heartbeat.h"
 #include "run/run.h"
 
+/* Poll this often, so that the progress of long runs moves although no run ends. */
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
 /* The arrays of a result, in the order in which they travel. */
 struct parts {
     void **array[4];
-    size_t bytes[4];
+    size_t bytes[4]; /* 0: the array is not there */
 };
 
+/* Sizes follow from the counts in the result, so that both ends of the pipe know them. */
 static struct parts parts_of(struct run_result *r)
 {
     size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
@@ -37,6 +39,8 @@ static struct parts parts_of(struct run_result *r)
     };
 }
 
+/* A pipe takes and gives what it can: both go on until all is through. False: the other end is
+ * gone. */
 static bool write_all(int fd, const void *data, size_t n)
 {
     for (const char *p = data; n;) {
@@ -61,10 +65,12 @@ static bool read_all(int fd, void *data, size_t n)
     return true;
 }
 
+/* What a worker answers: this struct as bytes, then the arrays if the run was made. Pointers in
+ * it mean nothing to the reader, who replaces them. */
 struct answer {
     int index;
-    bool ok;
-    struct err error;
+    bool ok; /* the run was made, whatever came of it */
+    struct err error; /* why it could not be made, where not ok */
     struct run_result result;
 };
 
@@ -78,6 +84,7 @@ static bool send_answer(int fd, struct answer *a)
     return true;
 }
 
+/* The arrays get memory of the parent's arena. */
 static bool receive_answer(int fd, struct answer *a, struct arena *arena)
 {
     if (!read_all(fd, a, sizeof *a)) return false;
@@ -100,15 +107,17 @@ struct worker {
 struct campaign {
     const struct run_spec *spec;
     const struct run_order *order; /* (nspec), NULL: as usual */
+    /* next: not yet given to a worker; handed: all before it have been handed over; ndone of
+     * ntodo: progress. */
     int nspec, next, handed, nworker, ndone, ntodo;
-    const bool *skip;
+    const bool *skip; /* (nspec) not to be made; NULL: none */
     struct worker worker[MOST_WORKERS];
     struct answer **slot; /* (nspec) results waiting for their turn */
     struct arena **arena; /* (nspec) their memory */
-    run_done_fn *done;
+    run_done_fn *done; /* called in plan order, in this process */
     void *context;
     struct progress progress;
-    char detail[96];
+    char detail[96]; /* of the progress line */
     struct run_heartbeat *heartbeat; /* (MOST_WORKERS) of each worker, in memory shared with it; NULL: nobody looks */
 };
 
@@ -121,6 +130,7 @@ static void show_progress(void *context)
     double events = 0, rate = 0, now = host_seconds();
     int ended = 0, nrank = 0;
     if (!progress_due(&c->progress)) return;
+    /* Relaxed loads: a number that is a moment old is good enough for a progress line. */
     for (int i = 0; c->heartbeat && (i < c->nworker || i == 0); i++) {
         const struct run_heartbeat *p = &c->heartbeat[i];
         double mine = (double)atomic_load_explicit(&p->events, memory_order_relaxed);
@@ -147,6 +157,7 @@ static struct run_order with_heartbeat(const struct run_order *order, int index,
     return own;
 }
 
+/* A worker's life: orders in, answers out. It ends when the parent closes the pipe, or goes. */
 static _Noreturn void worker_main(const struct campaign *c, int at, int orders, int answers)
 {
     int index;
@@ -170,12 +181,15 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
 static bool start_worker(struct campaign *c, int at, struct err *e)
 {
     int orders[2], answers[2];
+    /* The record outlives the worker: a new worker in its place uses it again. */
     struct crash_record *crash = c->worker[at].crash ? c->worker[at].crash : crash_record_create();
     c->worker[at].crash = crash;
     if (crash) crash_record_clear(crash);
     if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
     pid_t pid = fork();
     if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
+    /* The child keeps its own two ends only: an end left open here would keep other workers from
+     * seeing theirs closed. */
     if (pid == 0) {
         close(orders[1]);
         close(answers[0]);
@@ -189,6 +203,7 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
     close(orders[0]);
     close(answers[1]);
     c->worker[at] = (struct worker){pid, orders[1], answers[0], -1, crash};
+    /* a new place; else the one of a worker that ended */
     if (at == c->nworker) c->nworker++;
     return true;
 }
@@ -213,6 +228,8 @@ static struct run_result refused_result(const struct err *why)
     return r;
 }
 
+/* A run that could not be made is handed over as failed: it has its place in plan order like any
+ * other. */
 static bool hand_refused(struct campaign *c, int index, const struct err *why)
 {
     struct run_result r = refused_result(why);
@@ -229,6 +246,7 @@ static bool hand_over(struct campaign *c)
             c->handed++;
             continue;
         }
+        /* NULL: still running; results behind it wait. */
         struct answer *a = c->slot[i];
         if (!a) return true;
         bool ok = a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
@@ -280,6 +298,8 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct answer *
     return start_worker(c, (int)(w - c->worker), e);
 }
 
+/* The answer of a worker that has one, or its death; then its next order, and what can be handed
+ * over. */
 static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
 {
     int index = w->busy;
@@ -298,6 +318,7 @@ static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
     return hand_over(c);
 }
 
+/* Until everything is handed over. poll skips workers without an order (fd -1). */
 static bool serve(struct campaign *c, struct err *e)
 {
     for (int i = 0; i < c->nworker; i++) give_order(c, &c->worker[i]);
@@ -316,6 +337,8 @@ static bool serve(struct campaign *c, struct err *e)
     return true;
 }
 
+/* After a failure workers are killed; otherwise they end by themselves when their pipes close.
+ * All are told before any is waited for. */
 static void stop_workers(struct campaign *c, bool at_once)
 {
     for (int i = 0; i < c->nworker; i++) {
@@ -330,6 +353,7 @@ static void stop_workers(struct campaign *c, bool at_once)
     }
 }
 
+/* All runs in this process, in order: one worker would only add copying. */
 static bool run_here(struct campaign *c)
 {
     struct run_cache *cache = run_cache_create();
@@ -356,11 +380,13 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
     c->slot = calloc((size_t)c->nspec, sizeof *c->slot);
     c->arena = calloc((size_t)c->nspec, sizeof *c->arena);
     CHECK(c->slot && c->arena);
+    /* A worker that dies must not end the parent when it is written to. */
     signal(SIGPIPE, SIG_IGN);
     bool ok = true;
     while (ok && c->nworker < workers) ok = start_worker(c, c->nworker, e);
     ok = ok && hand_over(c) && serve(c, e);
     stop_workers(c, !ok);
+    /* results that were never handed over */
     for (int i = 0; i < c->nspec; i++) arena_destroy(c->arena[i]);
     free(c->arena);
     free(c->slot);
@@ -385,8 +411,10 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
         c.ntodo++;
         if (loads_code(&spec[i])) apart = true;
     }
+    /* Everything is stored already: no process is started. */
     if (c.ntodo == 0) return true;
     c.progress = progress_make("runs", c.ntodo, quiet);
+    /* No more workers than runs; the limits are those of the arrays. */
     if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (workers > c.ntodo) workers = c.ntodo;
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;

@@ -6,6 +6,7 @@
 #include "kernel/programs.h"
 #include "sim/fiber.h"
 
+/* Names by way of this room, since app does not see kernels. */
 struct catalogue catalogue_of_kernels(void)
 {
     struct catalogue c = {0};

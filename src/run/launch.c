@@ -3,12 +3,14 @@
 
 #include "vp/world.h"
 
+/* What all ranks share, and each rank's own memory. */
 struct launch {
-    const struct rank_program *rank;
-    const void *job;
+    const struct rank_program *rank; /* its functions */
+    const void *job; /* what all ranks read, and none writes */
     char **workspace; /* (nrank) */
 };
 
+/* What each virtual processor executes: the program's run function, with its own workspace. */
 static void program(struct comm *c, void *context)
 {
     struct launch *l = context;
@@ -23,6 +25,7 @@ static char **make_workspaces(const struct program_run *r, struct arena *a)
     return w;
 }
 
+/* -1: the program does not promise any bound. */
 int64_t launch_largest_message(const struct program_run *r)
 {
     return r->rank->largest_message ? r->rank->largest_message(r->job) : -1;
@@ -33,6 +36,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m, const
                 struct err *e)
 {
     struct launch l = {r->rank, r->job, make_workspaces(r, scratch)};
+    /* The program as the room of virtual processors knows it: functions and promises, no names. */
     const struct world_load load = {.nrank = r->spec.nrank, .program = program, .context = &l,
                                     .nstage = r->rank->nstage, .stage_name = r->rank->stage_name,
                                     .largest_message = largest, .output = r->output, .noutput = PROGRAM_OUTPUTS,

@@ -1,13 +1,18 @@
-/* omission.c - see omission.h. */
+/* omission.c - see omission.h.
+ *
+ * What this room leaves out is exact (bound 0): no simulated time and no result depends on it.
+ * The bits of spec.keep undo one at a time, which `explain --measure` uses to show that. */
 #include "run/omission.h"
 
 #include "run/launch.h"
 
+/* Without a known largest message every send gets an event of its own. */
 int64_t omission_largest_message(const struct program_run *r)
 {
     return r->spec.keep & KEEP_START_EVENTS ? -1 : launch_largest_message(r);
 }
 
+/* Undone, level auto simulates every route as level packet does. */
 struct machine_spec omission_machine(const struct run_spec *spec)
 {
     struct machine_spec m = spec->machine;
@@ -15,6 +20,7 @@ struct machine_spec omission_machine(const struct run_spec *spec)
     return m;
 }
 
+/* Undone, everything is recorded whether or not it is asked for. */
 struct record_spec omission_record(const struct run_spec *spec)
 {
     struct record_spec r = spec->record;
@@ -36,8 +42,11 @@ static void list_starts(const struct program_run *r, struct left_out *l)
         leave_out_add(l, KEEP_START_EVENTS, 0, "events that start messages", "eager sends are in order");
 }
 
+/* What the program leaves out, then what this room does. Each is listed once, with the bit that
+ * undoes it. */
 int omission_listing(const struct program_run *r, struct omission *out)
 {
+    /* bound 0: exact */
     const struct run_spec *spec = &r->spec;
     struct left_out l = {spec->keep, out, 0};
     if (r->type->leave_out) r->type->leave_out(r, &l);

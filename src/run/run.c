@@ -22,8 +22,8 @@ enum { MOST_CACHES = 8 };
 /* One cache for all programs that make theirs with the same function. */
 struct run_cache {
     int n;
-    const struct program_type *type[MOST_CACHES];
-    struct program_cache *cache[MOST_CACHES];
+    const struct program_type *type[MOST_CACHES]; /* (n) the first of those that share */
+    struct program_cache *cache[MOST_CACHES]; /* (n) owned */
 };
 
 struct run_cache *run_cache_create(void)
@@ -39,6 +39,7 @@ void run_cache_destroy(struct run_cache *c)
     free(c);
 }
 
+/* Programs that share scenes have the same function to make their cache: they share one. */
 static struct program_cache *cache_of(struct run_cache *c, const struct program_type *type)
 {
     if (!type->cache_create) return NULL;
@@ -80,6 +81,7 @@ void run_close(struct program_run *r)
 static bool attempt(struct program_run *r, struct arena *scratch, struct arena *a, struct run_result *out,
                     struct err *e)
 {
+    /* What --keep-all and `explain --measure` undo acts here: the spec itself stays as it is. */
     const struct machine_spec machine = omission_machine(&r->spec);
     const struct record_spec record = omission_record(&r->spec);
     memset(out, 0, sizeof *out);
@@ -106,6 +108,7 @@ static bool attempts(struct program_run *r, struct arena *scratch, struct arena 
     return ok;
 }
 
+/* The node's prices as a function, for room program, which does not know machines. */
 static int64_t price_ps(const void *context, const struct work *w) { return node_cost_ps(context, w); }
 
 /* A serial code that takes longer than simulated time is: there is no speedup to tell, so the run has failed. */
@@ -115,6 +118,7 @@ static void refuse_long_baselines(struct run_result *out)
     for (int i = 0; i < out->nbaseline && !b; i++)
         if (out->baseline[i].time_ps > PS_LAST) b = &out->baseline[i];
     if (!b) return;
+    /* Nothing of the run is kept that would need the missing time. */
     snprintf(out->text, sizeof out->text,
              "simulated time ends at %.3g s: the parallel run took %.6g s, and '%s' on one processor takes longer",
              PS_LAST * 1e-12, (double)out->makespan_ps * 1e-12, b->name);
@@ -136,6 +140,8 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     if (node.serial_rate > 0) node.flop_rate = node.serial_rate;
     const struct node_cost cost = node_cost_make(&node);
     const struct work_price price = {price_ps, &cost};
+    /* Against the reference first, then the serial codes, whose times are the numerators of
+     * every speedup. */
     if (r->type->check) r->type->check(r, scratch, out);
     if (r->type->baselines) r->type->baselines(r, &price, scratch, out);
     refuse_long_baselines(out);
@@ -155,10 +161,13 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
 {
     memset(out, 0, sizeof *out);
     const double begin = host_seconds();
+    /* The plan keeps points that cannot run, with their reason. */
     if (spec->refused) return err_set(e, (enum err_kind)spec->refused_kind, "%s", spec->refused);
     if (spec->machine.network.level == LEVEL_AUTO_TOLERANCE)
         return err_set(e, ERR_CONFIG,
                        "level 'auto-tolerance' is for 'mimdsim run' and 'mimdsim paper'; choose a level");
+    /* Three arenas: `a` for the result, `own` for the program's scene, `scratch` for ranks and
+     * checks. */
     struct arena *own = arena_create(), *scratch = arena_create();
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
@@ -188,6 +197,7 @@ bool run_one(const struct run_spec *spec, struct arena *a, struct run_result *ou
 
 /* --- before it runs ----------------------------------------------------------------------------------------------- */
 
+/* What the stack of a rank is assumed to touch: two pages. */
 enum { STACK_PAGES_BYTES = 2 * 4096 };
 
 bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct err *e)
@@ -198,6 +208,7 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
     struct program_run r;
     const bool ok = run_open(spec, NULL, cache, own, &r, e);
     if (ok) {
+        /* Counts by the program, then host time and memory from measured costs per count. */
         struct program_estimate k = {0};
         r.type->estimate(&r, &k);
         out->nbody = r.nbody;
