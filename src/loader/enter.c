@@ -69,6 +69,7 @@ struct loader_outcome loader_call(struct loader_instance *i, void *function,
     struct loader_frame frame = {.outer = i->frame};
     const bool outermost = i->outermost == NULL;
     if (outermost) {
+        i->text = function;
         i->outermost = &frame;
         i->stack = (uintptr_t)__builtin_frame_address(0);
     }

@@ -95,3 +95,10 @@ void *loader_symbol(const struct loader_instance *i, const char *name)
     const struct found s = symbols_defined(i->t, name);
     return s.file ? i->base + s.file->place + s.symbol->st_value : NULL;
 }
+
+void loader_prefetch(const struct loader_instance *i)
+{
+    __builtin_prefetch(i->text);
+    __builtin_prefetch(i->data);
+    __builtin_prefetch(&i->host);
+}

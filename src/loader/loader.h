@@ -72,8 +72,7 @@ void *loader_template_at(const struct loader_template *t, uint64_t address, size
 uint64_t loader_template_address(const struct loader_template *t, const void *at);
 
 /* loader_reserve: fix the text and reserve addresses for `nrank` ranks; `hooks` are borrowed until
- * loader_close. Returns false with ERR_CONFIG (the system's limits do not hold as many copies, with
- * what to change), ERR_INTERNAL. */
+ * loader_close. Returns false with ERR_INTERNAL. */
 bool loader_reserve(struct loader_template *t, int nrank, const struct loader_hooks *hooks,
                     struct err *e);
 
@@ -111,6 +110,10 @@ int loader_main(struct loader_instance *i, int argc, char **argv);
  * Starts addr2line: not for signal handlers (crash.h). */
 bool loader_address_text(const struct loader_template *t, const void *address, char *buffer,
                          int size);
+
+/* loader_prefetch: ask for the memory that the rank will touch first when it goes on; no effect but
+ * on speed. */
+void loader_prefetch(const struct loader_instance *i);
 
 /* loader_bytes: memory that the copies take besides what they share, per rank as reserved [B]. */
 int64_t loader_bytes(const struct loader_template *t);

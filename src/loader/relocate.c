@@ -175,6 +175,6 @@ bool relocate_all(struct loader_template *t, struct err *e)
                               m.text);
     }
     /* Copies go through memory in one direction. */
-    qsort(t->relative, t->nrelative, sizeof *t->relative, by_place);
+    if (t->nrelative) qsort(t->relative, t->nrelative, sizeof *t->relative, by_place);
     return true;
 }

@@ -3,8 +3,9 @@
  *
  * Linux limits the number of mappings of a process (vm.max_map_count). Few ranks get their text
  * mapped each on its own, with the protection of an ordinary program. More get one mapping of
- * everything, and where even that is too much all bytes are copied into one mapping. Results do not
- * depend on which it is. */
+ * everything, private: pages that a rank writes become its own, the others stay shared. Still more
+ * share a mapping: the memory file then holds as many copies of the program as ranks are mapped
+ * together, and every group of ranks maps that same file. Results do not depend on it. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,48 +31,53 @@ static int64_t most_maps(void)
     return limit;
 }
 
-int64_t copies_wanted_maps(const struct loader_template *t, int nrank, enum loader_sharing sharing,
-                           bool relro)
+/* The best way of sharing within a quarter of the system's limit: the stacks' guard pages take a
+ * half. Each file of the program takes a mapping for text, one for data, and one between them for
+ * constants that are write-protected. */
+static void choose_sharing(struct loader_template *t, int nrank)
 {
-    switch (sharing) {
-    case SHARE_TEXT:
-        return (int64_t)nrank * t->nfile * (relro ? 3 : 2); /* text, (constants,) data */
-    case SHARE_ALL:
-        return nrank;
-    case SHARE_NOTHING:
-        break;
-    }
-    return 1;
+    const int64_t most = most_maps() / 4, apart = (int64_t)nrank * t->nfile;
+    t->relro = 3 * apart <= most;
+    t->group = 0;
+    if (2 * apart > most) t->group = (int)(nrank / most) + 1;
 }
 
-/* The best way of sharing within a quarter of the system's limit: the stacks' guard pages take a
- * half. */
-static bool choose_sharing(struct loader_template *t, int nrank, struct err *e)
+/* The memory file gets `group` copies of the program, a rank's length apart. */
+static bool repeat_bytes(const struct loader_template *t, struct err *e)
 {
-    const int64_t most = most_maps() / 4;
-    const uint64_t memory = (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
-    t->relro = copies_wanted_maps(t, nrank, SHARE_TEXT, true) <= most;
-    t->sharing = SHARE_TEXT;
-    if (copies_wanted_maps(t, nrank, SHARE_TEXT, t->relro) <= most) return true;
-    t->sharing = SHARE_ALL;
-    if (copies_wanted_maps(t, nrank, SHARE_ALL, false) <= most) return true;
-    t->sharing = SHARE_NOTHING;
-    if (t->size <= memory / 4 * 3 / (uint64_t)nrank) return true;
-    return err_set_at(e, ERR_CONFIG, t->file[0].elf.path, 0,
-                      "%d copies of %llu KiB do not fit into the memory of this host; with `sysctl "
-                      "vm.max_map_count=%lld` "
-                      "they share their text",
-                      nrank, (unsigned long long)t->size >> 10, (long long)nrank * 4 + 1024);
+    if (t->group < 2) return true;
+    bool ok = ftruncate(t->memory, (off_t)(t->stride * (uint64_t)t->group)) == 0;
+    for (int k = 1; ok && k < t->group; k++)
+        ok = pwrite(t->memory, t->bytes, t->size, (off_t)(t->stride * (uint64_t)k)) ==
+             (ssize_t)t->size;
+    if (!ok)
+        return err_set(e, ERR_INTERNAL, "no memory for the text of a program: %s", strerror(errno));
+    return true;
+}
+
+/* All groups of ranks, each the same file; the last one may have fewer. */
+static bool map_groups(const struct loader_template *t, struct err *e)
+{
+    for (int rank = 0; t->group && rank < t->nrank; rank += t->group) {
+        const int n = t->nrank - rank < t->group ? t->nrank - rank : t->group;
+        if (mmap(t->memory_of_ranks + t->stride * (uint64_t)rank, t->stride * (uint64_t)n,
+                 PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_FIXED | MAP_NORESERVE,
+                 t->memory, 0) == MAP_FAILED)
+            return err_set_at(e, ERR_INTERNAL, t->file[0].elf.path, 0,
+                              "no mapping for rank %d of %d: %s", rank, t->nrank, strerror(errno));
+    }
+    return true;
 }
 
 bool loader_reserve(struct loader_template *t, int nrank, const struct loader_hooks *hooks,
                     struct err *e)
 {
     CHECK(!t->memory_of_ranks && nrank > 0);
-    if (!choose_sharing(t, nrank, e)) return false;
+    choose_sharing(t, nrank);
+    if (!repeat_bytes(t, e)) return false;
     const uint64_t bytes = size_product(t->stride, (size_t)nrank);
-    const int protection = PROT_READ | PROT_WRITE | (t->sharing == SHARE_NOTHING ? PROT_EXEC : 0);
-    char *p = mmap(NULL, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    char *p = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE,
+                   -1, 0);
     if (p == MAP_FAILED)
         return err_set_at(e, ERR_INTERNAL, t->file[0].elf.path, 0,
                           "no address space for %d ranks with %llu KiB of data each: %s", nrank,
@@ -81,21 +87,17 @@ bool loader_reserve(struct loader_template *t, int nrank, const struct loader_ho
     t->nrank = nrank;
     t->hooks = hooks;
     runtime_fill(&t->runtime);
-    t->instance = calloc((size_t)nrank, sizeof *t->instance);
+    t->instance = aligned_alloc(64, size_product(sizeof *t->instance, (size_t)nrank));
     if (!t->instance) check_memory((size_t)nrank * sizeof *t->instance);
-    return true;
+    memset(t->instance, 0, (size_t)nrank * sizeof *t->instance);
+    return map_groups(t, e);
 }
 
-/* The bytes of the template where the rank finds them; false: the system refuses a mapping. */
+/* The bytes of the template where the rank finds them, when it has mappings of its own; false: the
+ * system refuses a mapping. */
 static bool take_bytes(const struct loader_template *t, char *base)
 {
-    if (t->sharing == SHARE_NOTHING) {
-        memcpy(base, t->bytes, t->size);
-        return true;
-    }
-    if (t->sharing == SHARE_ALL)
-        return mmap(base, t->stride, PROT_READ | PROT_WRITE | PROT_EXEC,
-                    MAP_PRIVATE | MAP_FIXED | MAP_NORESERVE, t->memory, 0) != MAP_FAILED;
+    if (t->group) return true; /* mapped with its neighbours */
     for (int i = 0; i < t->nfile; i++) {
         const struct loader_file *f = &t->file[i];
         if (f->data > f->begin &&
@@ -144,13 +146,13 @@ struct loader_instance *loader_instantiate(struct loader_template *t, int rank, 
                                     .directory = t->directory};
     struct mimdsim_host **pointer = loader_symbol(i, "mimdsim_host");
     *pointer = &i->host;
+    i->data = (const char *)pointer;
     return i;
 }
 
 int64_t loader_bytes(const struct loader_template *t)
 {
     int64_t bytes = (int64_t)t->stride;
-    if (t->sharing == SHARE_TEXT)
-        for (int i = 0; i < t->nfile; i++) bytes -= (int64_t)(t->file[i].data - t->file[i].begin);
+    for (int i = 0; i < t->nfile; i++) bytes -= (int64_t)(t->file[i].data - t->file[i].begin);
     return bytes;
 }

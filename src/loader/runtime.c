@@ -1,5 +1,6 @@
 /* runtime.c - what programs ask of the simulator whatever they are: time, output, ends
  * (mimdsim/host.h). */
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -15,22 +16,31 @@
 
 static struct loader_instance *instance_of(struct mimdsim_host *host) { return host->instance; }
 
+/* The hooks without a look at the instance: a rank that is switched in finds its host cold in
+ * memory, and one line of it is enough. The runtime's functions stand in the template. */
+static const struct loader_hooks *hooks_of(const struct mimdsim_host *host)
+{
+    const size_t before = offsetof(struct loader_template, runtime);
+    return ((const struct loader_template *)(const void *)((const char *)host->runtime - before))
+        ->hooks;
+}
+
 static int64_t now_ps(struct mimdsim_host *host)
 {
-    struct loader_instance *i = instance_of(host);
-    return i->t->hooks->now_ps ? i->t->hooks->now_ps(i->context) : 0;
+    const struct loader_hooks *h = hooks_of(host);
+    return h->now_ps ? h->now_ps(host->context) : 0;
 }
 
 static void elapse_ps(struct mimdsim_host *host, int64_t ps)
 {
-    struct loader_instance *i = instance_of(host);
-    if (i->t->hooks->elapse_ps) i->t->hooks->elapse_ps(i->context, ps);
+    const struct loader_hooks *h = hooks_of(host);
+    if (h->elapse_ps) h->elapse_ps(host->context, ps);
 }
 
 static void sleep_ps(struct mimdsim_host *host, int64_t ps)
 {
-    struct loader_instance *i = instance_of(host);
-    if (i->t->hooks->sleep_ps) i->t->hooks->sleep_ps(i->context, ps);
+    const struct loader_hooks *h = hooks_of(host);
+    if (h->sleep_ps) h->sleep_ps(host->context, ps);
 }
 
 /* Without a hook a rank writes to the process's own streams; what cannot be written is lost as it

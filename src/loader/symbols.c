@@ -49,6 +49,7 @@ static bool is_offered(const struct elf_file *f, size_t i)
     }
     if (binding != STB_GLOBAL && binding != STB_WEAK && binding != STB_GNU_UNIQUE) return false;
     if (visibility != STV_DEFAULT && visibility != STV_PROTECTED) return false;
+    if (s->st_value >> 46) return false; /* damaged: no program is as large */
     return !f->version || !(f->version[i] & 0x8000);
 }
 

@@ -26,9 +26,6 @@ struct loader_file {
     uint64_t tls;        /* place of its thread-locals */
 };
 
-/* How copies share: text mapped for each; one mapping of everything for each; all bytes copied. */
-enum loader_sharing { SHARE_TEXT, SHARE_ALL, SHARE_NOTHING };
-
 /* A place that becomes known only by running code of the rank: result of the function at
  * `resolver`. */
 struct indirect {
@@ -51,8 +48,8 @@ struct loader_template {
     size_t nindirect, indirect_capacity;
     struct symbol_slot *symbol; /* (nslot) of all files, by hash */
     size_t nslot;
-    void *libc, *libm; /* handles of dlopen */
-    enum loader_sharing sharing;
+    void *libc, *libm;     /* handles of dlopen */
+    int group;             /* ranks with one mapping together; 0: text mapped for each */
     bool relro;            /* constants are write-protected after relocation */
     char *memory_of_ranks; /* (nrank * stride) reserved; NULL before loader_reserve */
     int nrank;
@@ -62,9 +59,9 @@ struct loader_template {
     char directory[1024];           /* the working directory */
 };
 
-/* One rank. */
+/* One rank. Cache lines of its own; the first is all that most calls touch. */
 struct loader_instance {
-    struct mimdsim_host host;
+    _Alignas(64) struct mimdsim_host host;
     struct loader_template *t;
     char *base; /* its piece of memory, NULL: not instantiated */
     void *context;
@@ -72,6 +69,7 @@ struct loader_instance {
     uintptr_t stack; /* where the stack of its fiber was at the outermost call */
     bool exited;
     int status;
+    const char *text, *data; /* program text and data that were used last; for prefetching */
 };
 
 /* What loader_enter keeps: the host's stack pointer while the program runs, and the program's count
@@ -123,10 +121,6 @@ bool symbols_find(const struct loader_template *t, const struct loader_file *f, 
 
 /* --- relocate.c: relocate_all: do all relocations in the template, fill relative and indirect. */
 bool relocate_all(struct loader_template *t, struct err *e);
-
-/* --- reserve.c: copies_wanted_maps: mappings that `nrank` copies need as shared by `sharing`. */
-int64_t copies_wanted_maps(const struct loader_template *t, int nrank, enum loader_sharing sharing,
-                           bool relro);
 
 /* loader_find_address: rank (may be NULL), file and address in that file of an address in some
  * rank's copy; false: none. Fit for signal handlers (loader.c). */

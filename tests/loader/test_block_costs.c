@@ -1,4 +1,5 @@
-/* test_block_costs.c - costs of blocks in a made-up image: values, rounding, and what does not fit. */
+/* test_block_costs.c - costs of blocks in a made-up image: values, rounding, and what does not fit.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +10,8 @@
 
 #include "loader/block_costs.h"
 
-/* An image of 256 bytes that begins at address 0x1000: two blocks and a rate, and their table behind them. */
+/* An image of 256 bytes that begins at address 0x1000: two blocks and a rate, and their table
+ * behind them. */
 enum { IMAGE_ADDRESS = 0x1000, TABLE_AT = 64, BLOCKS = 3 };
 
 struct image {
@@ -32,7 +34,8 @@ static struct block_table image_make(struct image *i, const struct block_counts 
     for (int k = 0; k < BLOCKS; k++) {
         const enum block_kind kind = k == 2 ? BLOCK_RATE : BLOCK_ADD;
         const int word = code_at[k] + (kind == BLOCK_ADD ? BLOCK_ADD_OPCODE_BYTES : 0);
-        if (kind == BLOCK_ADD) memcpy(&i->byte[code_at[k]], BLOCK_ADD_OPCODE, BLOCK_ADD_OPCODE_BYTES);
+        if (kind == BLOCK_ADD)
+            memcpy(&i->byte[code_at[k]], BLOCK_ADD_OPCODE, BLOCK_ADD_OPCODE_BYTES);
         entry[k] = (struct block_entry){word - TABLE_AT - k * (int)sizeof *entry, counts[k], kind};
     }
     return (struct block_table){entry, BLOCKS, IMAGE_ADDRESS + TABLE_AT};

@@ -1,0 +1,16 @@
+/* parts.c - a program to look at: a patched constant, a section of its own, calls with arguments and exits. */
+#include <mimdsim/host.h>
+#include <stdlib.h>
+
+const int constant = 17;
+__attribute__((section("own_section"), used)) const unsigned char own[5] = {1, 2, 3, 4, 5};
+static int calls;
+
+int get_constant(void) { return *(volatile const int *)&constant; }
+long sum(long a, long b, long c, long d)
+{
+    calls++;
+    return 1000 * calls + a + b + c + d;
+}
+void leave(int status) { exit(status); }
+int main(void) { return mimdsim_host->rank; }
