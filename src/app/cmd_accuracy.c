@@ -54,6 +54,7 @@ static bool keep_and_draw(const struct common *c, const struct accuracy_report *
     return ok;
 }
 
+/* A scenario for which no ladder can be climbed is an error; rungs that fail are rows. */
 int cmd_accuracy(int argc, char **argv)
 {
     struct common c;

@@ -131,6 +131,7 @@ static bool check_database(const char *file, const struct audit_options *o, stru
 {
     /* The report has room for AUDIT_KEPT findings: too large for the stack. */
     struct audit_report *r = TAKE(a, 1, struct audit_report);
+    /* An older database is audited in an upgraded copy: the rules are those of this version. */
     struct store *s = store_open(file, STORE_READ, e);
     if (s && store_remark(s) && !o->quiet) fprintf(stderr, "mimdsim: %s\n", store_remark(s));
     bool ok = s && audit_database(s, o, a, r, e);

@@ -30,6 +30,8 @@ static bool tell_explanations(const struct common *c, const struct claim_rules *
            explanations_print(s, c->json, stdout, e);
 }
 
+/* Verdicts go to the database and to standard output. Status 0 whatever they are: a claim that
+ * fails is a result. */
 int cmd_claims(int argc, char **argv)
 {
     struct common c;
@@ -45,7 +47,7 @@ int cmd_claims(int argc, char **argv)
     struct claim_rules rules = {0};
     struct store *s = arguments_look(&c, "paper.db", &e);
     bool ok = s != NULL && claims_read(&rules, plan_data_dir(), &e);
-    rules.what_if = what_if;
+    rules.what_if = what_if; /* runs on changed machines count, too */
     store_close(s);
     s = ok ? arguments_store(&c, path, &e) : NULL;
     ok = ok && s && claims_decide(&rules, s, &e) &&

@@ -135,6 +135,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
         add(&t, &r[i]);
         open_level = open_level || p->run[i].machine.network.level == LEVEL_AUTO_TOLERANCE;
     }
+    /* Explaining settles nothing: that takes a database and seconds of measuring. */
     if (open_level)
         printf("\nlevel auto-tolerance is settled when it runs, by the network ladder in the "
                "database, or by one that is measured then\n");
@@ -179,6 +180,7 @@ static void read_class(const struct column *c, const void *row, struct column_va
 
 #define KIND(member) .offset = offsetof(struct kind, member)
 
+/* One kind of omission in JSON. */
 static const struct column kind_column[] = {
     {"bound", COLUMN_REAL, KIND(omission.bound), .absent = ABSENT_ZERO, .doc = "largest relative change of a result"},
     {"class", COLUMN_STRING, .value = read_class, .doc = "exact or bounded"},
@@ -207,6 +209,7 @@ static void read_level(const struct column *c, const void *row, struct column_va
 #define ESTIMATE(member)                                                                           \
     .part = PART(struct planned, estimate), .offset = offsetof(struct run_estimate, member)
 
+/* One run of the plan in JSON, with its estimate. */
 static const struct column planned_column[] = {
     {"bodies", COLUMN_INT64, ESTIMATE(nbody), .doc = "of the model"},
     {"bytes", COLUMN_REAL, ESTIMATE(bytes), .doc = "sent, estimated"},
@@ -273,6 +276,7 @@ static bool estimate_all(const struct plan *p, struct run_estimate *r, struct er
     return true;
 }
 
+/* Nothing is stored without --measure. */
 int cmd_explain(int argc, char **argv)
 {
     struct common c;

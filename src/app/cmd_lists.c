@@ -56,6 +56,7 @@ static void print_keys(const struct common *c)
     const char **meaning = TAKE(a, most, const char *);
     for (int i = 0; i < ntable; i++) {
         for (int j = 0; j < table[i]->nfield; j++, n++) {
+            /* The whole key: a table's prefix and the field's name. */
             struct text t = {0};
             text_add(&t, "%s%s%s", table[i]->prefix, table[i]->prefix[0] != '\0' ? "." : "",
                      table[i]->field[j].key);
@@ -91,6 +92,7 @@ int cmd_scenarios(int argc, char **argv)
 }
 
 /* Only the built-in ones: programs of your own are files. */
+/* Programs that are built in; own programs are files. */
 int cmd_kernels(int argc, char **argv)
 {
     struct common c;

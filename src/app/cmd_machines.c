@@ -239,6 +239,7 @@ static int show(const struct common *c, struct arena *a)
     return 0;
 }
 
+/* No argument: the list; one: that machine; two with --compare. */
 int cmd_machines(int argc, char **argv)
 {
     struct common c;

@@ -34,6 +34,7 @@ static void tell(const struct common *c, struct json *j, const char *from, const
     printf("\n");
 }
 
+/* Databases in the order of the command line; each in a transaction of its own. */
 int cmd_merge(int argc, char **argv)
 {
     struct common c;
@@ -51,6 +52,7 @@ int cmd_merge(int argc, char **argv)
         ok = store_merge(s, c.arg[i], &m, &e);
         if (ok) tell(&c, &j, c.arg[i], &m);
     }
+    /* Those that were merged before a failure are in the document. */
     if (s != NULL && c.json) json_end(&j), json_finish(&j);
     store_close(s);
     return ok ? 0 : common_fail(&c, &e);

@@ -105,8 +105,8 @@ int cmd_netcheck(int argc, char **argv)
     }
     struct err e;
     err_clear(&e);
-    enum network_level level = LEVEL_LOGGP;
-    bool wanted[LEVELS] = {false};
+    enum network_level level = LEVEL_LOGGP; /* of --level */
+    bool wanted[LEVELS] = {false}; /* only that one, where it is given */
     bool ok = within_of(limit, &within, &e) && (!c.level || level_of(c.level, &level, &e));
     /* NULL, not an array of true: without --level every level is wanted. */
     if (ok && c.level) wanted[level] = true;

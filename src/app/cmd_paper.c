@@ -221,6 +221,7 @@ static bool answer(struct paper *p, double began)
     return write_documents(p, began) && claims_print(p->store, p->common->json, stdout, p->e);
 }
 
+/* Status 1 when runs failed: everything else of the study was done all the same. */
 int cmd_paper(int argc, char **argv)
 {
     struct common c;

@@ -33,6 +33,7 @@ static void row(struct json *j, const struct run_spec *r, int shards)
     char id[sizeof r->config_hash + 16];
     snprintf(id, sizeof id, "%s-%d", r->config_hash, r->rep);
     json_object(j);
+    /* the name that --point takes */
     json_key(j, "id"), json_text(j, id);
     json_key(j, "config_hash"), json_text(j, r->config_hash);
     json_key(j, "kernel"), json_text(j, r->kernel.name);
@@ -78,7 +79,7 @@ int cmd_plan(int argc, char **argv)
     struct common c;
     struct err e;
     struct plan p = {0};
-    int shards;
+    int shards; /* 0: not asked for */
     err_clear(&e);
     const char *text = take_value(&argc, argv, "--shards");
     common_parse(&c, argc, argv, TAKES_PLAN, "SCENARIO", doc, 1, 1);

@@ -52,6 +52,7 @@ static bool print_pictures(const struct common *c, struct store *s, struct err *
 /* A figure, what it shows, and the command that fills a database for it. */
 static void print_figure(const struct common *c, struct json *j, const char *name)
 {
+    /* Both come from the comment at the top of the figure's query. */
     struct text title = {0}, needs = {0};
     report_figure_about(plan_data_dir(), name, &title, &needs);
     if (c->json) {

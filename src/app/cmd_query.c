@@ -39,6 +39,7 @@ static bool upgrade(const struct common *c, struct err *e)
     return ok;
 }
 
+/* One statement, one answer: rows on standard output, and nothing else there. */
 int cmd_query(int argc, char **argv)
 {
     struct common c;

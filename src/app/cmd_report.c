@@ -127,7 +127,7 @@ static bool write_document(struct report *r, const char *path, const char *stem)
 /* Which files were written: paths, or a list of them. */
 static void tell(const struct common *c, const char *stem)
 {
-    static const char *const ending[] = {"md", "html"};
+    static const char *const ending[] = {"md", "html"}; /* as page.c writes them */
     const char *slash = strrchr(c->directory, '/');
     struct json j = json_make(stdout);
     if (c->json) json_array(&j);
@@ -144,6 +144,7 @@ static void tell(const struct common *c, const char *stem)
     json_finish(&j);
 }
 
+/* The database is only read; figures and report are files beside each other. */
 int cmd_report(int argc, char **argv)
 {
     struct common c;

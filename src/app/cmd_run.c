@@ -1,4 +1,7 @@
-/* cmd_run.c - mimdsim run: answer a scenario. */
+/* cmd_run.c - mimdsim run: answer a scenario.
+ *
+ * The database is the answer; the table is what a person reads of it. Runs that are stored are
+ * not made again, so a scenario can be extended, interrupted and begun again at no cost. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,17 +33,20 @@ static const char doc[] =
     "error bound of leaving it "
     "out); the predicted time includes it.";
 
+/* What run_campaign's results are counted and stored by. */
 struct keep {
     struct store *store;
     struct err *error;
     const struct run_spec *run; /* (the plan's number) the runs that are made, and how each is executed */
-    struct run_order *order;
-    int invalid, deadlock, redundant, refined;
+    struct run_order *order; /* in step with `run` */
+    int invalid, deadlock, redundant, refined; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
     bool quiet;
 };
 
+/* One result, in plan order: counted, told where it is no plain success, stored. Remarks that
+ * hold for many runs are made once. */
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct keep *k = context;
@@ -70,6 +76,7 @@ struct part {
     const char *point; /* "HASH-REP" or the beginning of one; NULL: all */
 };
 
+/* Whether `point` is the beginning of the run's name, HASH-REP; NULL: any run. */
 static bool is_point(const char *point, const struct run_spec *r)
 {
     char id[sizeof r->config_hash + 16];
@@ -113,6 +120,7 @@ static bool settle_plan(const struct common *c, const struct plan *p, struct pla
     return levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e);
 }
 
+/* Settings that act in no run. */
 static void say_unused(const struct plan *p)
 {
     for (int i = 0; i < p->nunused; i++) fprintf(stderr, "mimdsim: unused: %s\n", p->unused[i]);
@@ -124,6 +132,7 @@ static void say_failed(const struct keep *k)
             k->failed, k->done);
 }
 
+/* Settle levels, leave out what is stored, run the rest, print all. */
 static bool answer(const struct common *c, const struct plan *p, const struct part *part, bool keep_all,
                    struct keep *k, struct err *e)
 {
@@ -140,6 +149,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct pa
     return ok && run_table_print(k->store, &settled, c->json, stdout, e);
 }
 
+/* Worst first: an error of the command, a deadlock, a plan of which nothing could run, wrong or
+ * failed runs. */
 int cmd_run(int argc, char **argv)
 {
     struct common c;
@@ -160,6 +171,7 @@ int cmd_run(int argc, char **argv)
     bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);
     if (!ok) return common_fail(&c, &e);
+    /* The worst that happened is the exit status. */
     if (k.deadlock) return err_exit_status(ERR_DEADLOCK);
     if (k.failed > 0) say_failed(&k);
     if (k.refusals > 0 && none) return err_exit_status((enum err_kind)k.refusal);

@@ -176,6 +176,7 @@ static bool show(struct shown *t)
     return write_trace(t, format, format == TRACE_TEXT ? NULL : ending[format]);
 }
 
+/* A database or a scenario: the content of the file decides. */
 int cmd_timeline(int argc, char **argv)
 {
     struct common c;

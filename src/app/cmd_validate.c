@@ -373,6 +373,7 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
 {
     static const char *const file[] = {"makespan", "makespan_sensitivity", "collectives",
                                        "hand_cases", "latency_load"};
+    /* as many as common_parse lets through */
     const char *path[64];
     int n = 0;
     for (int i = 1; i < c->narg; i++) path[n++] = c->arg[i];
@@ -384,6 +385,7 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
         text_free(&t);
         path[n++] = kept;
     }
+    /* All files are run before the first table is printed. */
     struct netcheck *checks = TAKE(a, n, struct netcheck);
     for (int i = 0; i < n; i++)
         if (!netcheck_run(&checks[i], path[i], NULL, NULL, c->quiet, a, e)) return false;
@@ -407,7 +409,7 @@ int cmd_validate(int argc, char **argv)
     common_parse(&c, argc, argv, TAKES_STORE, "MACHINE|all\nnetwork [FILE...]", doc, 1, 64);
     struct err e;
     err_clear(&e);
-    int failed = 0;
+    int failed = 0; /* rows above their limit without a cause */
     struct arena *a = arena_create();
     bool network = strcmp(c.arg[0], "network") == 0;
     bool ok =

@@ -27,7 +27,7 @@ static const char doc[] =
     "each number. Nothing in the file changes them.";
 
 enum {
-    KEY_TOLERANCE = 0x200,
+    KEY_TOLERANCE = 0x200, /* beyond letters, and apart from the keys of common.c */
     KEY_SERIAL,
     KEY_ALL_RANKS,
     KEY_BRIEF,
@@ -92,6 +92,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
     switch (key) {
+    /* numbers and words are checked by functions of their own, which end the process */
     case KEY_TOLERANCE:
         set_tolerance(r, arg, state);
         break;

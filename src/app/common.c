@@ -84,6 +84,7 @@ static error_t set_jobs(struct common *c, const char *arg, struct argp_state *st
     return 0;
 }
 
+/* Called by argp for each option and argument, and at the end. */
 static error_t parse_option(int key, char *arg, struct argp_state *state)
 {
     struct parse *p = state->input;
@@ -136,9 +137,10 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
             return refuse(state, "unexpected argument '%s'", arg);
         c->arg[c->narg++] = arg;
         break;
-    case ARGP_KEY_END:
+    case ARGP_KEY_END: /* all words have been seen */
         return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
     default:
+        /* argp's own keys: initialisation, errors */
         return ARGP_ERR_UNKNOWN;
     }
     return 0;
@@ -226,7 +228,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     /* What a verb does not take keeps its default: the default database and folder are the same
      * for all. */
     memset(c, 0, sizeof *c);
-    c->verb = argv[0];
+    c->verb = argv[0]; /* "mimdsim run", for messages */
     c->database = "mimdsim.db";
     c->directory = "figures";
     c->kernel = catalogue_of_kernels();
@@ -263,6 +265,7 @@ struct plan_options common_plan(const struct common *c)
 /* The end of a failed verb: document, text, exit status. */
 int common_fail(const struct common *c, const struct err *e)
 {
+    /* The document on standard output, the text on standard error: both readers are served. */
     if (c->json) print_error(e);
     err_print(e);
     return err_exit_status(e->kind);

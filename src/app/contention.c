@@ -30,6 +30,7 @@ int contention_measure(const char *machine, struct contention row[CONTENTION_ROW
     static const enum probe_quantity pattern[CONTENTION_ROWS] = {PROBE_EXCHANGE, PROBE_HALVES};
     struct machine_spec m;
     struct plan_options none = {0};
+    /* As shipped: --set does not reach here. */
     if (!plan_machine(&m, machine, &none, a, NULL, NULL, e)) return -1;
     int64_t processors = machine_spec_processors(&m);
     int ranks = processors < CONTENTION_RANKS ? (int)processors / 2 * 2 : CONTENTION_RANKS, n = 0;
@@ -44,6 +45,7 @@ int contention_measure(const char *machine, struct contention row[CONTENTION_ROW
 /* Levels side by side, in the order of their cost. */
 void contention_print(const struct contention *row, int n)
 {
+    /* nothing to compare: too few ranks */
     if (n == 0) return;
     printf("\nMB/s that each of %d ranks sends, by level of the network\n%-10s", row[0].ranks, "");
     for (int i = 0; i < LEVELS; i++) printf(" %10s", validation_level_name(i));

@@ -311,6 +311,7 @@ static bool keep_cell(struct explain_bench *b, const struct explain_search *s,
                                        "x_label",  "y_label",  "x",       "y",         "x_low",
                                        "x_high",   "y_low",    "y_high",  "x_nominal", "y_nominal",
                                        "x_answer", "y_answer", "variant", "point_id"};
+    /* the nominal point */
     static const double nothing[EXPLAIN_MOST_AXES] = {0};
     const struct explain_space *space = &s->goal.subject->space;
     const struct explain_point *p = explain_known(s->goal.subject, s->goal.operators, u);

@@ -284,6 +284,7 @@ static bool inquire(struct inquest *q)
     double began = host_seconds();
     if (!find_failing(q)) return false;
     identity(q, hex);
+    /* Answered before, from the same runs and rules. */
     if (!q->bench.common->force && is_stored(q, hex)) return true;
     if (!store_note_build(q->bench.store, q->bench.e) || !clear_answers(q) || !search_claims(q))
         return false;

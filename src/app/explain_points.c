@@ -74,6 +74,7 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     if (nword == 0) return err_set(b->e, ERR_DATA,
                                    "a line -- explore: or -- study: of a claim names no scenario");
     struct plan plan = {0};
+    /* the words behind the scenario are its --set */
     struct plan_options o = {.nset = nword - 1, .set = word + 1};
     if (!plan_read(&plan, word[0], &o, b->e)) return false;
     struct run_spec *all = TAKE(b->arena, *n + plan.nrun, struct run_spec);
@@ -176,7 +177,7 @@ static int rule_of(const struct explain_subject *s, const char *id)
     return -1;
 }
 
-enum { MOST_VERDICTS = 512 };
+enum { MOST_VERDICTS = 512 }; /* of one point: claims times variants */
 
 /* To the verdicts of the point. */
 static void add_verdict(struct explain_point *p, const struct explain_verdict *v, struct arena *a)
@@ -373,6 +374,7 @@ static bool finish_point(struct batch *t)
 {
     const struct explain_request *q = &t->request[t->of[t->kept - 1]];
     struct explain_bench *b = t->bench;
+    /* The point lives as long as the search; its runs end here. */
     struct explain_point *p = t->point = TAKE(b->arena, 1, struct explain_point);
     p->key = key_of(q->subject, q->operators, q->u);
     p->operators = q->operators;
@@ -398,7 +400,7 @@ static bool finish_point(struct batch *t)
 static bool keep_result(void *context, const struct run_spec *spec, const struct run_result *r)
 {
     struct batch *t = context;
-    int mine = t->of[t->kept];
+    int mine = t->of[t->kept]; /* the point that this run belongs to */
     if (!t->passing) {
         t->passing = store_open("points", STORE_MEMORY, t->bench->e);
         if (!t->passing) return false;

@@ -72,8 +72,8 @@ static struct explain_grade grade_with(const struct explain_goal *g, const struc
         explain_variant(g->subject->rule[i], baseline, g->operators, &name);
         const struct explain_verdict *v = verdict_of(p, i, name.s);
         text_free(&name);
-        w.holds = w.holds && v && v->told && v->holds;
-        double margin = v ? v->margin : NAN;
+        w.holds = w.holds && v && v->told && v->holds; /* all claims, and all of them told */
+        double margin = v ? v->margin : NAN; /* a variant that the claim does not have */
         if (!(margin >= w.margin) && !isnan(w.margin)) w.margin = margin, w.value = v ? v->value : NAN, w.rule = i;
     }
     return w;
@@ -105,11 +105,11 @@ struct explain_grade explain_grade_point(const struct explain_goal *g, const str
 {
     double distance = explain_space_distance(&g->subject->space, u);
     struct explain_grade best = grade_with(g, p, NULL);
-    distance += own_operators(g) ? 0 : log(2);
+    distance += own_operators(g) ? 0 : log(2); /* another style counts as a factor of 2 */
     best.distance = distance;
     for (int i = 0; !g->own && any_baseline(g->subject) && i < EXPLAIN_BASELINES; i++) {
         struct explain_grade other = grade_with(g, p, baselines[i]);
-        other.distance = distance + log(2);
+        other.distance = distance + log(2); /* and so does another baseline */
         if (explain_better(&other, &best)) best = other;
     }
     return best;
@@ -168,8 +168,8 @@ static bool look(struct round *r, double *u, struct explain_grade *grade)
 /* What the end of axis i alone does to the margin. */
 static void weigh(struct explain_search *s, int i, double end, const struct explain_grade *grade)
 {
-    double change = grade->margin - s->nominal;
-    if (isnan(change)) return;
+    double change = grade->margin - s->nominal; /* against the nominal point */
+    if (isnan(change)) return; /* a margin that is not told weighs nothing */
     s->swing[i] = fmax(s->swing[i], fabs(change));
     if (change > s->gain[i]) s->gain[i] = change, s->end[i] = end;
 }
@@ -177,7 +177,7 @@ static void weigh(struct explain_search *s, int i, double end, const struct expl
 /* From where the claim fails on axis i alone to where it holds: where it begins to, by bisection. */
 static bool scan_boundary(struct round *r, int i, double fails, double holds)
 {
-    enum { HALVINGS = 7 };
+    enum { HALVINGS = 7 }; /* to 1/128 of the axis */
     struct explain_search *s = r->search;
     struct explain_grade grade;
     for (int k = 0; k < HALVINGS; k++) {
@@ -194,7 +194,7 @@ static bool scan_boundary(struct round *r, int i, double fails, double holds)
  * bring it nearer, then the best margin is sought between its neighbours. */
 static bool scan_between(struct round *r, int i, double end, double margin_at_end)
 {
-    enum { DOUBLINGS = 5, HALVES = 6 };
+    enum { DOUBLINGS = 5, HALVES = 6 }; /* from 1/32 of the axis */
     double best = r->search->nominal, low = 0, at = 0, high = ldexp(end, -DOUBLINGS);
     bool rises = true;
     for (int k = 0; k < DOUBLINGS + HALVES; k++) {
@@ -240,7 +240,7 @@ static bool scan(struct round *r)
     const struct explain_space *space = &s->goal.subject->space;
     double u[EXPLAIN_MOST_AXES] = {0};
     struct explain_grade grade = {.margin = NAN};
-    bool all = look(r, u, &grade);
+    bool all = look(r, u, &grade); /* the nominal point */
     s->nominal = grade.margin;
     for (int i = 0; i < space->n; i++) s->gain[i] = s->swing[i] = s->end[i] = 0;
     for (int i = 0; i < space->n; i++) {
@@ -263,7 +263,7 @@ static double cost_of(const struct explain_grade *g)
 /* The axes that simplexes move along: of those that change anything the most effective, the dear ones when asked. */
 static int effective_axes(const struct explain_search *s, bool dear, int axis[EXPLAIN_MOST_AXES])
 {
-    enum { MOST = 6 };
+    enum { MOST = 6 }; /* a simplex in more dimensions needs too many points */
     const struct explain_space *space = &s->goal.subject->space;
     int n = 0;
     while (n < MOST) {
@@ -293,7 +293,7 @@ static double simplex_cost(const gsl_vector *x, void *context)
     struct round *r = d->round;
     double u[EXPLAIN_MOST_AXES];
     struct explain_grade grade;
-    if (r->waiting && !r->collecting) return 0;
+    if (r->waiting && !r->collecting) return 0; /* any value: the simplex is thrown away */
     memcpy(u, d->u, sizeof u);
     for (int i = 0; i < d->n; i++) u[d->axis[i]] = gsl_vector_get(x, (size_t)i);
     if (look(r, u, &grade)) return cost_of(&grade);
@@ -325,14 +325,14 @@ static bool iterate(struct descent *d, gsl_multimin_fminimizer *m, gsl_vector *x
 {
     struct round *r = d->round;
     gsl_multimin_function f = {.f = simplex_cost, .n = (size_t)d->n, .params = d};
-    r->waiting = false;
+    r->waiting = false; /* nothing is missing yet */
     /* The corners of the first simplex do not depend on each other: all are asked for at once. */
     r->collecting = true;
     bool begun = gsl_multimin_fminimizer_set(m, &f, x, step) == GSL_SUCCESS;
     r->collecting = false;
     for (int k = 0; begun && !r->waiting && k < r->search->goal.steps; k++) {
         if (gsl_multimin_fminimizer_iterate(m) != GSL_SUCCESS) break;
-        if (gsl_multimin_fminimizer_size(m) < 0.02) break;
+        if (gsl_multimin_fminimizer_size(m) < 0.02) break; /* corners within 2 % of each other */
     }
     return !r->waiting;
 }
@@ -341,7 +341,7 @@ static bool simplex(struct round *r, int start)
 {
     struct descent d = begin_at(r, start);
     const struct explain_space *space = &r->search->goal.subject->space;
-    if (d.n == 0) return true;
+    if (d.n == 0) return true; /* no axis changes anything */
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, (size_t)d.n);
     gsl_vector *x = gsl_vector_alloc((size_t)d.n), *step = gsl_vector_alloc((size_t)d.n);
@@ -364,7 +364,7 @@ static bool simplex(struct round *r, int start)
 /* The dear axes beside the best of the cheap ones. */
 static bool beside(struct round *r)
 {
-    enum { VALUES = 3 };
+    enum { VALUES = 3 }; /* thirds of the axis */
     const struct explain_space *space = &r->search->goal.subject->space;
     struct explain_grade grade;
     bool all = true;
@@ -386,10 +386,10 @@ static bool hand_over(struct round *r, double *u, int i, bool *changed)
     struct explain_grade grade;
     const struct explain_space *space = &r->search->goal.subject->space;
     double v[EXPLAIN_MOST_AXES], all = explain_space_distance(space, u), others = all - fabs(u[i]);
-    if (others <= 0) return true;
+    if (others <= 0) return true; /* there is no other change */
     for (int k = 0; k < EXPLAIN_MOST_AXES; k++) v[k] = k == i ? 0 : u[k] * all / others;
     if (!look(r, v, &grade)) return false;
-    if (!grade.holds) return true;
+    if (!grade.holds) return true; /* the change is needed */
     memcpy(u, v, sizeof v);
     *changed = true;
     return true;
@@ -398,11 +398,11 @@ static bool hand_over(struct round *r, double *u, int i, bool *changed)
 /* The least |u[i]| that still holds, by bisection; *u is left there. */
 static bool take_back(struct round *r, double *u, int i, bool *changed)
 {
-    enum { HALVINGS = 6 };
+    enum { HALVINGS = 6 }; /* to 1/64 of the change */
     struct explain_grade grade;
     double fails = 0, holds = u[i], was = u[i], v[EXPLAIN_MOST_AXES];
     memcpy(v, u, sizeof v);
-    v[i] = 0;
+    v[i] = 0; /* without it at all */
     if (!look(r, v, &grade)) return false;
     if (grade.holds) holds = 0;
     else if (!hand_over(r, u, i, changed)) return false;
@@ -422,7 +422,7 @@ static bool take_back(struct round *r, double *u, int i, bool *changed)
 /* From the smallest change to the largest: those that are not needed go. */
 static bool polish(struct round *r, const double *from)
 {
-    enum { ROUNDS = 3 };
+    enum { ROUNDS = 3 }; /* taking back one change may make another one needless */
     struct explain_search *s = r->search;
     int n = s->goal.subject->space.n;
     double u[EXPLAIN_MOST_AXES];
@@ -458,10 +458,10 @@ static bool advance(struct round *r)
     bool all = true;
     for (int i = 0; i < s->goal.starts; i++)
         if (!s->ended[i]) all = (s->ended[i] = simplex(r, i)) && all;
-    if (!all) return false;
+    if (!all) return false; /* a simplex waits for its points */
     stage(s, 0);
     if (s->goal.starts && !s->beside && !(s->beside = beside(r))) return false;
-    if (s->begun < 2 && !s->best.grade.holds) return true;
+    if (s->begun < 2 && !s->best.grade.holds) return true; /* nothing to take back */
     if (s->polished == 0) s->polished += polish(r, stage(s, 1));
     if (s->polished == 0 || s->goal.starts == 0) return s->polished;
     /* Around what is left there may be a shorter way. */
@@ -473,13 +473,13 @@ static bool advance(struct round *r)
 
 bool explain_search_all(struct explain_bench *b, struct explain_search *search, int n)
 {
-    enum { MOST_REQUESTS = 512 };
+    enum { MOST_REQUESTS = 512 }; /* points of one batch */
     struct explain_request *request = calloc(MOST_REQUESTS, sizeof *request);
     CHECK(request);
     struct progress progress = progress_make("points", 4000, b->common->quiet);
     bool ok = true;
     for (int nrequest = 1; ok && nrequest > 0;) {
-        nrequest = 0;
+        nrequest = 0; /* each round begins anew: what is known answers at once */
         for (int i = 0; i < n; i++) {
             struct round r = {.search = &search[i], .request = request, .nrequest = &nrequest, .most = MOST_REQUESTS};
             if (!search[i].done) search[i].done = advance(&r);

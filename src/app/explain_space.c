@@ -1,5 +1,8 @@
 /* explain_space.c - the table of what may change, and points of that space as settings, runs and
- * words; see explain_space.h. */
+ * words; see explain_space.h.
+ *
+ * Axes are logarithmic: a rate ten times as large is as far from nominal as one ten times as
+ * small. A parameter that the paper states is no axis. */
 #include "app/explain_space.h"
 
 #include <math.h>
@@ -15,6 +18,7 @@
  * 90 %, computations longer by up to 100 % at random. The paper says nothing of any of them; its
  * machines were shared with others. */
 static const struct explain_axis table[] = {
+    /* computing: the paper gives no rate of its code */
     {.words = "the code runs at", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"node.flop_rate"}, .most = 2.3026},
     {.words = "the serial code runs at",
      .map = EXPLAIN_RELATIVE,
@@ -27,6 +31,7 @@ static const struct explain_axis table[] = {
      .nkey = 1,
      .key = {"node.copy.bandwidth"},
      .most = 2.3026},
+    /* message software: the keys of one library move together */
     {.words = "sending a message takes",
      .after = ", receiving one and the gap in proportion",
      .map = EXPLAIN_FACTOR,
@@ -39,12 +44,14 @@ static const struct explain_axis table[] = {
      .nkey = 2,
      .key = {"software.send.copy", "software.recv.copy"},
      .most = 2.3026},
+    /* the network itself */
     {.words = "entry to and exit from the network take",
      .map = EXPLAIN_FACTOR,
      .nkey = 1,
      .key = {"network.end_latency"},
      .most = 2.3026},
     {.words = "links carry", .map = EXPLAIN_FACTOR, .nkey = 1, .key = {"network.link.bandwidth"}, .most = 2.3026},
+    /* other users of the machine */
     {.words = "others' traffic takes",
      .after = " of every link",
      .map = EXPLAIN_SHARE,

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "study/level_choice.h"
 
-enum { MOST_LEVELS = 8, HEX = 65 };
+enum { MOST_LEVELS = 8, HEX = 65 }; /* rungs of a ladder; SHA-256 as text */
 
 /* All rungs of a report, numbered in their order. */
 bool ladder_store(struct store *s, const struct accuracy_report *r, struct err *e)
@@ -103,6 +103,7 @@ static bool settle(struct store *s, const struct run_spec *run, int nrun, int wh
         x->stored = false;
         if (!measure(s, run, nrun, x->family, e) || !find_known(s, x->family, &k, e)) return false;
     }
+    /* Cheap by construction: the choice is the same on every computer. */
     int best = level_cheapest(k.level, k.n, tolerance);
     if (best < 0)
         return err_set(e, ERR_CONFIG,

@@ -13,7 +13,7 @@
 #include "run/catalogue.h"
 #include "store/build.h"
 
-enum { MOST_VERBS = 64 };
+enum { MOST_VERBS = 64 }; /* candidates for the nearest name */
 
 /* Verbs and their titles come from the list of verbs. */
 static void print_help(FILE *out)

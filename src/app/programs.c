@@ -1,5 +1,8 @@
-/* programs.c - see programs.h. The compiler is this program's own verb, run as a process: what it
- * says is what people see when they call it themselves. */
+/* programs.c - see programs.h. The compiler is this program's own verb, run as a process: what
+ * it says is what people see when they call it themselves.
+ *
+ * Compiling takes longer than most runs, so images are kept. The key is everything that the
+ * image depends on: content, compiler, flags, and this build. */
 #include "app/programs.h"
 
 #include <errno.h>
@@ -23,8 +26,10 @@ static const struct {
                  {".C", "c++"},   {".f", "f90"},   {".F", "f90"},   {".f90", "f90"},
                  {".F90", "f90"}, {".f95", "f90"}, {".f03", "f90"}, {".f08", "f90"}};
 
+/* -g: crashes are told by function and line. */
 static const char flags[][8] = {"-O2", "-g"};
 
+/* NULL: no source, so an image or a schedule. */
 static const char *verb_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -40,6 +45,7 @@ static int run_process(const char *const *argv, struct text *out)
 {
     int ends[2] = {-1, -1}, status = -1;
     if (out != NULL && pipe(ends) != 0) return -1;
+    /* What is in our buffers would be written twice. */
     fflush(NULL);
     const pid_t pid = fork();
     if (pid == 0) {
@@ -48,6 +54,7 @@ static int run_process(const char *const *argv, struct text *out)
         _exit(127);
     }
     if (out != NULL) close(ends[1]);
+    /* Read to the end before waiting: a full pipe would stop the child. */
     for (char part[4096]; out != NULL && pid > 0;) {
         const ssize_t n = read(ends[0], part, sizeof part);
         if (n < 0 && errno == EINTR) continue;
@@ -60,6 +67,7 @@ static int run_process(const char *const *argv, struct text *out)
     return pid > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/* The running program, whatever it was called as. */
 static const char *own_path(struct arena *a)
 {
     char path[4096];
@@ -89,6 +97,7 @@ static bool add_files(struct text *all, const char *rule, struct err *e)
     const char *s = strchr(rule, ':');
     char name[4096];
     for (s = s != NULL ? s + 1 : ""; *s != '\0';) {
+        /* One name up to a blank; a backslash before a line's end continues the rule. */
         size_t n = 0;
         while (*s == ' ' || *s == '\n' || (*s == '\\' && s[1] == '\n')) s++;
         while (*s != '\0' && *s != ' ' && *s != '\n' && n < sizeof name - 1) {
@@ -111,10 +120,12 @@ static bool identify(const char *self, const char *verb, const char *path, char 
     const char *const version[] = {self, verb, "-dumpfullversion", NULL};
     const char *const headers[] = {self, verb, "-MM", path, NULL};
     text_add(&all, "mimdsim %s ", verb);
+    /* The compiler's version first: another one may count other operations. */
     bool fine = run_process(version, &said) == 0;
     text_add(&all, "%s", said.s != NULL ? said.s : "");
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) text_add(&all, "%s\n", flags[i]);
     said.length = 0;
+    /* gfortran has no -MM: then the file alone identifies the program. */
     if (fine) fine = strcmp(verb, "f90") == 0 || run_process(headers, &said) == 0;
     if (!fine) err_set_at(e, ERR_DATA, path, 0, "the program does not compile");
     if (fine) fine = said.length > 0 ? add_files(&all, said.s, e) : add_file(&all, path, e);
@@ -207,6 +218,7 @@ static const char *image_of(const char *path, const char *verb, char hash[65], s
     return is_ours(image) || compile(self, verb, path, image, e) ? image : NULL;
 }
 
+/* Opened by the plan for every program that a scenario names; an image is taken as it is. */
 const struct program_sheet *programs_sheet(void *context, const char *path, struct arena *a,
                                            struct err *e)
 {

@@ -12,8 +12,9 @@
 #include "base/check.h"
 #include "base/text.h"
 
-enum { COLUMNS = 14, MOST_SETS = 8 };
+enum { COLUMNS = 14, MOST_SETS = 8 }; /* cells of a row; settings of a machine */
 
+/* Columns of the file; docs/machines.md says what they mean. */
 static const char header[] =
     "id,machine,quantity,at,value,low,high,unit,class,calibrated,add,set,source,cause";
 

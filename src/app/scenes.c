@@ -90,6 +90,7 @@ static bool savings(const struct common *c, const struct plan *p, struct store *
 bool scenes_measure(const struct common *c, struct store *s, struct err *e)
 {
     if (!grades(c, NULL, s, "suite", e)) return false;
+    /* The suite shows its own progress, the scenes this one. */
     struct progress progress = progress_make("error against run time", SCENES, c->quiet);
     bool ok = true;
     for (int i = 0; ok && i < SCENES; i++) {
