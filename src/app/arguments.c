@@ -13,7 +13,7 @@
 static int database_behind(const struct common *c)
 {
     struct arena *a = arena_create();
-    int at = 0;
+    int at = 0; /* 0: none, as the first argument is not looked at */
     for (int i = 1; i < c->narg && at == 0; i++)
         if (file_kind_of(c->arg[i], a) == FILE_DATABASE) at = i;
     arena_destroy(a);

@@ -14,6 +14,7 @@
 #include "study/model_file.h"
 #include "study/probe.h"
 
+/* The text before \v stands above the options in --help, the rest below them (argp). */
 static const char doc[] =
     "Validate scenario, machine, robot (.urdf) and reference vector (.json) files without running "
     "anything; and databases, whose rows must not contradict each other.\n\n"

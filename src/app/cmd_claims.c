@@ -40,7 +40,7 @@ int cmd_claims(int argc, char **argv)
     /* Only --explain runs anything, so only then are jobs and folders options. */
     common_parse(&c, argc, argv, explain ? TAKES_STORE | TAKES_JOBS | TAKES_DIR : 0, "[DB]", doc, 0,
                  1);
-    const char *path = c.narg ? c.arg[0] : "paper.db";
+    const char *path = c.narg ? c.arg[0] : "paper.db"; /* the study's own, by default */
     struct err e;
     err_clear(&e);
     /* Opened for reading first: a misspelt name must not make an empty database. */

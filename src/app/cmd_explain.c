@@ -29,7 +29,7 @@ static const char doc[] =
     "omission "
     "saves. Results go to table `omission` of the database and to omissions-SCENARIO.png and .svg.";
 
-enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS };
+enum { MOST_KINDS = 4 * RUN_MAX_OMISSIONS }; /* a sweep has more kinds than one run */
 
 /* Sums and maxima over all runs of a plan. */
 struct totals {
@@ -178,6 +178,7 @@ static void read_class(const struct column *c, const void *row, struct column_va
     set_text(v, omission_class(&((const struct kind *)row)->omission));
 }
 
+/* Where the values of the columns lie. */
 #define KIND(member) .offset = offsetof(struct kind, member)
 
 /* One kind of omission in JSON. */
@@ -205,6 +206,7 @@ static void read_level(const struct column *c, const void *row, struct column_va
     set_text(v, v->buffer);
 }
 
+/* A value of the run, or of its estimate. */
 #define SPEC(member) .part = PART(struct planned, spec), .offset = offsetof(struct run_spec, member)
 #define ESTIMATE(member)                                                                           \
     .part = PART(struct planned, estimate), .offset = offsetof(struct run_estimate, member)

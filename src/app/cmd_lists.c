@@ -48,7 +48,7 @@ static void print_keys(const struct common *c)
         return;
     }
     struct arena *a = arena_create();
-    int ntable, n = 0, most = 0;
+    int ntable, n = 0, most = 0; /* tables; keys so far; keys of all tables */
     const struct field_table *const *table = field_tables(&ntable);
     /* Room for all keys of all tables. */
     for (int i = 0; i < ntable; i++) most += table[i]->nfield;

@@ -35,6 +35,7 @@ static int list_machines(const struct common *c, struct arena *a)
     return 0;
 }
 
+/* A value of struct origin at its place. */
 #define ORIGIN(member) .offset = offsetof(struct origin, member)
 
 /* One value with its origin. Values are texts with units, as in the file; ranges are numbers in

@@ -31,7 +31,7 @@ static const char doc[] =
     "\vRuns that are stored already are not repeated, unless --force is given.\n"
     "--paper-only: omit the five scenes; this takes less than half the time.";
 
-enum { MOST_PLANS = 64, MOST_FIGURES = 128 };
+enum { MOST_PLANS = 64, MOST_FIGURES = 128 }; /* scenarios; figures of the report */
 
 /* What the stages of the study share. A stage returns false with *e set; what was stored before
  * stays. */

@@ -24,7 +24,7 @@ static const char doc[] =
  * no rows follow, else as a remark on standard error. */
 static bool upgrade(const struct common *c, struct err *e)
 {
-    struct text told = {0};
+    struct text told = {0}; /* which version it was and where the old one is */
     const bool ok = store_upgrade(c->arg[0], &told, e);
     if (ok && c->narg == 1 && c->json) {
         struct json j = json_make(stdout);

@@ -23,7 +23,7 @@ static const char doc[] =
     "\vNothing is run: `mimdsim accuracy`, `stability` and `explain --measure` fill\n"
     "the database.";
 
-enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 };
+enum { MOST_FIGURES = 128, MOST_SCENARIOS = 64 }; /* with rows; with a plan */
 
 /* What is gathered before the document can be written. */
 struct report {

@@ -44,7 +44,7 @@ int cmd_stability(int argc, char **argv)
     struct arena *a = arena_create();
     struct stability_report r;
     bool ok = c.narg == 0 || plan_read(&p, c.arg[0], &o, &e);
-    ok = ok && stability_measure(p.run, p.nrun, 0, c.quiet, a, &r, &e);
+    ok = ok && stability_measure(p.run, p.nrun, 0, c.quiet, a, &r, &e); /* 0: no limit of size */
     /* The table before the drawing; a document last. */
     if (ok && !c.json) stability_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);

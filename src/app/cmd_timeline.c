@@ -26,7 +26,7 @@ static const char doc[] =
     "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans and "
     "pictures 20000, because viewers fail on more; a remark says how many are omitted.";
 
-enum { PICTURE_SPANS = 20000 };
+enum { PICTURE_SPANS = 20000 }; /* more bars than these gnuplot draws for minutes */
 
 /* The run that is shown, wherever it came from. */
 struct shown {

@@ -129,6 +129,7 @@ static void write_levels(const struct column *c, const void *row, struct json *j
 
 static bool is_contended(const void *row) { return point(row)->outcome->contended; }
 
+/* Of the simulated value: only where there is one. */
 static bool is_measured(const void *row) { return point(row)->outcome->measured; }
 
 #define PUBLISHED(member)                                                                          \
@@ -210,6 +211,7 @@ static void write_group(const struct column *c, const void *row, struct json *j)
     columns_json(&group_columns, (const char *)row + c->offset, j);
 }
 
+/* of all points together */
 #define SUMMARY(member) .offset = offsetof(struct validation_summary, member)
 
 /* Calibrated and other points apart: a value that was fitted proves nothing about the model. */

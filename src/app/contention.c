@@ -9,7 +9,7 @@
 /* The quantity at each level; NAN where a level refuses it (a machine without buffers at flit). */
 static bool measure(const struct machine_spec *m, struct contention *row)
 {
-    bool any = false;
+    bool any = false; /* whether some level can run the pattern */
     for (int i = 0; i < LEVELS; i++) {
         struct machine_spec at = *m;
         struct err why;

@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "report/report.h"
 
-enum { MOST_CLAIMS = 24, GOALS = 3, MOST_SEARCHES = GOALS * MOST_CLAIMS };
+enum { MOST_CLAIMS = 24, GOALS = 3, MOST_SEARCHES = GOALS * MOST_CLAIMS }; /* see add_searches */
 
 /* One failing claim. */
 struct inquiry {

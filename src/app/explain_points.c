@@ -37,7 +37,7 @@ static void grow(struct explain_subject *s, struct arena *a)
 {
     int old = s->capacity;
     struct explain_point **was = s->slot;
-    s->capacity = old ? 4 * old : 1024;
+    s->capacity = old ? 4 * old : 1024; /* a power of two, as slot_of masks with it */
     s->slot = TAKE(a, s->capacity, struct explain_point *);
     for (int i = 0; i < old; i++)
         if (was[i]) *slot_of(s, was[i]->key) = was[i];
@@ -481,7 +481,7 @@ bool explain_confirm(struct explain_bench *b, struct explain_subject *s, enum op
     *out = (struct explain_point){0};
     add_runs(&t, 0, study, n, b->arena);
     *nrun = t.nspec;
-    if (t.nspec == 0) return true;
+    if (t.nspec == 0) return true; /* no command is named: nothing to confirm with */
     bool ok = run_batch(&t);
     if (ok) *out = *t.point;
     return ok;

@@ -104,7 +104,7 @@ static bool is_software(const char *key) { return strncmp(key, "software.", 9) =
 static bool fill_axis(struct explain_axis *x, const struct machine_spec *m, const struct origin *o,
                       int n, const struct origin *mpich, int nmpich)
 {
-    if (!x->after) x->after = "";
+    if (!x->after) x->after = ""; /* most axes end with their number */
     x->least = x->map == EXPLAIN_FACTOR || x->map == EXPLAIN_RELATIVE ? -x->most : 0;
     for (int k = 0; k < x->nkey; k++) {
         x->field[k] = machine_field(x->key[k]);
@@ -152,7 +152,7 @@ static double three_digits(double x)
                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     /* two digits behind the first */
     int k = 2 - (int)floor(log10(x));
-    if (abs(k) > 22) return x;
+    if (abs(k) > 22) return x; /* no parameter is as large or as small */
     return k >= 0 ? round(x * ten[k]) / ten[k] : round(x / ten[-k]) * ten[-k];
 }
 

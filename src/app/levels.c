@@ -149,7 +149,7 @@ bool levels_settle(struct store *s, struct run_spec *run, struct run_order *orde
     bool ok = true;
     /* All are settled before the first one changes: a ladder is climbed over the runs that ask. */
     for (int i = 0; i < nrun && ok; i++) {
-        taken[i] = -1;
+        taken[i] = -1; /* names its level itself */
         if (run[i].machine.network.level != LEVEL_AUTO_TOLERANCE) continue;
         taken[i] = settle_run(s, run, nrun, i, known, &n, e);
         ok = taken[i] >= 0;

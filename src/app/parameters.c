@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "spec/field.h"
 
-enum { MOST_MACHINES = 64 };
+enum { MOST_MACHINES = 64 }; /* of a study; those beyond are not listed */
 
 /* The machines of all runs, each once, in their order. */
 static int machines_of(const struct plan *plan, int nplan, const char **name)

@@ -142,6 +142,7 @@ static const char *cache_folder(struct arena *a, struct err *e)
 {
     const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     struct text t = {0};
+    /* The XDG base directory specification: a relative path there is ignored. */
     const bool given = cache != NULL && cache[0] == '/';
     text_add(&t, "%s%s/mimdsim/programs",
              given          ? cache

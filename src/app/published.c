@@ -114,7 +114,7 @@ static bool split_sets(struct published *p, const char *s, struct arena *a, stru
     return !*s || err_set(e, ERR_DATA, "%s: more than %d settings", p->id, MOST_SETS);
 }
 
-static const char *const uses[] = {"yes", "no", "other"};
+static const char *const uses[] = {"yes", "no", "other"}; /* in the order of enum published_use */
 
 const char *published_use_name(enum published_use use) { return uses[use]; }
 

@@ -14,7 +14,7 @@ enum { MOST_SWEPT = 64 }; /* more columns nobody reads */
 static const char *const always[] = {"machine.name",  "kernel.name",           "kernel.formulation",
                                      "kernel.solver", "machine.network.level", "model.n",
                                      "ranks",         "program.n",             "program.file"};
-static const char *const fixed[] = {"machine",
+static const char *const fixed[] = {"machine", /* names that a swept key cannot have */
                                     "kernel",
                                     "formulation",
                                     "solver",

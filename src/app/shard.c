@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 };
+enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 }; /* more hosts than anyone has; 60 bits */
 
 /* NULL is no shard: then all runs are wanted. */
 bool shard_parse(const char *text, struct shard *out, struct err *e)

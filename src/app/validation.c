@@ -48,9 +48,9 @@ void validation_judge(const struct published *p, struct outcome *o)
     o->tolerance = tolerance_of(p);
     o->error = (o->value - p->value) / p->value;
     bool inside = p->low < p->high && o->value >= p->low && o->value <= p->high;
-    if (!o->measured) o->verdict = "not-testable";
-    else if (*p->cause && !cause_fits(p, o)) o->verdict = "fail";
-    else if (p->use == USE_OTHER) o->verdict = "not-testable";
+    if (!o->measured) o->verdict = "not-testable"; /* the machine lacks it */
+    else if (*p->cause && !cause_fits(p, o)) o->verdict = "fail"; /* not the known error */
+    else if (p->use == USE_OTHER) o->verdict = "not-testable"; /* not what is simulated */
     else if (inside || fabs(o->error) <= o->tolerance) o->verdict = "pass";
     else o->verdict = *p->cause ? "explained" : "fail";
 }
