@@ -1,0 +1,61 @@
+/* mpi_algorithm.c - the algorithms of comm/collectives.h on a communicator, and those uses of them
+ * that making communicators needs. */
+#include "mpi/mpi_collective.h"
+
+void mpi_collective_call(struct mpi_rank *r, struct collective_call *k, bool irregular)
+{
+    const struct mpi_setup *setup = r->world->setup;
+    struct collective_shape s = collective_shape(k);
+    s.irregular = s.irregular || irregular;
+    const struct collective_algorithm *a = collective_choose(&s, setup->rule, setup->nrule);
+    int64_t bytes = collective_scratch(a, &s, k->comm->rank);
+    k->scratch = bytes > 0 ? mpi_take(r->world, bytes) : NULL;
+    collective_run(a, k);
+    mpi_give(r->world, k->scratch);
+}
+
+static void larger(void *into, const void *with, bool before, int64_t n, void *context,
+                   struct work *w)
+{
+    (void)before, (void)context, (void)w, (void)n;
+    if (*(const int *)with > *(int *)into) *(int *)into = *(const int *)with;
+}
+
+int mpi_collective_max(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence, int value)
+{
+    static const struct collective_op op = {
+        .combine = larger, .commutative = true, .idempotent = true};
+    int result = value;
+    struct collective_call call = {
+        .kind = COLLECTIVE_ALLREDUCE, .comm = &k->comm, .count = 1, .element = sizeof value};
+    call.tag = mpi_collective_tag(sequence);
+    call.send = &value;
+    call.recv = &result;
+    call.op = &op;
+    mpi_collective_call(r, &call, false);
+    return result;
+}
+
+void mpi_collective_allgather(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence,
+                              const void *own, void *all, int64_t bytes)
+{
+    struct collective_call call = {
+        .kind = COLLECTIVE_ALLGATHER, .comm = &k->comm, .count = bytes, .element = 1};
+    call.tag = mpi_collective_tag(sequence);
+    call.send = own;
+    call.recv = all;
+    mpi_collective_call(r, &call, false);
+}
+
+/* The machine's own barrier where it has one for all ranks. */
+void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c)
+{
+    unsigned sequence = c->sequence++;
+    if (c->whole && r->world->setup->hardware_barrier) {
+        comm_barrier(r->comm);
+        return;
+    }
+    struct collective_call call = {.kind = COLLECTIVE_BARRIER, .comm = &c->channel.comm};
+    call.tag = mpi_collective_tag(sequence);
+    mpi_collective_call(r, &call, false);
+}

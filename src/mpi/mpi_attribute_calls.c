@@ -1,0 +1,84 @@
+/* mpi_attribute_calls.c - the functions of keyvals and attributes. */
+#include "mpi/mpi_internal.h"
+
+#define KEYVALS(create_name, free_name, copy_type, delete_type, a, b, c)                           \
+    int create_name(struct mpi_rank *self, copy_type *a, delete_type *b, int *c,                   \
+                    void *extra_state)                                                             \
+    {                                                                                              \
+        return mpi_keyval_make(self, (void *)(intptr_t)a, (void *)(intptr_t)b, c, extra_state);    \
+    }                                                                                              \
+    int free_name(struct mpi_rank *self, int *c) { return mpi_keyval_end(self, c); }
+KEYVALS(mpi_comm_create_keyval, mpi_comm_free_keyval, MPI_Comm_copy_attr_function,
+        MPI_Comm_delete_attr_function, comm_copy_attr_fn, comm_delete_attr_fn, comm_keyval)
+KEYVALS(mpi_type_create_keyval, mpi_type_free_keyval, MPI_Type_copy_attr_function,
+        MPI_Type_delete_attr_function, type_copy_attr_fn, type_delete_attr_fn, type_keyval)
+KEYVALS(mpi_keyval_create, mpi_keyval_free, MPI_Copy_function, MPI_Delete_function, copy_fn,
+        delete_fn, keyval)
+
+/* --- communicators; the standard's own attributes are pointers to integers --- */
+
+int mpi_comm_set_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, void *attribute_val)
+{
+    return mpi_attribute_set(self, KIND_COMM, mpi_comm_of(self, comm), comm_keyval, attribute_val);
+}
+
+int mpi_comm_get_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, void *attribute_val,
+                      int *flag)
+{
+    static const int tag_last = TAG_LAST, none = MPI_PROC_NULL, yes = 1, zero = 0;
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    const int *fixed = NULL;
+    if (!c) return self->code;
+    self->last_code = mpi_last_code(self);
+    if (comm_keyval == MPI_TAG_UB) fixed = &tag_last;
+    if (comm_keyval == MPI_IO || comm_keyval == MPI_HOST) fixed = &none;
+    if (comm_keyval == MPI_WTIME_IS_GLOBAL) fixed = &yes;
+    if (comm_keyval == MPI_APPNUM) fixed = &zero;
+    if (comm_keyval == MPI_UNIVERSE_SIZE) fixed = &self->size;
+    if (comm_keyval == MPI_LASTUSEDCODE) fixed = &self->last_code;
+    if (!fixed) return mpi_attribute_get(self, KIND_COMM, c, comm_keyval, attribute_val, flag);
+    *flag = 1;
+    *(const void **)attribute_val = fixed;
+    return MPI_SUCCESS;
+}
+
+int mpi_comm_delete_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval)
+{
+    return mpi_attribute_delete(self, KIND_COMM, mpi_comm_of(self, comm), comm_keyval);
+}
+
+int mpi_attr_put(struct mpi_rank *self, MPI_Comm comm, int keyval, void *attribute_val)
+{
+    return mpi_comm_set_attr(self, comm, keyval, attribute_val);
+}
+
+int mpi_attr_get(struct mpi_rank *self, MPI_Comm comm, int keyval, void *attribute_val, int *flag)
+{
+    return mpi_comm_get_attr(self, comm, keyval, attribute_val, flag);
+}
+
+int mpi_attr_delete(struct mpi_rank *self, MPI_Comm comm, int keyval)
+{
+    return mpi_comm_delete_attr(self, comm, keyval);
+}
+
+/* --- types --- */
+
+int mpi_type_set_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval,
+                      void *attribute_val)
+{
+    return mpi_attribute_set(self, KIND_TYPE, mpi_type_of(self, datatype), type_keyval,
+                             attribute_val);
+}
+
+int mpi_type_get_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval,
+                      void *attribute_val, int *flag)
+{
+    return mpi_attribute_get(self, KIND_TYPE, mpi_type_of(self, datatype), type_keyval,
+                             attribute_val, flag);
+}
+
+int mpi_type_delete_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval)
+{
+    return mpi_attribute_delete(self, KIND_TYPE, mpi_type_of(self, datatype), type_keyval);
+}

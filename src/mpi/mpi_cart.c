@@ -1,0 +1,248 @@
+/* mpi_cart.c - Cartesian topologies. Ranks are never reordered: places are counted with the last
+ * dimension fastest. */
+#include <stdlib.h>
+
+#include "mpi/mpi_topology.h"
+
+int mpi_topo_test(struct mpi_rank *self, MPI_Comm comm, int *status)
+{
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    if (!c) return self->code;
+    *status = c->topology ? c->topology->kind : MPI_UNDEFINED;
+    return MPI_SUCCESS;
+}
+
+/* --- places --- */
+
+int mpi_cart_rank_of(const struct mpi_topology *t, const int *coordinate)
+{
+    int rank = 0;
+    for (int d = 0; d < t->ndim; d++) {
+        int at = coordinate[d], n = t->dim[d];
+        if (at < 0 || at >= n) {
+            if (!t->period[d]) return MPI_PROC_NULL;
+            at = (at % n + n) % n;
+        }
+        rank = rank * n + at;
+    }
+    return rank;
+}
+
+static void place_of(int ndim, const int *dim, int rank, int *coordinate)
+{
+    for (int d = ndim - 1; d >= 0; d--) {
+        coordinate[d] = rank % dim[d];
+        rank /= dim[d];
+    }
+}
+
+int mpi_cart_shifted(const struct mpi_topology *t, int d, int by)
+{
+    int below = 1, n = t->dim[d], at = t->coordinate[d] + by;
+    if (at < 0 || at >= n) {
+        if (!t->period[d]) return MPI_PROC_NULL;
+        at = (at % n + n) % n;
+    }
+    int own = 0;
+    for (int k = 0; k < t->ndim; k++) own = own * t->dim[k] + t->coordinate[k];
+    for (int k = d + 1; k < t->ndim; k++) below *= t->dim[k];
+    return own + (at - t->coordinate[d]) * below;
+}
+
+/* --- making --- */
+
+static int grid_size(struct mpi_rank *r, struct mpi_comm *c, int ndims, const int *dims,
+                     int64_t *size)
+{
+    *size = 1;
+    if (ndims < 0) return mpi_error(r, c, MPI_ERR_DIMS, "%d dimensions", ndims);
+    for (int d = 0; d < ndims; d++) {
+        if (dims[d] < 1)
+            return mpi_error(r, c, MPI_ERR_DIMS, "dimension %d has %d places", d, dims[d]);
+        *size *= dims[d];
+    }
+    if (*size <= c->size) return MPI_SUCCESS;
+    return mpi_error(r, c, MPI_ERR_TOPOLOGY, "a grid of %lld places for %d ranks", (long long)*size,
+                     c->size);
+}
+
+static struct mpi_topology *grid(struct mpi_rank *r, int ndims, const int *dims, const int *periods,
+                                 int rank)
+{
+    struct mpi_topology *t = mpi_topology_take(r, MPI_CART);
+    t->ndim = ndims;
+    t->dim = mpi_topology_ints(r, dims, ndims);
+    t->period = mpi_topology_ints(r, periods, ndims);
+    t->coordinate = mpi_take_zero(r->world, (ndims + 1) * (int64_t)sizeof *t->coordinate);
+    for (int d = 0; d < ndims; d++) t->period[d] = periods[d] != 0;
+    place_of(ndims, dims, rank, t->coordinate);
+    return t;
+}
+
+int mpi_cart_create(struct mpi_rank *self, MPI_Comm comm_old, int ndims, const int dims[],
+                    const int periods[], int reorder, MPI_Comm *comm_cart)
+{
+    struct mpi_comm *c = mpi_comm_of(self, comm_old);
+    int64_t size;
+    static const int nothing;
+    (void)reorder;
+    if (!c) return self->code;
+    if (c->remote) return mpi_error(self, c, MPI_ERR_COMM, "an intercommunicator has no topology");
+    if (ndims == 0) dims = periods = &nothing;
+    int code = grid_size(self, c, ndims, dims, &size);
+    if (code != MPI_SUCCESS) return code;
+    struct mpi_comm *made = mpi_comm_first(self, c, (int)size);
+    *comm_cart = MPI_COMM_NULL;
+    if (!made) return MPI_SUCCESS;
+    made->topology = grid(self, ndims, dims, periods, made->rank);
+    *comm_cart = mpi_handle(made);
+    return MPI_SUCCESS;
+}
+
+int mpi_cart_sub(struct mpi_rank *self, MPI_Comm comm, const int remain_dims[], MPI_Comm *newcomm)
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    /* dropped dimensions say which part, remaining ones the place in it */
+    int color = 0, key = 0, n = 0;
+    int *dims = mpi_take(self->world, 2 * (t->ndim + 1) * (int64_t)sizeof *dims),
+        *periods = dims + t->ndim + 1;
+    for (int d = 0; d < t->ndim; d++) {
+        int *which = remain_dims[d] ? &key : &color;
+        *which = *which * t->dim[d] + t->coordinate[d];
+        if (!remain_dims[d]) continue;
+        dims[n] = t->dim[d];
+        periods[n++] = t->period[d];
+    }
+    struct mpi_comm *made = mpi_comm_split_of(self, c, color, key);
+    made->topology = grid(self, n, dims, periods, made->rank);
+    mpi_give(self->world, dims);
+    *newcomm = mpi_handle(made);
+    return MPI_SUCCESS;
+}
+
+/* --- queries --- */
+
+int mpi_cartdim_get(struct mpi_rank *self, MPI_Comm comm, int *ndims)
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    *ndims = t->ndim;
+    return MPI_SUCCESS;
+}
+
+int mpi_cart_get(struct mpi_rank *self, MPI_Comm comm, int maxdims, int dims[], int periods[],
+                 int coords[])
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    for (int d = 0; d < t->ndim && d < maxdims; d++) {
+        dims[d] = t->dim[d];
+        periods[d] = t->period[d];
+        coords[d] = t->coordinate[d];
+    }
+    return MPI_SUCCESS;
+}
+
+int mpi_cart_rank(struct mpi_rank *self, MPI_Comm comm, const int coords[], int *rank)
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    *rank = mpi_cart_rank_of(t, coords);
+    if (*rank != MPI_PROC_NULL) return MPI_SUCCESS;
+    return mpi_error(self, c, MPI_ERR_ARG,
+                     "the coordinates are outside of a dimension that is not periodic");
+}
+
+int mpi_cart_coords(struct mpi_rank *self, MPI_Comm comm, int rank, int maxdims, int coords[])
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    if (rank < 0 || rank >= c->size)
+        return mpi_error(self, c, MPI_ERR_RANK, "rank %d of %d", rank, c->size);
+    if (maxdims < t->ndim)
+        return mpi_error(self, c, MPI_ERR_ARG, "room for %d of %d dimensions", maxdims, t->ndim);
+    place_of(t->ndim, t->dim, rank, coords);
+    return MPI_SUCCESS;
+}
+
+int mpi_cart_shift(struct mpi_rank *self, MPI_Comm comm, int direction, int disp, int *rank_source,
+                   int *rank_dest)
+{
+    struct mpi_comm *c;
+    struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
+    if (!t) return self->code;
+    if (direction < 0 || direction >= t->ndim)
+        return mpi_error(self, c, MPI_ERR_DIMS, "direction %d of %d dimensions", direction,
+                         t->ndim);
+    *rank_source = mpi_cart_shifted(t, direction, -disp);
+    *rank_dest = mpi_cart_shifted(t, direction, disp);
+    return MPI_SUCCESS;
+}
+
+int mpi_cart_map(struct mpi_rank *self, MPI_Comm comm, int ndims, const int dims[],
+                 const int periods[], int *newrank)
+{
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    int64_t size;
+    (void)periods;
+    int code = c ? grid_size(self, c, ndims, dims, &size) : self->code;
+    if (code == MPI_SUCCESS) *newrank = c->rank < size ? c->rank : MPI_UNDEFINED;
+    return code;
+}
+
+/* --- balanced dimensions --- */
+
+/* balance: the n free numbers with product `nodes`, as close to each other as they get, the largest
+ * first. Each takes the smallest divisor of what is left that is not below the root of the number
+ * of those still free. */
+static bool balance(int nodes, int n, int *out)
+{
+    int best = -1;
+    if (n == 0) return nodes == 1;
+    if (n == 1) {
+        out[0] = nodes;
+        return true;
+    }
+    /* try first factors from the n-th root upwards; the rest must not exceed it */
+    for (int first = 1; first <= nodes; first++) {
+        if (nodes % first) continue;
+        double power = 1;
+        for (int i = 0; i < n; i++) power *= first;
+        if (power < nodes) continue;
+        best = first;
+        if (balance(nodes / first, n - 1, out + 1) && out[1] <= first) break;
+    }
+    out[0] = best;
+    return true;
+}
+
+int mpi_dims_create(struct mpi_rank *self, int nnodes, int ndims, int dims[])
+{
+    int left = nnodes, n = 0;
+    if (nnodes < 1 || ndims < 0)
+        return mpi_error(self, NULL, MPI_ERR_DIMS, "%d nodes in %d dimensions", nnodes, ndims);
+    for (int d = 0; d < ndims; d++) {
+        if (dims[d] < 0)
+            return mpi_error(self, NULL, MPI_ERR_DIMS, "dimension %d is %d", d, dims[d]);
+        if (dims[d] > 0 && left % dims[d])
+            return mpi_error(self, NULL, MPI_ERR_DIMS, "%d nodes do not make dimensions of %d",
+                             nnodes, dims[d]);
+        if (dims[d] > 0) left /= dims[d];
+        else n++;
+    }
+    if (n == 0 && left != 1)
+        return mpi_error(self, NULL, MPI_ERR_DIMS, "the dimensions do not have %d nodes together",
+                         nnodes);
+    int *chosen = mpi_take(self->world, (n + 1) * (int64_t)sizeof *chosen), at = 0;
+    balance(left, n, chosen);
+    for (int d = 0; d < ndims; d++)
+        if (dims[d] == 0) dims[d] = chosen[at++];
+    mpi_give(self->world, chosen);
+    return MPI_SUCCESS;
+}

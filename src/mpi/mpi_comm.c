@@ -1,0 +1,31 @@
+/* mpi_comm.c - communicators: a group, and a context that keeps their messages apart. */
+#include "mpi/mpi_internal.h"
+
+struct mpi_comm *mpi_comm_make(struct mpi_rank *r, struct mpi_group *g, int context,
+                               struct mpi_comm *like)
+{
+    struct mpi_comm *c = mpi_take_zero(r->world, sizeof *c);
+    mpi_handle_make(r, c, KIND_COMM);
+    c->group = g; /* the caller's use of it */
+    c->rank = g->rank;
+    c->size = g->size;
+    c->context = context;
+    c->whole = !g->list && g->first == 0 && g->step == 1 && g->size == r->size;
+    c->handler = like ? like->handler : NULL;
+    mpi_errhandler_use(c->handler);
+    mpi_channel_make(&c->channel, r, g, context, PLANE_COLLECTIVE);
+    return c;
+}
+
+void mpi_comm_drop(struct mpi_rank *r, struct mpi_comm *c)
+{
+    if (!c || --c->o.uses > 0) return;
+    mpi_handle_end(r, c);
+    mpi_group_drop(r, c->group);
+    mpi_group_drop(r, c->remote);
+    mpi_comm_drop(r, c->local);
+    mpi_errhandler_drop(r, c->handler);
+    mpi_topology_end(r, c);
+    mpi_give(r->world, c->name);
+    mpi_give(r->world, c);
+}

@@ -1,0 +1,233 @@
+/* mpi_error.c - what a program does wrong: classes, texts, handlers.
+ *
+ * Under MPI_ERRORS_RETURN a call returns its class; a handler of the program is called first. Else
+ * the run ends as failed (comm_fail) with the call, the place in the program and what is wrong. */
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "mpi/mpi_internal.h"
+
+/* Classes and codes that the program added: codes LASTCODE + 1 + i. */
+enum { MOST_ADDED = 256, FIRST_ADDED = MPI_ERR_LASTCODE + 1 };
+struct mpi_errors {
+    int n;
+    struct {
+        int class; /* its class; a class is its own */
+        char *text;
+        bool there;
+    } of[MOST_ADDED];
+};
+
+static const char *const class_text[] = {"no error",
+                                         "invalid buffer",
+                                         "invalid count",
+                                         "invalid datatype",
+                                         "invalid tag",
+                                         "invalid communicator",
+                                         "invalid rank",
+                                         "invalid request",
+                                         "invalid root",
+                                         "invalid group",
+                                         "invalid operation",
+                                         "invalid topology",
+                                         "invalid dimension",
+                                         "invalid argument",
+                                         "unknown error",
+                                         "message truncated",
+                                         "other error",
+                                         "internal error",
+                                         "pending request",
+                                         "error in a status",
+                                         "permission denied",
+                                         "invalid access mode",
+                                         "invalid assertion",
+                                         "invalid file name",
+                                         "invalid base",
+                                         "conversion failed",
+                                         "invalid displacement",
+                                         "data representation exists",
+                                         "file exists",
+                                         "file in use",
+                                         "invalid file",
+                                         "key too long",
+                                         "no such key",
+                                         "value too long",
+                                         "invalid info",
+                                         "input or output failed",
+                                         "invalid keyval",
+                                         "invalid lock type",
+                                         "no such name",
+                                         "no memory",
+                                         "arguments differ between ranks",
+                                         "no space",
+                                         "no such file",
+                                         "invalid port",
+                                         "quota exceeded",
+                                         "read only",
+                                         "memory cannot be attached",
+                                         "conflicting accesses",
+                                         "outside of the window",
+                                         "memory cannot be shared",
+                                         "wrong synchronization",
+                                         "no such service",
+                                         "invalid size",
+                                         "processes cannot be started",
+                                         "data representation not supported",
+                                         "operation not supported",
+                                         "invalid window",
+                                         "wrong kind of window",
+                                         "process aborted",
+                                         "value too large",
+                                         "invalid session",
+                                         "invalid error handler",
+                                         "invalid binary interface"};
+enum { NCLASS = sizeof class_text / sizeof class_text[0] };
+
+/* mpi_call_program: a function of the program, on its own terms. */
+intptr_t mpi_call_program(struct mpi_rank *r, void *function, const intptr_t argument[6])
+{
+    const struct mpi_setup *s = r->world->setup;
+    typedef intptr_t six(intptr_t, intptr_t, intptr_t, intptr_t, intptr_t, intptr_t);
+    if (s->call) return s->call(r->host, (void (*)(void))(intptr_t)function, argument);
+    six *f = (six *)(intptr_t)function;
+    return f(argument[0], argument[1], argument[2], argument[3], argument[4], argument[5]);
+}
+
+_Noreturn void mpi_fail(struct mpi_rank *r, const char *text)
+{
+    char place[256] = "", all[1280];
+    const struct mpi_setup *s = r->world->setup;
+    if (s->place && r->address) s->place(r->host, r->address, place, sizeof place);
+    snprintf(all, sizeof all, "%s%s%s: %s", r->call, place[0] ? " in " : "", place, text);
+    comm_fail(r->comm, all);
+}
+
+/* The handler that counts: the communicator's, else the world's. Handles' errors have no
+ * communicator. */
+static struct mpi_errhandler *handler_of(struct mpi_rank *r, struct mpi_comm *c)
+{
+    if (!c || !c->handler) c = r->world_comm;
+    return c ? c->handler : NULL;
+}
+
+int mpi_error(struct mpi_rank *r, struct mpi_comm *c, int code, const char *format, ...)
+{
+    struct mpi_errhandler *h = handler_of(r, c);
+    char text[768];
+    va_list list;
+    if (h && !h->function && h->code == (int)(intptr_t)MPI_ERRORS_RETURN) return code;
+    if (h && h->function) return mpi_error_handled(r, c ? c : r->world_comm, h, code);
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    mpi_fail(r, text);
+}
+
+int mpi_error_handled(struct mpi_rank *r, void *object, struct mpi_errhandler *h, int code)
+{
+    struct mpi_comm *c = object;
+    void *handle = c == r->world_comm  ? (void *)MPI_COMM_WORLD
+                   : c == r->self_comm ? (void *)MPI_COMM_SELF
+                                       : mpi_handle(object);
+    int seen = code;
+    const char *call = r->call;
+    mpi_call_program(r, (void *)(intptr_t)h->function,
+                     (intptr_t[6]){(intptr_t)&handle, (intptr_t)&seen});
+    r->call = call;
+    return code;
+}
+
+/* --- the program's own classes and codes --- */
+
+static struct mpi_errors *errors_of(struct mpi_rank *r)
+{
+    if (!r->errors) r->errors = mpi_take_zero(r->world, sizeof *r->errors);
+    return r->errors;
+}
+
+static int added(struct mpi_rank *r, int code)
+{
+    int i = code - FIRST_ADDED;
+    return r->errors && i >= 0 && i < r->errors->n && r->errors->of[i].there ? i : -1;
+}
+
+static int add(struct mpi_rank *r, int class, int *out)
+{
+    struct mpi_errors *e = errors_of(r);
+    if (e->n == MOST_ADDED)
+        return mpi_error(r, NULL, MPI_ERR_OTHER, "more than %d codes were added", MOST_ADDED);
+    e->of[e->n].there = true;
+    e->of[e->n].text = NULL;
+    *out = FIRST_ADDED + e->n;
+    e->of[e->n++].class = class ? class : *out;
+    return MPI_SUCCESS;
+}
+
+int mpi_last_code(struct mpi_rank *r) { return FIRST_ADDED - 1 + (r->errors ? r->errors->n : 0); }
+
+int mpi_add_error_class(struct mpi_rank *self, int *errorclass) { return add(self, 0, errorclass); }
+
+int mpi_add_error_code(struct mpi_rank *self, int errorclass, int *errorcode)
+{
+    return add(self, errorclass, errorcode);
+}
+
+int mpi_add_error_string(struct mpi_rank *self, int errorcode, const char *string)
+{
+    int i = added(self, errorcode);
+    if (i < 0)
+        return mpi_error(self, NULL, MPI_ERR_ARG, "%d is no code that the program added",
+                         errorcode);
+    mpi_give(self->world, self->errors->of[i].text);
+    self->errors->of[i].text = mpi_take_text(self->world, string);
+    return MPI_SUCCESS;
+}
+
+static int remove_code(struct mpi_rank *r, int code)
+{
+    int i = added(r, code);
+    if (i < 0) return mpi_error(r, NULL, MPI_ERR_ARG, "%d is no code that the program added", code);
+    mpi_give(r->world, r->errors->of[i].text);
+    r->errors->of[i].text = NULL;
+    r->errors->of[i].there = false;
+    return MPI_SUCCESS;
+}
+
+int mpi_remove_error_class(struct mpi_rank *self, int errorclass)
+{
+    return remove_code(self, errorclass);
+}
+int mpi_remove_error_code(struct mpi_rank *self, int errorcode)
+{
+    return remove_code(self, errorcode);
+}
+
+int mpi_remove_error_string(struct mpi_rank *self, int errorcode)
+{
+    int i = added(self, errorcode);
+    if (i < 0)
+        return mpi_error(self, NULL, MPI_ERR_ARG, "%d is no code that the program added",
+                         errorcode);
+    mpi_give(self->world, self->errors->of[i].text);
+    self->errors->of[i].text = NULL;
+    return MPI_SUCCESS;
+}
+
+int mpi_error_class(struct mpi_rank *self, int errorcode, int *errorclass)
+{
+    int i = added(self, errorcode);
+    *errorclass = i >= 0                                 ? self->errors->of[i].class
+                  : errorcode >= 0 && errorcode < NCLASS ? errorcode
+                                                         : MPI_ERR_UNKNOWN;
+    return MPI_SUCCESS;
+}
+
+int mpi_error_string(struct mpi_rank *self, int errorcode, char *string, int *resultlen)
+{
+    int i = added(self, errorcode);
+    const char *text = "unknown error";
+    if (i >= 0) text = self->errors->of[i].text ? self->errors->of[i].text : "";
+    else if (errorcode >= 0 && errorcode < NCLASS) text = class_text[errorcode];
+    *resultlen = snprintf(string, MPI_MAX_ERROR_STRING, "%s", text);
+    return MPI_SUCCESS;
+}

@@ -1,0 +1,163 @@
+/* mpi_info.c - MPI_Info: keys with values, in the order in which they were set. */
+#include <ctype.h>
+#include <stdio.h>
+
+#include "mpi/mpi_internal.h"
+
+static struct mpi_info *info_of(struct mpi_rank *r, MPI_Info handle)
+{
+    struct mpi_info *i = mpi_object(r, handle, KIND_INFO);
+    return i ? i : mpi_bad_handle(r, handle, KIND_INFO);
+}
+
+static struct mpi_entry *entry_of(const struct mpi_info *i, const char *key)
+{
+    for (int k = 0; k < i->n; k++)
+        if (strcmp(i->entry[k].key, key) == 0) return &i->entry[k];
+    return NULL;
+}
+
+/* trimmed: without blanks at either end, as the standard asks; false: empty or longer than `most`.
+ */
+static bool trimmed(char *out, const char *in, size_t most)
+{
+    while (isspace((unsigned char)*in)) in++;
+    size_t n = strlen(in);
+    while (n && isspace((unsigned char)in[n - 1])) n--;
+    if (n >= most) return false;
+    memcpy(out, in, n);
+    out[n] = '\0';
+    return true;
+}
+
+static void put(struct mpi_rank *r, struct mpi_info *i, const char *key, const char *value)
+{
+    struct mpi_entry *e = entry_of(i, key);
+    if (e) {
+        mpi_give(r->world, e->value);
+        e->value = mpi_take_text(r->world, value);
+        return;
+    }
+    if (i->n == i->room) {
+        int room = i->room ? 2 * i->room : 4;
+        struct mpi_entry *grown = mpi_take(r->world, room * (int64_t)sizeof *grown);
+        if (i->n) memcpy(grown, i->entry, (size_t)i->n * sizeof *grown);
+        mpi_give(r->world, i->entry);
+        i->entry = grown;
+        i->room = room;
+    }
+    i->entry[i->n++] =
+        (struct mpi_entry){mpi_take_text(r->world, key), mpi_take_text(r->world, value)};
+}
+
+int mpi_info_create(struct mpi_rank *self, MPI_Info *info)
+{
+    struct mpi_info *i = mpi_take_zero(self->world, sizeof *i);
+    *info = mpi_handle_make(self, i, KIND_INFO);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_set(struct mpi_rank *self, MPI_Info info, const char *key, const char *value)
+{
+    struct mpi_info *i = info_of(self, info);
+    char k[MPI_MAX_INFO_KEY], v[MPI_MAX_INFO_VAL];
+    if (!i) return self->code;
+    if (!trimmed(k, key, sizeof k) || !k[0])
+        return mpi_error(self, NULL, MPI_ERR_INFO_KEY, "the key is empty or longer than %d",
+                         MPI_MAX_INFO_KEY - 1);
+    if (!trimmed(v, value, sizeof v) || !v[0])
+        return mpi_error(self, NULL, MPI_ERR_INFO_VALUE, "the value is empty or longer than %d",
+                         MPI_MAX_INFO_VAL - 1);
+    put(self, i, k, v);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_delete(struct mpi_rank *self, MPI_Info info, const char *key)
+{
+    struct mpi_info *i = info_of(self, info);
+    struct mpi_entry *e = i ? entry_of(i, key) : NULL;
+    if (!i) return self->code;
+    if (!e) return mpi_error(self, NULL, MPI_ERR_INFO_NOKEY, "there is no key '%s'", key);
+    mpi_give(self->world, e->key);
+    mpi_give(self->world, e->value);
+    memmove(e, e + 1, (size_t)(i->entry + i->n - e - 1) * sizeof *e);
+    i->n--;
+    return MPI_SUCCESS;
+}
+
+int mpi_info_get(struct mpi_rank *self, MPI_Info info, const char *key, int valuelen, char *value,
+                 int *flag)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    const struct mpi_entry *e = entry_of(i, key);
+    *flag = e != NULL;
+    if (e) snprintf(value, (size_t)valuelen + 1, "%s", e->value);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_get_string(struct mpi_rank *self, MPI_Info info, const char *key, int *buflen,
+                        char *value, int *flag)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    const struct mpi_entry *e = entry_of(i, key);
+    *flag = e != NULL;
+    if (!e) return MPI_SUCCESS;
+    if (*buflen > 0) snprintf(value, (size_t)*buflen, "%s", e->value);
+    *buflen = (int)strlen(e->value) + 1;
+    return MPI_SUCCESS;
+}
+
+int mpi_info_get_valuelen(struct mpi_rank *self, MPI_Info info, const char *key, int *valuelen,
+                          int *flag)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    const struct mpi_entry *e = entry_of(i, key);
+    *flag = e != NULL;
+    if (e) *valuelen = (int)strlen(e->value);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_get_nkeys(struct mpi_rank *self, MPI_Info info, int *nkeys)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    *nkeys = i->n;
+    return MPI_SUCCESS;
+}
+
+int mpi_info_get_nthkey(struct mpi_rank *self, MPI_Info info, int n, char *key)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    if (n < 0 || n >= i->n) return mpi_error(self, NULL, MPI_ERR_ARG, "key %d of %d", n, i->n);
+    snprintf(key, MPI_MAX_INFO_KEY, "%s", i->entry[n].key);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_dup(struct mpi_rank *self, MPI_Info info, MPI_Info *newinfo)
+{
+    struct mpi_info *i = info_of(self, info);
+    if (!i) return self->code;
+    mpi_info_create(self, newinfo);
+    for (int k = 0; k < i->n; k++)
+        put(self, info_of(self, *newinfo), i->entry[k].key, i->entry[k].value);
+    return MPI_SUCCESS;
+}
+
+int mpi_info_free(struct mpi_rank *self, MPI_Info *info)
+{
+    struct mpi_info *i = info_of(self, *info);
+    if (!i) return self->code;
+    for (int k = 0; k < i->n; k++) {
+        mpi_give(self->world, i->entry[k].key);
+        mpi_give(self->world, i->entry[k].value);
+    }
+    mpi_give(self->world, i->entry);
+    mpi_handle_end(self, i);
+    mpi_give(self->world, i);
+    *info = MPI_INFO_NULL;
+    return MPI_SUCCESS;
+}

@@ -1,0 +1,144 @@
+/* mpi_message.c - sending and receiving: from the program's arguments to messages of comm.h and
+ * back. */
+#include "mpi/mpi_internal.h"
+
+/* The rank of the world behind a rank of the communicator; an intercommunicator's are those of the
+ * other side. */
+static int world_rank(const struct mpi_comm *c, int rank)
+{
+    return mpi_group_world(c->remote ? c->remote : c->group, rank);
+}
+
+static int peers(const struct mpi_comm *c) { return c->remote ? c->remote->size : c->size; }
+
+/* mpi_message_check: the arguments that all calls share, into *q. */
+int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_message m)
+{
+    *q = (struct mpi_request){.what = m.receive ? REQUEST_RECEIVE : REQUEST_SEND, .mode = m.mode};
+    q->comm = mpi_comm_of(r, m.comm);
+    q->type = q->comm ? mpi_type_of(r, m.type) : NULL;
+    if (!q->type) return r->code;
+    struct mpi_comm *c = q->comm;
+    if (m.count < 0)
+        return mpi_error(r, c, MPI_ERR_COUNT, "count %lld is negative", (long long)m.count);
+    if (!q->type->committed) return mpi_error(r, c, MPI_ERR_TYPE, "the datatype was not committed");
+    bool wild = m.receive && m.peer == MPI_ANY_SOURCE;
+    if (!wild && m.peer != MPI_PROC_NULL && (m.peer < 0 || m.peer >= peers(c)))
+        return mpi_error(r, c, MPI_ERR_RANK, "rank %d is not in the communicator of %d ranks",
+                         m.peer, peers(c));
+    if (m.tag < 0 && !(m.receive && m.tag == MPI_ANY_TAG) && m.peer != MPI_PROC_NULL)
+        return mpi_error(r, c, MPI_ERR_TAG, "tag %d is negative", m.tag);
+    if (!m.buffer && q->type->dense && m.count * q->type->size > 0 && m.peer != MPI_PROC_NULL)
+        return mpi_error(r, c, MPI_ERR_BUFFER, "the buffer is NULL");
+    q->buffer = m.buffer;
+    q->count = m.count;
+    q->peer = m.peer;
+    q->tag = m.tag;
+    return MPI_SUCCESS;
+}
+
+static int buffered_room(struct mpi_rank *r, struct mpi_request *q, int64_t bytes)
+{
+    struct mpi_comm *c = q->comm;
+    int64_t room = c->buffer ? c->buffer_bytes : r->buffer_bytes;
+    if (bytes <= room || (c->buffer ? c->buffer : r->buffer) == MPI_BUFFER_AUTOMATIC)
+        return MPI_SUCCESS;
+    return mpi_error(r, c, MPI_ERR_BUFFER, "%lld bytes do not fit in the attached buffer of %lld",
+                     (long long)bytes, (long long)room);
+}
+
+/* send: comm.h copies the data, so that packed ones are not needed any more when it returns. */
+static int send(struct mpi_rank *r, struct mpi_request *q)
+{
+    struct mpi_comm *c = q->comm;
+    int64_t bytes = q->count * q->type->size;
+    const void *data = q->buffer;
+    void *packed = NULL;
+    if (q->mode == MODE_BUFFERED && buffered_room(r, q, bytes) != MPI_SUCCESS)
+        return MPI_ERR_BUFFER;
+    if (!q->type->dense && bytes) {
+        data = packed = mpi_take(r->world, bytes);
+        mpi_pack_bytes(packed, q->buffer, q->count, q->type);
+        mpi_charge_copy(r, bytes);
+    }
+    int to = world_rank(c, q->peer);
+    int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, q->tag);
+    if (q->mode == MODE_SYNCHRONOUS) comm_isend_synchronous(r->comm, to, tag, data, bytes, &q->q);
+    else if (q->mode == MODE_BUFFERED) comm_isend(r->comm, to, tag, data, bytes, NULL);
+    else comm_isend(r->comm, to, tag, data, bytes, &q->q);
+    mpi_give(r->world, packed);
+    return MPI_SUCCESS;
+}
+
+static void receive(struct mpi_rank *r, struct mpi_request *q)
+{
+    struct mpi_comm *c = q->comm;
+    bool any_tag = q->tag == MPI_ANY_TAG;
+    void *room = mpi_receive_room(r, q);
+    int from = q->peer == MPI_ANY_SOURCE ? COMM_ANY_SOURCE : world_rank(c, q->peer);
+    int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, any_tag ? 0 : q->tag);
+    int64_t mask = any_tag ? ~(INT64_C(0xffffffff)) & COMM_WHOLE_TAG : COMM_WHOLE_TAG;
+    comm_irecv_matching(r->comm, from, tag, mask, room, q->room, &q->q);
+}
+
+/* mpi_receive_room: where the bytes come in: the program's buffer, or packed bytes where its type
+ * has gaps. */
+void *mpi_receive_room(struct mpi_rank *r, struct mpi_request *q)
+{
+    q->room = q->count * q->type->size;
+    q->staging = NULL;
+    if (q->type->dense) return (void *)(uintptr_t)q->buffer;
+    return q->staging = mpi_take(r->world, q->room ? q->room : 1);
+}
+
+int mpi_message_begin(struct mpi_rank *r, struct mpi_request *q)
+{
+    q->q = (struct comm_request){0};
+    q->error = MPI_SUCCESS;
+    q->cancelled = false;
+    q->staging = NULL;
+    q->room = 0;
+    if (q->peer == MPI_PROC_NULL) return MPI_SUCCESS;
+    if (q->what == REQUEST_SEND) return send(r, q);
+    receive(r, q);
+    return MPI_SUCCESS;
+}
+
+static int source_of(struct mpi_rank *r, const struct mpi_request *q)
+{
+    if (q->peer != MPI_ANY_SOURCE) return q->peer;
+    return mpi_group_find(r, q->comm->remote ? q->comm->remote : q->comm->group, q->q.peer);
+}
+
+/* mpi_message_finish: the message is there: unpack it, tell its status, or that it was too long. */
+int mpi_message_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status)
+{
+    if (q->cancelled) {
+        mpi_give(r->world, q->staging);
+        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        if (status) status->MPI_internal[2] = 1;
+        return MPI_SUCCESS;
+    }
+    if (q->what == REQUEST_SEND) {
+        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        return MPI_SUCCESS;
+    }
+    if (q->peer == MPI_PROC_NULL) {
+        mpi_status_set(status, MPI_PROC_NULL, MPI_ANY_TAG, 0);
+        return MPI_SUCCESS;
+    }
+    int64_t bytes = q->q.truncated ? q->room : q->q.bytes;
+    int source = source_of(r, q), tag = (int)(q->q.tag & 0xffffffff);
+    if (q->staging) {
+        mpi_unpack_bytes((void *)(uintptr_t)q->buffer, q->staging, bytes, q->count, q->type);
+        mpi_charge_copy(r, bytes);
+        mpi_give(r->world, q->staging);
+        q->staging = NULL;
+    }
+    mpi_status_set(status, source, tag, bytes);
+    if (!q->q.truncated) return MPI_SUCCESS;
+    return mpi_error(r, q->comm, MPI_ERR_TRUNCATE,
+                     "the message of %lld bytes from rank %d with tag %d is longer "
+                     "than the buffer of %lld",
+                     (long long)q->q.bytes, source, tag, (long long)q->room);
+}

@@ -1,0 +1,202 @@
+/* mpi_pack.c - data from where a datatype says to bytes one behind the other, and back. */
+#include "mpi/mpi_internal.h"
+
+/* Bytes that are being moved between memory and a packed run; `left` stops a message that ends
+ * early. */
+struct mover {
+    char *packed;
+    int64_t left;
+    bool out; /* from packed to memory */
+};
+
+static void move(struct mover *m, char *memory, int64_t bytes)
+{
+    if (bytes > m->left) bytes = m->left;
+    if (m->out) memcpy(memory, m->packed, (size_t)bytes);
+    else memcpy(m->packed, memory, (size_t)bytes);
+    m->packed += bytes;
+    m->left -= bytes;
+}
+
+static void move_type(struct mover *m, char *memory, int64_t n, const struct mpi_type *t);
+
+static void move_piece(struct mover *m, char *memory, const struct mpi_piece *p)
+{
+    memory += p->at;
+    /* blocks of one basic double or so are the common case: columns of a matrix */
+    if (p->of->dense && p->length * p->of->size == 8 && m->left >= p->count * 8) {
+        for (int64_t i = 0; i < p->count; i++, memory += p->stride, m->packed += 8)
+            memcpy(m->out ? memory : m->packed, m->out ? m->packed : memory, 8);
+        m->left -= p->count * 8;
+        return;
+    }
+    for (int64_t i = 0; i < p->count && m->left > 0; i++)
+        move_type(m, memory + i * p->stride, p->length, p->of);
+}
+
+static void move_type(struct mover *m, char *memory, int64_t n, const struct mpi_type *t)
+{
+    if (t->dense || !t->piece) {
+        move(m, memory, n * t->size);
+        return;
+    }
+    for (int64_t i = 0; i < n && m->left > 0; i++, memory += t->extent)
+        for (int k = 0; k < t->npiece; k++) move_piece(m, memory, &t->piece[k]);
+}
+
+void mpi_pack_bytes(void *packed, const void *memory, int64_t n, const struct mpi_type *t)
+{
+    struct mover m = {.packed = packed, .left = n * t->size};
+    move_type(&m, (char *)(uintptr_t)memory, n, t);
+}
+
+void mpi_unpack_bytes(void *memory, const void *packed, int64_t bytes, int64_t n,
+                      const struct mpi_type *t)
+{
+    struct mover m = {.packed = (char *)(uintptr_t)packed, .left = bytes, .out = true};
+    move_type(&m, memory, n, t);
+}
+
+void mpi_charge_copy(struct mpi_rank *r, int64_t bytes)
+{
+    const struct work w = {.bytes = (uint64_t)bytes};
+    if (bytes > 0) comm_work(r->comm, &w);
+}
+
+/* mpi_copy_typed: as a message from a rank to itself would. */
+int64_t mpi_copy_typed(struct mpi_rank *r, void *to, int64_t nto, const struct mpi_type *tto,
+                       const void *from, int64_t nfrom, const struct mpi_type *tfrom)
+{
+    int64_t bytes = nfrom * tfrom->size, room = nto * tto->size;
+    if (bytes > room) bytes = room;
+    if (bytes == 0 || to == from) return bytes;
+    if (tto->dense && tfrom->dense) {
+        memmove(to, from, (size_t)bytes);
+        return bytes;
+    }
+    char *packed = mpi_take(r->world, nfrom * tfrom->size);
+    mpi_pack_bytes(packed, from, nfrom, tfrom);
+    mpi_unpack_bytes(to, packed, bytes, nto, tto);
+    mpi_give(r->world, packed);
+    return bytes;
+}
+
+/* --- the program's own packing --- */
+
+int mpi_pack(struct mpi_rank *self, const void *inbuf, MPI_Count incount, MPI_Datatype datatype,
+             void *outbuf, MPI_Count outsize, MPI_Count *position, MPI_Comm comm)
+{
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    struct mpi_type *t = c ? mpi_type_of(self, datatype) : NULL;
+    if (!t) return self->code;
+    if (incount < 0)
+        return mpi_error(self, c, MPI_ERR_COUNT, "count %lld is negative", (long long)incount);
+    int64_t bytes = incount * t->size;
+    if (*position < 0 || *position + bytes > outsize)
+        return mpi_error(self, c, MPI_ERR_TRUNCATE, "%lld bytes at %lld do not fit in %lld",
+                         (long long)bytes, (long long)*position, (long long)outsize);
+    mpi_pack_bytes((char *)outbuf + *position, inbuf, incount, t);
+    mpi_charge_copy(self, bytes);
+    *position += bytes;
+    return MPI_SUCCESS;
+}
+
+int mpi_unpack(struct mpi_rank *self, const void *inbuf, MPI_Count insize, MPI_Count *position,
+               void *outbuf, MPI_Count outcount, MPI_Datatype datatype, MPI_Comm comm)
+{
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    struct mpi_type *t = c ? mpi_type_of(self, datatype) : NULL;
+    if (!t) return self->code;
+    if (outcount < 0)
+        return mpi_error(self, c, MPI_ERR_COUNT, "count %lld is negative", (long long)outcount);
+    int64_t bytes = outcount * t->size;
+    if (*position < 0 || *position + bytes > insize)
+        return mpi_error(self, c, MPI_ERR_TRUNCATE, "%lld bytes at %lld are not in %lld",
+                         (long long)bytes, (long long)*position, (long long)insize);
+    mpi_unpack_bytes(outbuf, (const char *)inbuf + *position, bytes, outcount, t);
+    mpi_charge_copy(self, bytes);
+    *position += bytes;
+    return MPI_SUCCESS;
+}
+
+int mpi_pack_size(struct mpi_rank *self, MPI_Count incount, MPI_Datatype datatype, MPI_Comm comm,
+                  MPI_Count *size)
+{
+    struct mpi_type *t = mpi_comm_of(self, comm) ? mpi_type_of(self, datatype) : NULL;
+    if (!t) return self->code;
+    *size = incount * t->size;
+    return MPI_SUCCESS;
+}
+
+/* --- external32: big-endian; elements of 2, 4, 8 and 16 bytes are turned around --- */
+
+/* turn: the bytes of n packed elements of t, from `packed` to where it stands. */
+static char *turn(char *packed, int64_t n, const struct mpi_type *t)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (t->piece) {
+            for (int k = 0; k < t->npiece; k++)
+                packed = turn(packed, t->piece[k].count * t->piece[k].length, t->piece[k].of);
+            continue;
+        }
+        int64_t size = t->class >= CLASS_COMPLEX_FLOAT && t->class <= CLASS_COMPLEX_LONG_DOUBLE
+                           ? t->size / 2
+                           : t->size;
+        for (int64_t part = 0; part < t->size; part += size, packed += size)
+            for (int64_t a = 0, b = size - 1; a < b; a++, b--) {
+                char kept = packed[a];
+                packed[a] = packed[b];
+                packed[b] = kept;
+            }
+    }
+    return packed;
+}
+
+static bool known_form(struct mpi_rank *r, const char *datarep)
+{
+    if (strcmp(datarep, "external32") == 0) return true;
+    r->code = mpi_error(r, NULL, MPI_ERR_UNSUPPORTED_DATAREP,
+                        "data representation '%s'; expected 'external32'", datarep);
+    return false;
+}
+
+int mpi_pack_external(struct mpi_rank *self, const char *datarep, const void *inbuf,
+                      MPI_Count incount, MPI_Datatype datatype, void *outbuf, MPI_Count outsize,
+                      MPI_Count *position)
+{
+    struct mpi_type *t = known_form(self, datarep) ? mpi_type_of(self, datatype) : NULL;
+    MPI_Count at = *position;
+    if (!t) return self->code;
+    int code = mpi_pack(self, inbuf, incount, datatype, outbuf, outsize, position, MPI_COMM_SELF);
+    if (code == MPI_SUCCESS) turn((char *)outbuf + at, incount, t);
+    return code;
+}
+
+int mpi_unpack_external(struct mpi_rank *self, const char datarep[], const void *inbuf,
+                        MPI_Count insize, MPI_Count *position, void *outbuf, MPI_Count outcount,
+                        MPI_Datatype datatype)
+{
+    struct mpi_type *t = known_form(self, datarep) ? mpi_type_of(self, datatype) : NULL;
+    if (!t) return self->code;
+    int64_t bytes = outcount * t->size;
+    if (*position + bytes > insize)
+        return mpi_error(self, NULL, MPI_ERR_TRUNCATE, "%lld bytes at %lld are not in %lld",
+                         (long long)bytes, (long long)*position, (long long)insize);
+    char *packed = mpi_take(self->world, bytes);
+    memcpy(packed, (const char *)inbuf + *position, (size_t)bytes);
+    turn(packed, outcount, t);
+    mpi_unpack_bytes(outbuf, packed, bytes, outcount, t);
+    mpi_give(self->world, packed);
+    mpi_charge_copy(self, bytes);
+    *position += bytes;
+    return MPI_SUCCESS;
+}
+
+int mpi_pack_external_size(struct mpi_rank *self, const char *datarep, MPI_Count incount,
+                           MPI_Datatype datatype, MPI_Count *size)
+{
+    struct mpi_type *t = known_form(self, datarep) ? mpi_type_of(self, datatype) : NULL;
+    if (!t) return self->code;
+    *size = incount * t->size;
+    return MPI_SUCCESS;
+}

@@ -1,0 +1,146 @@
+/* mpi_task.c - operations that go on while their rank does something else, each on a stack of its
+ * own.
+ *
+ * A non-blocking collective runs the same algorithm as the blocking one. Where it has to wait it
+ * leaves its stack; the rank goes on, and whenever the rank itself waits or tests, it waits for
+ * what its operations wait for as well and lets those go on whose message came. So progress depends
+ * on simulated time and on the program's calls alone. */
+#include "base/check.h"
+#include "mpi/mpi_internal.h"
+#include "sim/fiber.h"
+
+enum { FIRST_POOL = 8 };
+
+/* Stacks are mapped by the dozen, each pool twice the one before, and kept for the next operation
+ * of any rank. */
+struct mpi_pool {
+    struct mpi_pool *next;
+    struct fiber_pool *fibers;
+    int n;
+};
+
+struct mpi_stack {
+    struct mpi_stack *next;
+    struct fiber_pool *fibers;
+    struct fiber *fiber;
+    int number;
+};
+
+static void more_stacks(struct mpi_world *w)
+{
+    struct err e = {0};
+    struct mpi_pool *p = arena_take(w->arena, sizeof *p);
+    p->n = w->pools ? 2 * w->pools->n : FIRST_POOL;
+    p->fibers = fiber_pool_create(p->n, TASK_STACK, &e);
+    if (!p->fibers) check_memory((size_t)p->n * TASK_STACK);
+    p->next = w->pools;
+    w->pools = p;
+    for (int i = p->n - 1; i >= 0; i--) {
+        struct mpi_stack *s = arena_take(w->arena, sizeof *s);
+        *s = (struct mpi_stack){.next = w->free_stack, .fibers = p->fibers, .number = i};
+        w->free_stack = s;
+    }
+}
+
+void mpi_tasks_end(struct mpi_world *w)
+{
+    for (struct mpi_pool *p = w->pools; p; p = p->next) fiber_pool_destroy(p->fibers);
+    w->pools = NULL;
+}
+
+static void begin(void *argument)
+{
+    struct mpi_task *t = argument;
+    t->run(t->self, t->argument);
+    t->done = true;
+}
+
+/* go_on: run t until it waits or is done; a task that ends leaves the list. */
+static void go_on(struct mpi_rank *r, struct mpi_task *t)
+{
+    const char *call = r->call;
+    r->running = t;
+    fiber_enter(t->stack->fiber);
+    r->running = NULL;
+    r->call = call;
+    if (!t->done) return;
+    t->stack->next = r->world->free_stack;
+    r->world->free_stack = t->stack;
+    t->stack = NULL;
+    for (struct mpi_task **at = &r->tasks; *at; at = &(*at)->next)
+        if (*at == t) {
+            *at = t->next;
+            break;
+        }
+}
+
+struct mpi_task *mpi_task_start(struct mpi_rank *r, mpi_task_fn *run, void *argument)
+{
+    CHECK(!r->running);
+    struct mpi_task *t = mpi_take_zero(r->world, sizeof *t), **end = &r->tasks;
+    if (!r->world->free_stack) more_stacks(r->world);
+    struct mpi_stack *s = r->world->free_stack;
+    r->world->free_stack = s->next;
+    *t = (struct mpi_task){.self = r, .stack = s, .run = run, .argument = argument};
+    /* the oldest first, so that equal times are served in the order of the calls */
+    while (*end) end = &(*end)->next;
+    *end = t;
+    s->fiber = fiber_start(s->fibers, s->number, begin, t);
+    go_on(r, t);
+    return t;
+}
+
+/* Up to MOST requests are looked at in one call without asking for memory. */
+enum { MOST = 32 };
+
+/* watch: what is wanted, then what each task waits for; their number in *n. Returns `few` or memory
+ * of its own. */
+static struct comm_request **watch(struct mpi_rank *r, int nwanted,
+                                   struct comm_request *const *wanted, struct comm_request **few,
+                                   int *n)
+{
+    struct comm_request **all = few;
+    *n = nwanted;
+    for (struct mpi_task *t = r->tasks; t; t = t->next) (*n)++;
+    if (*n > MOST) all = mpi_take(r->world, *n * (int64_t)sizeof *all);
+    for (int i = 0; i < nwanted; i++) all[i] = wanted[i];
+    int i = nwanted;
+    for (struct mpi_task *t = r->tasks; t; t = t->next) all[i++] = t->blocked;
+    return all;
+}
+
+int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wanted, bool block)
+{
+    struct comm_request *few[MOST];
+    int n, found;
+    struct comm_request **all = watch(r, nwanted, wanted, few, &n);
+    if (block) found = comm_wait_any(r->comm, n, all);
+    else found = comm_test_any(r->comm, n, all);
+    if (all != few) mpi_give(r->world, all);
+    if (found < nwanted) return found < 0 ? PROGRESS_NONE : found;
+    struct mpi_task *t = r->tasks;
+    for (int i = nwanted; i < found; i++) t = t->next;
+    go_on(r, t);
+    return PROGRESS_TASK;
+}
+
+void mpi_wait_request(struct mpi_rank *r, struct comm_request *q)
+{
+    while (q->active) {
+        if (r->running) {
+            r->running->blocked = q;
+            fiber_leave(r->running->stack->fiber);
+        } else if (!r->tasks) comm_wait(r->comm, q);
+        else mpi_progress(r, 1, &q, true);
+    }
+}
+
+void mpi_wait_task(struct mpi_rank *r, const struct mpi_task *t)
+{
+    while (!t->done) CHECK(mpi_progress(r, 0, NULL, true) == PROGRESS_TASK);
+}
+
+void mpi_poll_tasks(struct mpi_rank *r)
+{
+    while (r->tasks && mpi_progress(r, 0, NULL, false) == PROGRESS_TASK) continue;
+}

@@ -1,0 +1,367 @@
+/* mpi_type.c - datatypes made by the program: pieces of memory of other types, with their bounds.
+ *
+ * A type is a list of pieces; a piece is count blocks, `stride` bytes apart, each of `length`
+ * elements one behind the other. So a vector is one piece whatever its count, and an array's part
+ * is as many types as it has dimensions. */
+#include "mpi/mpi_internal.h"
+
+struct mpi_type *mpi_type_make(struct mpi_rank *r, int combiner, int npiece)
+{
+    struct mpi_type *t = mpi_take_zero(r->world, sizeof *t);
+    mpi_handle_make(r, t, KIND_TYPE);
+    t->combiner = combiner;
+    t->npiece = npiece;
+    t->piece = mpi_take_zero(r->world, npiece * (int64_t)sizeof *t->piece);
+    return t;
+}
+
+/* Types that others are made of live on after their handles. */
+void mpi_type_drop(struct mpi_rank *r, struct mpi_type *t)
+{
+    if (!t || mpi_type_is_basic(t) || --t->o.uses > 0) return;
+    for (int i = 0; i < t->ntype; i++) mpi_type_drop(r, t->type[i]);
+    mpi_attributes_end(r, KIND_TYPE, t);
+    mpi_handle_end(r, t);
+    mpi_give(r->world, t->piece);
+    mpi_give(r->world, t->integer);
+    mpi_give(r->world, t->address);
+    mpi_give(r->world, t->type);
+    mpi_give(r->world, t->given_name);
+    mpi_give(r->world, t);
+}
+
+/* What bounds are made of; empty until something was put in. */
+struct bounds {
+    int64_t low, high, true_low, true_high;
+    bool any;
+};
+
+static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
+{
+    int64_t low = at + of->lb, high = low + of->extent;
+    int64_t true_low = at + of->true_lb, true_high = true_low + of->true_extent;
+    if (!b->any || low < b->low) b->low = low;
+    if (!b->any || high > b->high) b->high = high;
+    if (!b->any || true_low < b->true_low) b->true_low = true_low;
+    if (!b->any || true_high > b->true_high) b->true_high = true_high;
+    b->any = true;
+}
+
+/* The four corners of a piece bound it, whatever the signs of strides and extents. */
+static void include_piece(struct bounds *b, const struct mpi_piece *p)
+{
+    if (p->count == 0 || p->length == 0) return;
+    int64_t last = (p->count - 1) * p->stride, end = (p->length - 1) * p->of->extent;
+    include(b, p->at, p->of);
+    include(b, p->at + last, p->of);
+    include(b, p->at + end, p->of);
+    include(b, p->at + last + end, p->of);
+}
+
+/* Whether piece i is one run of bytes from `at` on; the run's end in *end. */
+static bool is_run(const struct mpi_piece *p, int64_t *end)
+{
+    if (!p->of->dense) return false;
+    int64_t block = p->length * p->of->size;
+    if (p->count > 1 && p->stride != block) return false;
+    *end = p->at + p->count * block;
+    return true;
+}
+
+/* mpi_type_finish: sums and bounds out of the pieces. A struct's end is aligned as its strictest
+ * element. */
+void mpi_type_finish(struct mpi_type *t)
+{
+    struct bounds b = {0};
+    int64_t end = 0, next;
+    bool run = true;
+    t->size = t->basics = 0;
+    t->align = 1;
+    for (int i = 0; i < t->npiece; i++) {
+        const struct mpi_piece *p = &t->piece[i];
+        int64_t n = p->count * p->length;
+        t->size += n * p->of->size;
+        t->basics += n * p->of->basics;
+        if (n && p->of->align > t->align) t->align = p->of->align;
+        include_piece(&b, p);
+        if (n == 0) continue;
+        run = run && p->at == end && is_run(p, &next);
+        if (run) end = next;
+    }
+    t->lb = b.low;
+    t->extent = b.high - b.low;
+    t->true_lb = b.true_low;
+    t->true_extent = b.true_high - b.true_low;
+    if (t->combiner == MPI_COMBINER_STRUCT && t->extent % t->align)
+        t->extent += t->align - t->extent % t->align;
+    t->dense = run && t->lb == 0 && t->extent == t->size;
+}
+
+/* --- what a type was made of --- */
+
+void mpi_type_remember(struct mpi_rank *r, struct mpi_type *t, int ninteger, int naddress,
+                       int ntype)
+{
+    t->ninteger = ninteger;
+    t->naddress = naddress;
+    t->ntype = ntype;
+    t->integer = mpi_take_zero(r->world, ninteger * (int64_t)sizeof *t->integer);
+    t->address = mpi_take_zero(r->world, naddress * (int64_t)sizeof *t->address);
+    t->type = mpi_take_zero(r->world, ntype * (int64_t)sizeof *t->type);
+}
+
+/* --- constructors --- */
+
+int64_t mpi_count_at(struct mpi_counts c, int64_t i)
+{
+    return c.large ? ((const MPI_Count *)c.at)[i] : ((const int *)c.at)[i];
+}
+
+static bool negative(struct mpi_rank *r, const char *what, int64_t n)
+{
+    if (n >= 0) return false;
+    r->code = mpi_error(r, NULL, strcmp(what, "count") == 0 ? MPI_ERR_COUNT : MPI_ERR_ARG,
+                        "%s %lld is negative", what, (long long)n);
+    return true;
+}
+
+static int finish(struct mpi_type *t, MPI_Datatype *newtype)
+{
+    mpi_type_finish(t);
+    *newtype = mpi_handle(t);
+    return MPI_SUCCESS;
+}
+
+/* One piece of one type, and the integers that describe it. */
+static struct mpi_type *one_piece(struct mpi_rank *r, int combiner, struct mpi_piece piece,
+                                  int ninteger, int naddress)
+{
+    struct mpi_type *t = mpi_type_make(r, combiner, 1);
+    t->piece[0] = piece;
+    mpi_type_remember(r, t, ninteger, naddress, 1);
+    t->type[0] = piece.of;
+    mpi_type_use(piece.of);
+    return t;
+}
+
+int mpi_type_contiguous(struct mpi_rank *self, MPI_Count count, MPI_Datatype oldtype,
+                        MPI_Datatype *newtype)
+{
+    struct mpi_type *of = mpi_type_of(self, oldtype);
+    if (!of || negative(self, "count", count)) return self->code;
+    struct mpi_piece piece = {.count = 1, .length = count, .of = of};
+    struct mpi_type *t = one_piece(self, MPI_COMBINER_CONTIGUOUS, piece, 1, 0);
+    t->integer[0] = count;
+    return finish(t, newtype);
+}
+
+static int vector(struct mpi_rank *r, int combiner, int64_t count, int64_t length, int64_t stride,
+                  MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    struct mpi_type *of = mpi_type_of(r, oldtype);
+    if (!of || negative(r, "count", count) || negative(r, "blocklength", length)) return r->code;
+    bool in_bytes = combiner == MPI_COMBINER_HVECTOR;
+    struct mpi_piece piece = {.count = count, .length = length, .of = of};
+    piece.stride = in_bytes ? stride : stride * of->extent;
+    struct mpi_type *t = one_piece(r, combiner, piece, in_bytes ? 2 : 3, in_bytes);
+    t->integer[0] = count;
+    t->integer[1] = length;
+    if (in_bytes) t->address[0] = stride;
+    else t->integer[2] = stride;
+    return finish(t, newtype);
+}
+
+int mpi_type_vector(struct mpi_rank *self, MPI_Count count, MPI_Count blocklength, MPI_Count stride,
+                    MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    return vector(self, MPI_COMBINER_VECTOR, count, blocklength, stride, oldtype, newtype);
+}
+
+int mpi_type_create_hvector(struct mpi_rank *self, MPI_Count count, MPI_Count blocklength,
+                            MPI_Count stride, MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    return vector(self, MPI_COMBINER_HVECTOR, count, blocklength, stride, oldtype, newtype);
+}
+
+int mpi_type_hvector(struct mpi_rank *self, int count, int blocklength, MPI_Aint stride,
+                     MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    return vector(self, MPI_COMBINER_HVECTOR, count, blocklength, stride, oldtype, newtype);
+}
+
+/* The four kinds of indexed types: blocks of `length` or lengths[i] at places in elements or bytes.
+ */
+static int indexed(struct mpi_rank *r, int combiner, int64_t count, int64_t length,
+                   struct mpi_counts lengths, struct mpi_counts places, MPI_Datatype oldtype,
+                   MPI_Datatype *newtype)
+{
+    struct mpi_type *of = mpi_type_of(r, oldtype);
+    if (!of || negative(r, "count", count) || negative(r, "blocklength", length)) return r->code;
+    bool in_bytes = combiner == MPI_COMBINER_HINDEXED || combiner == MPI_COMBINER_HINDEXED_BLOCK;
+    for (int64_t i = 0; i < count && lengths.at; i++)
+        if (negative(r, "blocklength", mpi_count_at(lengths, i))) return r->code;
+    struct mpi_type *t = mpi_type_make(r, combiner, (int)count);
+    /* integers are count, lengths and then places, unless those are bytes */
+    int nlength = lengths.at ? (int)count : 1;
+    mpi_type_remember(r, t, 1 + nlength + (in_bytes ? 0 : (int)count), in_bytes ? (int)count : 0,
+                      1);
+    t->integer[0] = count;
+    for (int i = 0; i < nlength; i++)
+        t->integer[1 + i] = lengths.at ? mpi_count_at(lengths, i) : length;
+    for (int i = 0; i < (int)count; i++) {
+        int64_t place = mpi_count_at(places, i);
+        if (in_bytes) t->address[i] = place;
+        else t->integer[1 + nlength + i] = place;
+        t->piece[i] =
+            (struct mpi_piece){.at = in_bytes ? place : place * of->extent, .count = 1, .of = of};
+        t->piece[i].length = lengths.at ? mpi_count_at(lengths, i) : length;
+    }
+    t->type[0] = of;
+    mpi_type_use(of);
+    return finish(t, newtype);
+}
+
+static const struct mpi_counts none;
+
+int mpi_type_indexed(struct mpi_rank *self, MPI_Count count,
+                     struct mpi_counts array_of_blocklengths,
+                     struct mpi_counts array_of_displacements, MPI_Datatype oldtype,
+                     MPI_Datatype *newtype)
+{
+    return indexed(self, MPI_COMBINER_INDEXED, count, 0, array_of_blocklengths,
+                   array_of_displacements, oldtype, newtype);
+}
+
+int mpi_type_create_hindexed(struct mpi_rank *self, MPI_Count count,
+                             struct mpi_counts array_of_blocklengths,
+                             const MPI_Aint array_of_displacements[], MPI_Datatype oldtype,
+                             MPI_Datatype *newtype)
+{
+    return indexed(self, MPI_COMBINER_HINDEXED, count, 0, array_of_blocklengths,
+                   (struct mpi_counts){array_of_displacements, 1}, oldtype, newtype);
+}
+
+int mpi_type_hindexed(struct mpi_rank *self, int count, int *array_of_blocklengths,
+                      MPI_Aint *array_of_displacements, MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    return indexed(self, MPI_COMBINER_HINDEXED, count, 0,
+                   (struct mpi_counts){array_of_blocklengths, 0},
+                   (struct mpi_counts){array_of_displacements, 1}, oldtype, newtype);
+}
+
+int mpi_type_create_indexed_block(struct mpi_rank *self, MPI_Count count, MPI_Count blocklength,
+                                  struct mpi_counts array_of_displacements, MPI_Datatype oldtype,
+                                  MPI_Datatype *newtype)
+{
+    return indexed(self, MPI_COMBINER_INDEXED_BLOCK, count, blocklength, none,
+                   array_of_displacements, oldtype, newtype);
+}
+
+int mpi_type_create_hindexed_block(struct mpi_rank *self, MPI_Count count, MPI_Count blocklength,
+                                   const MPI_Aint array_of_displacements[], MPI_Datatype oldtype,
+                                   MPI_Datatype *newtype)
+{
+    return indexed(self, MPI_COMBINER_HINDEXED_BLOCK, count, blocklength, none,
+                   (struct mpi_counts){array_of_displacements, 1}, oldtype, newtype);
+}
+
+static int structure(struct mpi_rank *r, int64_t count, struct mpi_counts lengths,
+                     const MPI_Aint *places, const MPI_Datatype *types, MPI_Datatype *newtype)
+{
+    if (negative(r, "count", count)) return r->code;
+    for (int64_t i = 0; i < count; i++)
+        if (!mpi_type_of(r, types[i]) || negative(r, "blocklength", mpi_count_at(lengths, i)))
+            return r->code;
+    struct mpi_type *t = mpi_type_make(r, MPI_COMBINER_STRUCT, (int)count);
+    mpi_type_remember(r, t, (int)count + 1, (int)count, (int)count);
+    t->integer[0] = count;
+    for (int i = 0; i < (int)count; i++) {
+        struct mpi_type *of = mpi_type_of(r, types[i]);
+        t->integer[1 + i] = mpi_count_at(lengths, i);
+        t->address[i] = places[i];
+        t->type[i] = of;
+        t->piece[i] =
+            (struct mpi_piece){.at = places[i], .count = 1, .length = t->integer[1 + i], .of = of};
+        mpi_type_use(of);
+    }
+    return finish(t, newtype);
+}
+
+int mpi_type_create_struct(struct mpi_rank *self, MPI_Count count,
+                           struct mpi_counts array_of_blocklengths,
+                           const MPI_Aint array_of_displacements[],
+                           const MPI_Datatype array_of_types[], MPI_Datatype *newtype)
+{
+    return structure(self, count, array_of_blocklengths, array_of_displacements, array_of_types,
+                     newtype);
+}
+
+int mpi_type_struct(struct mpi_rank *self, int count, int *array_of_blocklengths,
+                    MPI_Aint *array_of_displacements, MPI_Datatype *array_of_types,
+                    MPI_Datatype *newtype)
+{
+    return structure(self, count, (struct mpi_counts){array_of_blocklengths, 0},
+                     array_of_displacements, array_of_types, newtype);
+}
+
+int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Count lb,
+                            MPI_Count extent, MPI_Datatype *newtype)
+{
+    struct mpi_type *of = mpi_type_of(self, oldtype);
+    if (!of) return self->code;
+    struct mpi_piece piece = {.count = 1, .length = 1, .of = of};
+    struct mpi_type *t = one_piece(self, MPI_COMBINER_RESIZED, piece, 0, 2);
+    t->address[0] = lb;
+    t->address[1] = extent;
+    mpi_type_finish(t);
+    t->lb = lb;
+    t->extent = extent;
+    t->dense = of->dense && lb == 0 && extent == t->size;
+    *newtype = mpi_handle(t);
+    return MPI_SUCCESS;
+}
+
+int mpi_type_dup(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Datatype *newtype)
+{
+    struct mpi_type *of = mpi_type_of(self, oldtype);
+    if (!of) return self->code;
+    struct mpi_piece piece = {.count = 1, .length = 1, .of = of};
+    struct mpi_type *t = one_piece(self, MPI_COMBINER_DUP, piece, 0, 0);
+    mpi_type_finish(t);
+    t->lb = of->lb;
+    t->extent = of->extent;
+    t->dense = of->dense;
+    t->class = of->class;
+    t->committed = of->committed;
+    int code = mpi_attributes_copy(self, KIND_TYPE, of, t);
+    if (code != MPI_SUCCESS) {
+        mpi_type_drop(self, t);
+        return code;
+    }
+    *newtype = mpi_handle(t);
+    return MPI_SUCCESS;
+}
+
+int mpi_type_commit(struct mpi_rank *self, MPI_Datatype *datatype)
+{
+    struct mpi_type *t = mpi_type_of(self, *datatype);
+    if (!t) return self->code;
+    if (!t->committed) t->committed = true;
+    return MPI_SUCCESS;
+}
+
+int mpi_type_free(struct mpi_rank *self, MPI_Datatype *datatype)
+{
+    struct mpi_type *t = mpi_type_of(self, *datatype);
+    if (!t) return self->code;
+    if (mpi_type_is_basic(t))
+        return mpi_error(self, NULL, MPI_ERR_TYPE, "%s cannot be freed", t->name);
+    /* The handle ends now; the type when nothing is made of it or under way with it. */
+    if (t->o.uses > 1) {
+        mpi_attributes_end(self, KIND_TYPE, t);
+        mpi_handle_end(self, t);
+    }
+    mpi_type_drop(self, t);
+    *datatype = MPI_DATATYPE_NULL;
+    return MPI_SUCCESS;
+}
