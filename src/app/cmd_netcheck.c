@@ -79,10 +79,10 @@ static bool check_files(const struct common *c, const bool *wanted, double withi
 static bool within_of(const char *word, double *within, struct err *e)
 {
     char *end;
-    *within = -1;
+    *within = -1; /* the stated accuracy */
     if (!word) return true;
     double percent = strtod(word, &end);
-    if (*end == '%') end++;
+    if (*end == '%') end++; /* both forms mean per cent */
     if (end == word || *end || !(percent >= 0) || percent > 1e6)
         return err_set(e, ERR_USAGE, "--within: '%s' is not a percentage of 0 or more", word);
     *within = percent / 100;

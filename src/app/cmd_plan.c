@@ -64,7 +64,7 @@ static bool read_shards(const char *text, int *shards, struct err *e)
 {
     char whole[64];
     struct shard s;
-    *shards = 0;
+    *shards = 0; /* without the option: no column */
     if (text == NULL) return true;
     snprintf(whole, sizeof whole, "1/%s", text);
     if (strlen(text) > 20 || !shard_parse(whole, &s, e))

@@ -90,7 +90,7 @@ static void list_figures(const struct common *c)
 static bool is_figure(const char *word)
 {
     char **name;
-    bool found = false;
+    bool found = false; /* all names are freed on the way */
     int n = report_figures(plan_data_dir(), &name);
     for (int i = 0; i < n; i++) {
         found = found || strcmp(name[i], word) == 0;

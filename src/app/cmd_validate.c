@@ -349,7 +349,7 @@ static void network_table(const struct netcheck *n)
     /* Groups in the order of the file, each once, then all cases together. */
     for (int g = 0; g <= n->nrow; g++) {
         const char *group = g < n->nrow ? n->row[g].group : NULL;
-        bool seen = group && !n->row[g].counted;
+        bool seen = group && !n->row[g].counted; /* a row that is not counted opens no group */
         for (int k = 0; group && k < g && !seen; k++)
             seen = n->row[k].counted && strcmp(n->row[k].group, group) == 0;
         /* A group once, where its first case stands. */

@@ -48,7 +48,7 @@ void explain_variant(const struct claim_rule *rule, const char *baseline, enum o
 {
     const char *own = explain_baseline_of(rule);
     size_t end = operators_at(rule->designated), begin = own && baseline ? strlen(own) : 0;
-    if (begin) text_add(out, "%s", baseline);
+    if (begin) text_add(out, "%s", baseline); /* another one in the place of its own */
     text_add(out, "%.*s", (int)(end - begin), rule->designated + begin);
     if (rule->designated[end]) text_add(out, operators == OPERATORS_DENSE ? "dense" : "structured");
 }
@@ -95,8 +95,8 @@ static bool own_operators(const struct explain_goal *g)
 
 bool explain_better(const struct explain_grade *a, const struct explain_grade *b)
 {
-    if (a->holds != b->holds) return a->holds;
-    if (a->holds) return a->distance < b->distance;
+    if (a->holds != b->holds) return a->holds; /* what holds is always better */
+    if (a->holds) return a->distance < b->distance; /* then the smaller change */
     if (isnan(a->margin) || isnan(b->margin)) return !isnan(a->margin);
     return a->margin > b->margin;
 }
@@ -171,7 +171,7 @@ static void weigh(struct explain_search *s, int i, double end, const struct expl
     double change = grade->margin - s->nominal; /* against the nominal point */
     if (isnan(change)) return; /* a margin that is not told weighs nothing */
     s->swing[i] = fmax(s->swing[i], fabs(change));
-    if (change > s->gain[i]) s->gain[i] = change, s->end[i] = end;
+    if (change > s->gain[i]) s->gain[i] = change, s->end[i] = end; /* the better of the two ends */
 }
 
 /* From where the claim fails on axis i alone to where it holds: where it begins to, by bisection. */
@@ -196,7 +196,7 @@ static bool scan_between(struct round *r, int i, double end, double margin_at_en
 {
     enum { DOUBLINGS = 5, HALVES = 6 }; /* from 1/32 of the axis */
     double best = r->search->nominal, low = 0, at = 0, high = ldexp(end, -DOUBLINGS);
-    bool rises = true;
+    bool rises = true; /* still doubling */
     for (int k = 0; k < DOUBLINGS + HALVES; k++) {
         double u[EXPLAIN_MOST_AXES] = {0}, x;
         struct explain_grade grade;
@@ -273,7 +273,7 @@ static int effective_axes(const struct explain_search *s, bool dear, int axis[EX
             for (int k = 0; k < n; k++) taken = taken || axis[k] == i;
             if (!taken && (best < 0 || s->swing[i] > s->swing[best])) best = i;
         }
-        if (best < 0) break;
+        if (best < 0) break; /* no other axis changes anything */
         axis[n++] = best;
     }
     return n;
@@ -331,7 +331,7 @@ static bool iterate(struct descent *d, gsl_multimin_fminimizer *m, gsl_vector *x
     bool begun = gsl_multimin_fminimizer_set(m, &f, x, step) == GSL_SUCCESS;
     r->collecting = false;
     for (int k = 0; begun && !r->waiting && k < r->search->goal.steps; k++) {
-        if (gsl_multimin_fminimizer_iterate(m) != GSL_SUCCESS) break;
+        if (gsl_multimin_fminimizer_iterate(m) != GSL_SUCCESS) break; /* it cannot improve */
         if (gsl_multimin_fminimizer_size(m) < 0.02) break; /* corners within 2 % of each other */
     }
     return !r->waiting;
@@ -369,7 +369,7 @@ static bool beside(struct round *r)
     struct explain_grade grade;
     bool all = true;
     for (int i = 0; i < space->n; i++)
-        for (int k = 1; space->axis[i].dear && k <= VALUES; k++) {
+        for (int k = 1; space->axis[i].dear && k <= VALUES; k++) { /* only the slow ones */
             double u[EXPLAIN_MOST_AXES];
             memcpy(u, r->search->from[0], sizeof u);
             u[i] = space->axis[i].most * k / VALUES;
@@ -400,11 +400,11 @@ static bool take_back(struct round *r, double *u, int i, bool *changed)
 {
     enum { HALVINGS = 6 }; /* to 1/64 of the change */
     struct explain_grade grade;
-    double fails = 0, holds = u[i], was = u[i], v[EXPLAIN_MOST_AXES];
+    double fails = 0, holds = u[i], was = u[i], v[EXPLAIN_MOST_AXES]; /* as in scan_boundary */
     memcpy(v, u, sizeof v);
     v[i] = 0; /* without it at all */
     if (!look(r, v, &grade)) return false;
-    if (grade.holds) holds = 0;
+    if (grade.holds) holds = 0; /* not needed at all */
     else if (!hand_over(r, u, i, changed)) return false;
     if (u[i] == 0) return true;
     for (int k = 0; holds != 0 && k < HALVINGS; k++) {
@@ -415,7 +415,7 @@ static bool take_back(struct round *r, double *u, int i, bool *changed)
         else fails = v[i];
     }
     u[i] = holds;
-    if (fabs(was - holds) > 0.01) *changed = true;
+    if (fabs(was - holds) > 0.01) *changed = true; /* by more than a per cent */
     return true;
 }
 
@@ -436,7 +436,7 @@ static bool polish(struct round *r, const double *from)
             tried[least] = true;
             if (u[least] != 0 && !take_back(r, u, least, &changed)) return false;
         }
-        if (!changed) break;
+        if (!changed) break; /* another round would be the same */
     }
     return true;
 }

@@ -97,7 +97,7 @@ int main(int argc, char **argv)
     }
     bool help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
                 strcmp(argv[1], "help") == 0;
-    if (help && argc < 3) {
+    if (help && argc < 3) { /* not of a verb */
         print_help(stdout);
         return finish(0);
     }

@@ -69,12 +69,12 @@ static int split(char *line, char *cell[COLUMNS])
 {
     int n = 0;
     for (char *at = line; n < COLUMNS; n++) {
-        bool quoted = *at == '"';
+        bool quoted = *at == '"'; /* commas in it belong to the cell */
         cell[n] = at + quoted;
         char *end = quoted ? strchr(at + 1, '"') : strchrnul(at, ',');
-        if (!end) return -1;
+        if (!end) return -1; /* a quote has no end */
         char *next = quoted ? end + 1 : end;
-        bool more = *next == ',';
+        bool more = *next == ','; /* else the line ends here */
         *end = '\0';
         at = next + 1;
         if (!more) return n + 1;

@@ -45,7 +45,7 @@ static bool ladders(const struct common *c, const struct plan *p, struct store *
         return false;
     if (!wanted) return true;
     struct arena *a = arena_create();
-    struct accuracy_report r;
+    struct accuracy_report r; /* rows in the arena */
     bool ok = accuracy_measure(p->run, p->nrun, 0, true, a, &r, e) && keep_accuracy(s, &r, e);
     arena_destroy(a);
     return ok;
@@ -94,7 +94,7 @@ bool scenes_measure(const struct common *c, struct store *s, struct err *e)
     struct progress progress = progress_make("error against run time", SCENES, c->quiet);
     bool ok = true;
     for (int i = 0; ok && i < SCENES; i++) {
-        struct plan p = {0};
+        struct plan p = {0}; /* freed below, also when it could not be read */
         struct plan_options o = common_plan(c);
         ok = plan_read(&p, scene[i], &o, e) && ladders(c, &p, s, scene[i], e) &&
              grades(c, &p, s, scene[i], e) && savings(c, &p, s, scene[i], e);
