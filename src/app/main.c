@@ -73,13 +73,19 @@ static int finish(int status)
 }
 
 /* argp prints argv[0] in messages: "mimdsim run". "-h" is no option of argp's. */
+/* Their command lines are gcc's, where -h is the name of a shared library. */
+static bool takes_compiler_options(const struct verb *v)
+{
+    return v->run == cmd_cc || v->run == cmd_cxx || v->run == cmd_f90;
+}
+
 static int run_verb(const struct verb *v, int argc, char **argv)
 {
     static const char prefix[] = "mimdsim ";
     char name[sizeof prefix + 32], help[] = "--help";
     snprintf(name, sizeof name, "%s%s", prefix, v->name);
     argv[0] = name;
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    for (int i = 1; !takes_compiler_options(v) && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "-h") == 0) argv[i] = help;
     return finish(v->run(argc, argv));
 }

@@ -23,6 +23,9 @@
     X(cmd_accuracy, "accuracy", "measure error against run time: network, arithmetic, integration")                    \
     X(cmd_stability, "stability", "test every algorithm on stiff and extreme cases")                                   \
     X(cmd_report, "report", "report on a whole database: figures, Markdown and HTML")                                  \
-    X(cmd_query, "query", "run SQL on a database")
+    X(cmd_query, "query", "run SQL on a database")                                                                     \
+    X(cmd_cc, "cc", "compile C programs for virtual processors, as gcc does")                                          \
+    X(cmd_cxx, "c++", "compile C++ programs, as g++ does")                                                             \
+    X(cmd_f90, "f90", "compile Fortran programs, as gfortran does")
 
 #endif

@@ -336,23 +336,16 @@ static void add_quoted(struct text *out, struct span s)
     }
 }
 
-static void write_note(struct filter *f)
+void block_note(const struct block_source *source, const char *compiler, int n, struct text *out)
 {
-    const struct span name = {f->source->name, (int)strlen(f->source->name)};
-    const struct span flags = {f->source->flags, (int)strlen(f->source->flags)};
-    struct span compiler = f->compiler; /* with its quotes */
-    if (compiler.n >= 2) compiler = (struct span){compiler.s + 1, compiler.n - 2};
-    text_add(f->out, "\t.section " BLOCK_NOTE_SECTION ",\"a\",@note\n\t.balign 4\n");
-    text_add(f->out,
-             "\t.long %zu, .Lmimdsim_n1-.Lmimdsim_n0, %d\n\t.asciz \"" BLOCK_NOTE_NAME "\"\n",
+    text_add(out, "\t.section " BLOCK_NOTE_SECTION ",\"a\",@note\n\t.balign 4\n");
+    text_add(out, "\t.long %zu, .Lmimdsim_n1-.Lmimdsim_n0, %d\n\t.asciz \"" BLOCK_NOTE_NAME "\"\n",
              sizeof BLOCK_NOTE_NAME, BLOCK_NOTE_OBJECT);
-    text_add(f->out, ".Lmimdsim_n0:\n\t.long %d\n\t.asciz \"", BLOCK_TABLE_ABI);
-    add_quoted(f->out, name);
-    text_add(f->out, "; ");
-    add_quoted(f->out, compiler.n > 0 ? compiler : (struct span){"assembly", 8});
-    text_add(f->out, "; ");
-    add_quoted(f->out, flags);
-    text_add(f->out, "\"\n.Lmimdsim_n1:\n\t.balign 4\n");
+    text_add(out, ".Lmimdsim_n0:\n\t.long %d\n\t.asciz \"", BLOCK_TABLE_ABI);
+    add_quoted(out, (struct span){source->name, (int)strlen(source->name)});
+    text_add(out, "; %.*s; ", n, compiler);
+    add_quoted(out, (struct span){source->flags, (int)strlen(source->flags)});
+    text_add(out, "\"\n.Lmimdsim_n1:\n\t.balign 4\n");
 }
 
 bool block_filter(const struct text *in, const struct block_source *source, struct text *out,
@@ -374,7 +367,9 @@ bool block_filter(const struct text *in, const struct block_source *source, stru
         fine = err_set_at(e, ERR_DATA, source->name, 0,
                           "compiled by clang, which cannot keep a register free; "
                           "`mimdsim cc` works with gcc");
-    if (fine) write_note(&f);
+    /* .ident has quotes. */
+    if (fine && f.compiler.n > 2) block_note(source, f.compiler.s + 1, f.compiler.n - 2, out);
+    else if (fine) block_note(source, "assembly", 8, out);
     text_free(&f.table);
     arena_destroy(arena);
     return fine;

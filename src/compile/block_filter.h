@@ -36,4 +36,8 @@ struct block_source {
 bool block_filter(const struct text *in, const struct block_source *source, struct text *out,
                   struct err *e);
 
+/* block_note: append the note of an object that was compiled from `source` by `compiler` (n bytes,
+ * as in .ident). */
+void block_note(const struct block_source *source, const char *compiler, int n, struct text *out);
+
 #endif

@@ -170,7 +170,9 @@ int loader_main(struct loader_instance *i, int argc, char **argv)
 {
     struct loader_outcome o = loader_start(i, argc, argv);
     if (o.exited) return o.status;
-    void *main_function = loader_symbol(i, "main");
+    /* `mimdsim cc` names it, too, as main itself may be hidden. */
+    void *main_function = loader_symbol(i, "mimdsim_main");
+    if (main_function == NULL) main_function = loader_symbol(i, "main");
     CHECK(main_function); /* the caller has looked */
     o = loader_call(i, main_function,
                     (const int64_t[4]){argc, (int64_t)(intptr_t)argv, (int64_t)(intptr_t)environ});

@@ -67,6 +67,7 @@ verbs() { "$MIMDSIM" --help | awk '/^  [a-z]+ / && $1 != "mimdsim" { print $1 }'
 
 @test "an unknown option of any verb is refused with status 64" {
     for verb in $(verbs); do
+        [ "$verb" != cc ] || continue  # its options are gcc's
         fails_with 64 mimdsim "$verb" --no-such-option
         stdout_is_empty
         stderr_says "no-such-option"

@@ -1,0 +1,116 @@
+/* process.c - programs as children, one pipe each way. */
+#include "compile/process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static bool cannot_start(const char *program, int error, struct err *e)
+{
+    if (error == ENOENT)
+        return err_set(e, ERR_UNAVAILABLE,
+                       "'%s' is not installed, or not in PATH; `mimdsim cc`, `c++` and `f90` work "
+                       "through gcc, g++ and "
+                       "gfortran, or what MIMDSIM_CC, MIMDSIM_CXX and MIMDSIM_FC name",
+                       program);
+    return err_set(e, ERR_INTERNAL, "'%s' cannot be started: %s", program, strerror(error));
+}
+
+/* Pipes that the child has as its standard input and output; -1: none. */
+struct pipes {
+    int to[2], from[2];
+};
+
+static int spawn(const char *const *word, const struct pipes *p, pid_t *child)
+{
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t usual;
+    sigemptyset(&usual);
+    sigaddset(
+        &usual,
+        SIGPIPE); /* ignored here, so that a program that dies early is an error and not a signal */
+    posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &usual);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    if (p->to[0] >= 0) posix_spawn_file_actions_adddup2(&actions, p->to[0], STDIN_FILENO);
+    if (p->from[1] >= 0) posix_spawn_file_actions_adddup2(&actions, p->from[1], STDOUT_FILENO);
+    const int error =
+        posix_spawnp(child, word[0], &actions, &attributes, (char *const *)word, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+static void close_one(int *fd)
+{
+    if (*fd >= 0) close(*fd);
+    *fd = -1;
+}
+
+/* Write and read as the child takes and gives, so that neither waits for the other. */
+static void exchange(struct pipes *p, const struct text *in, struct text *out)
+{
+    size_t written = 0;
+    while (p->to[1] >= 0 || p->from[0] >= 0) {
+        struct pollfd ready[2] = {{.fd = p->to[1], .events = POLLOUT},
+                                  {.fd = p->from[0], .events = POLLIN}};
+        if (poll(ready, 2, -1) < 0 && errno != EINTR) break;
+        if (ready[0].revents != 0) {
+            const ssize_t n = write(p->to[1], in->s + written, in->length - written);
+            if (n > 0) written += (size_t)n;
+            if ((n < 0 && errno != EINTR && errno != EAGAIN) || written == in->length)
+                close_one(&p->to[1]);
+        }
+        if (ready[1].revents != 0) {
+            char piece[65536];
+            const ssize_t n = read(p->from[0], piece, sizeof piece);
+            if (n > 0) text_add_bytes(out, piece, (size_t)n);
+            if (n == 0 || (n < 0 && errno != EINTR)) close_one(&p->from[0]);
+        }
+    }
+}
+
+bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
+                 struct err *e)
+{
+    struct pipes p = {{-1, -1}, {-1, -1}};
+    const bool feeds = in != NULL && in->length > 0;
+    if ((feeds && pipe2(p.to, O_CLOEXEC) != 0) || (out != NULL && pipe2(p.from, O_CLOEXEC) != 0))
+        return err_set(e, ERR_INTERNAL, "no pipe to '%s': %s", word[0], strerror(errno));
+    /* As the shell does: an interrupt is for the child, and ends this process by the child's
+     * status. */
+    struct sigaction ignore = {.sa_handler = SIG_IGN}, pipe_was, interrupt_was;
+    sigaction(SIGPIPE, &ignore, &pipe_was);
+    pid_t child = -1;
+    const int error = spawn(word, &p, &child);
+    sigaction(SIGINT, &ignore, &interrupt_was);
+    close_one(&p.to[0]);
+    close_one(&p.from[1]);
+    if (error == 0) {
+        if (feeds) fcntl(p.to[1], F_SETFL, O_NONBLOCK);
+        exchange(&p, in, out);
+        int ended = 0;
+        while (waitpid(child, &ended, 0) < 0 && errno == EINTR) continue;
+        *status = WIFSIGNALED(ended) ? 128 + WTERMSIG(ended) : WEXITSTATUS(ended);
+    }
+    close_one(&p.to[1]);
+    close_one(&p.from[0]);
+    sigaction(SIGPIPE, &pipe_was, NULL);
+    sigaction(SIGINT, &interrupt_was, NULL);
+    return error == 0 || cannot_start(word[0], error, e);
+}
+
+bool process_replace(const char *const *word, struct err *e)
+{
+    execvp(word[0], (char *const *)word);
+    return cannot_start(word[0], errno, e);
+}

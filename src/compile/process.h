@@ -1,0 +1,24 @@
+/* process.h - other programs run, with texts to and from them. */
+#ifndef COMPILE_PROCESS_H
+#define COMPILE_PROCESS_H
+
+#include <stdbool.h>
+
+#include "base/err.h"
+#include "base/text.h"
+
+/* process_run: start word[0] (looked for in PATH) with its arguments and wait for its end.
+ *
+ *   in      its standard input, NULL: this process's
+ *   out     appended: its standard output, NULL: this process's
+ *   status  becomes its exit status, 128 + n after signal n
+ *
+ * Returns false with ERR_UNAVAILABLE when there is no such program, ERR_INTERNAL when none can be
+ * started. A status that is not 0 is no error here: the program has said why. */
+bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
+                 struct err *e);
+
+/* process_replace: become another program; returns only with an error, as above. */
+bool process_replace(const char *const *word, struct err *e);
+
+#endif

@@ -1,0 +1,157 @@
+#!/usr/bin/env bats
+# cc.bats - mimdsim cc, c++, f90 as build systems meet them.
+
+load helper
+
+eval "common_$(declare -f setup)"
+setup() {
+    command -v gcc >/dev/null || skip "no gcc"
+    common_setup
+    unset MIMDSIM_CC MIMDSIM_CXX MIMDSIM_FC
+    cat >one.c <<'END'
+#include <math.h>
+int two(int n);
+int main(int argc, char **argv) { return two(argc) + (int)sin(argv[0][0]); }
+END
+    echo 'int two(int n) { return 2 * n; }' >two.c
+}
+
+# blocks FILE: how many counters its code has.
+blocks() { objdump -d "$1" | grep -c 'lea  *0x0(%r15),%r15'; }
+# entries FILE: how many entries its table has, of 20 bytes each.
+entries() {
+    echo $((0x$(readelf -SW "$1" | sed -n 's/.* mimdsim_blocks  *PROGBITS  *[0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .*/\1/p') / 20))
+}
+
+@test "questions are answered by gcc" {
+    for question in --version -dumpmachine -print-file-name=libm.so -print-prog-name=as; do
+        works mimdsim cc "$question"
+        stdout_is "$(gcc "$question")"
+    done
+    works mimdsim c++ --version
+    stdout_is "$(g++ --version)"
+    echo 'int x = __LINE__;' >line.c
+    works mimdsim cc -E line.c
+    stdout_is "$(gcc -E line.c)"
+}
+
+@test "objects, assembly, preprocessed files and programs have the names that gcc gives" {
+    works mimdsim cc -c one.c two.c
+    [ -f one.o ] && [ -f two.o ]
+    works mimdsim cc -S two.c
+    grep -q 'leaq 0(%r15), %r15' two.s
+    works mimdsim cc -c two.s -o again.o
+    [ "$(blocks again.o)" -eq "$(blocks two.o)" ]
+    gcc -E two.c -o two.i
+    works mimdsim cc -c two.i -o from-i.o
+    works mimdsim cc one.o two.o -lm
+    [ -x a.out ]
+    works mimdsim cc -O2 -o prog one.c two.o -lm
+    [ -x prog ]
+    echo 'int two(int n) { return n; }' | mimdsim cc -x c -c - -o stdin.o
+    [ "$(blocks stdin.o)" -eq 1 ]
+    works mimdsim cc -c -MMD -o out.o two.c
+    [ "$(cat out.d)" = "out.o: two.c" ]
+}
+
+@test "every block of an image has an entry of the table" {
+    works mimdsim cc -O2 -o prog one.c two.c -lm
+    [ "$(blocks prog)" -eq "$(entries prog)" ]
+    [ "$(entries prog)" -ge 3 ]
+    readelf -n prog | grep -q mimdsim
+}
+
+@test "an object of another compiler is refused by name" {
+    gcc -c -fPIC two.c
+    works mimdsim cc -c one.c
+    fails_with 65 mimdsim cc one.o two.o -lm -o prog
+    stderr_says "two.o was not compiled by \`mimdsim cc\`"
+    [ ! -e prog ]
+    ar rc libtwo.a two.o
+    fails_with 65 mimdsim cc one.o -L. -ltwo -lm -o prog
+    stderr_says "two.o in ./libtwo.a was not compiled"
+    rm two.o libtwo.a
+    works mimdsim cc -c two.c
+    ar rc libtwo.a two.o
+    works mimdsim cc one.o -L. -ltwo -lm -o prog
+}
+
+@test "what an image cannot have is refused with the reason" {
+    fails_with 64 mimdsim cc -march=native -c one.c
+    stderr_says "depend on this computer"
+    fails_with 64 mimdsim cc -fopenmp -c one.c
+    stderr_says "one thread"
+    echo 'long f(void) { long x; __asm__("mov %%r15, %0" : "=r"(x)); return x; }' >r15.c
+    fails_with 65 mimdsim cc -c r15.c
+    stderr_says "r15.c:1: register r15 is used here"
+    [ ! -e r15.o ]
+}
+
+@test "without gcc, or with clang in its place, the message says what is needed" {
+    mkdir empty
+    fails_with 69 env PATH="$PWD/empty" "$MIMDSIM" cc -c one.c
+    stderr_says "'gcc' is not installed"
+    printf '#!/bin/sh\necho clang version 99\n' >fake-clang
+    chmod +x fake-clang
+    MIMDSIM_CC=$PWD/fake-clang fails_with 69 "$MIMDSIM" cc -c one.c
+    stderr_says "works through gcc"
+}
+
+@test "messages and statuses of the compiler and the linker come through" {
+    echo 'int f(void) { return nothing; }' >wrong.c
+    fails_with 1 mimdsim cc -c wrong.c
+    stderr_says "wrong.c:1:22: error:"
+    [ ! -e wrong.o ]
+    fails_with 1 mimdsim cc -o prog one.c -lm
+    stderr_says "undefined reference to \`two'"
+    fails_with 1 mimdsim cc -o prog two.c
+    stderr_says "undefined reference to \`main'"
+    [ ! -e prog ]
+    fails_with 1 mimdsim cc
+    stderr_says "no input files"
+}
+
+@test "compiling twice gives the same file" {
+    for n in 1 2; do
+        mkdir $n && cp one.c two.c $n && (cd $n && mimdsim cc -O2 -g -c one.c two.c -ffile-prefix-map="$PWD"=. &&
+            mimdsim cc -O2 one.c two.c -lm -o prog -Wl,--build-id=none)
+    done
+    cmp 1/one.o 2/one.o
+    cmp 1/two.o 2/two.o
+    cmp 1/prog 2/prog
+}
+
+@test "C++ and Fortran link with their libraries" {
+    command -v g++ >/dev/null && command -v gfortran >/dev/null || skip "no g++ or gfortran"
+    printf '#include <iostream>\nint main() { std::cout << "hi\\n"; }\n' >hi.cc
+    works mimdsim c++ -O1 hi.cc -o hi
+    readelf -d hi | grep NEEDED >needed
+    ! grep -q libstdc++ needed
+    printf 'program p\nprint *, sin(1d0)\nend\n' >p.f90
+    works mimdsim f90 -O1 p.f90 -o p
+    stderr_is_empty
+    readelf -d p | grep -q libgfortran
+}
+
+@test "make's own rules and CMake's toolchain build a project" {
+    printf 'prog: one.o two.o\n\t$(CC) $(CFLAGS) -o $@ $^ -lm\n' >Makefile
+    make -s CC="$MIMDSIM cc" CFLAGS=-O1
+    [ -x prog ]
+    command -v cmake >/dev/null || return 0
+    mkdir cmake && mv one.c two.c cmake && cd cmake
+    cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.10)
+project(t C)
+include(CheckFunctionExists)
+check_function_exists(strdup HAVE_STRDUP)
+check_function_exists(no_such_function HAVE_NO_SUCH_FUNCTION)
+add_library(two SHARED two.c)
+add_executable(t one.c)
+target_link_libraries(t two m)
+file(WRITE answers "${HAVE_STRDUP} ${HAVE_NO_SUCH_FUNCTION}")
+END
+    cmake -DCMAKE_TOOLCHAIN_FILE="$MIMDSIM_SRCDIR/share/mimdsim.cmake" -DMIMDSIM_PROGRAM="$MIMDSIM" . >log 2>&1
+    [ "$(cat answers)" = "1 " ]
+    make -s >>log 2>&1
+    [ -x t ] && readelf -n libtwo.so | grep -q mimdsim
+}
