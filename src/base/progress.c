@@ -1,4 +1,8 @@
-/* progress.c - one line of progress on stderr, and the host's clock and memory. */
+/* progress.c - one line of progress on stderr, and the host's clock and memory.
+ *
+ *     cases: 42 % (21 of 50, 3.1/s), 9 s left; twist_n0064
+ *
+ * On a terminal the line is written over itself; into a file a new one comes every ten seconds. */
 #include "base/progress.h"
 
 #include <stdio.h>

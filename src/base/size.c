@@ -1,4 +1,6 @@
-/* size.c - how much memory there is to ask for. */
+/* size.c - how much memory there is to ask for.
+ *
+ * The answer is about the computer, so that no result may depend on it: only refusals do. */
 #include "base/size.h"
 
 #include <sys/resource.h>

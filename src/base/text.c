@@ -1,4 +1,6 @@
-/* text.c - strings: nearest valid name, growing buffer. */
+/* text.c - strings: nearest valid name, growing buffer.
+ *
+ * Standing on nothing but check.c: err.c, and with it everything else, uses it. */
 #include "base/text.h"
 
 #include <ctype.h>

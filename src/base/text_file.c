@@ -10,6 +10,7 @@ bool text_read_file(struct text *t, const char *path, struct err *e)
     t->length = 0;
     FILE *in = fopen(path, "rb");
     if (!in) return err_set_at(e, ERR_NO_INPUT, path, 0, "cannot open: %s", strerror(errno));
+    /* Read until a short read: files of unknown length, pipes too. */
     size_t n;
     do { /* a directory opens well and fails in the first read */
         text_reserve(t, 65536);

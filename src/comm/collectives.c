@@ -168,6 +168,7 @@ int64_t collective_scratch(const struct collective_algorithm *a, const struct co
     return a->scratch ? a->scratch(s, rank) : 0;
 }
 
+/* The caller has chosen: by rules (collective_choose) or by name. */
 void collective_run(const struct collective_algorithm *a, const struct collective_call *k)
 {
     a->run(k);

@@ -97,7 +97,7 @@ static void bruck_cost(const struct collective_shape *s, struct collective_cost 
 }
 
 /* Every block straight to everybody, the next rank first: no two ranks begin with the same
- * receiver. */
+ * receiver. As many rounds as the ring, (P - 1) (alpha + b beta), over longer ways. */
 static void linear(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);

@@ -108,7 +108,9 @@ static void ring_cost(const struct collective_shape *s, struct collective_cost *
 
 /* Round j joins the results of the 2^j ranks up to here with those of the 2^j before: an element
  * may enter twice, hence only operations with a op a = a. lg (alpha + n beta + n gamma) for any P,
- * without a fold. */
+ * without a fold.
+ *
+ *     P = 3, what rank 0 has:   0   ->   2 0   ->   0 1 2 0     (0 has entered twice) */
 static void dissemination(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);

@@ -5,6 +5,7 @@
  * number counts. */
 #include "comm/collectives_internal.h"
 
+/* Places of blocks, in send and in recv: they may differ when blocks do. */
 static const void *send_block(const struct collective_call *k, int r)
 {
     return at_const(k, k->send, send_block_place(k, r));
@@ -106,7 +107,7 @@ static void bruck_round(const struct collective_call *k, int bit, char *out, cha
 }
 
 /* A block that has to go d ranks up goes there by the bits of d: lg alpha + P/2 lg b beta, and two
- * turns of all blocks (Bruck et al. 1997). */
+ * turns of all blocks (Bruck et al. 1997). P = 8, d = 5 = 101b: one rank up, then four. */
 static void bruck(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm);

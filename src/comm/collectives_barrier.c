@@ -41,7 +41,8 @@ static void linear_cost(const struct collective_shape *s, struct collective_cost
                                     .rounds = 2 * (s->size - 1)};
 }
 
-/* Up a binomial tree to rank 0 and down again: 2 lg alpha, and the least messages of all. */
+/* Up a binomial tree to rank 0 and down again: 2 lg alpha, and the least messages of all: 2 (P -
+ * 1). Rank 0 knows first that all have come; the others learn it level by level. */
 static void binomial(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm), mask = 1;

@@ -6,7 +6,9 @@
 #include "comm/collectives_internal.h"
 
 /* From the root of a binomial tree the largest subtree first; ranks count from the root. lg (alpha
- * + n beta). */
+ * + n beta). P = 8:
+ *
+ *     0 -> 4, then 0 -> 2 and 4 -> 6, then 0 -> 1, 2 -> 3, 4 -> 5, 6 -> 7 */
 static void binomial(const struct collective_call *k)
 {
     int size = comm_size(k->comm), relative = ring_down(comm_rank(k->comm), k->root, size),
@@ -71,7 +73,8 @@ static void chain_by(const struct collective_call *k, int64_t piece)
 /* One piece: nothing overlaps. */
 static void chain(const struct collective_call *k) { chain_by(k, k->count); }
 
-/* Elements of a segment: as many as fit, at least one. */
+/* Elements of a segment: as many as fit, at least one. Longer segments fill the pipeline more
+ * slowly, shorter ones pay alpha more often. */
 static int64_t segment(int64_t element)
 {
     return element > 0 && element < COLLECTIVE_SEGMENT ? COLLECTIVE_SEGMENT / element : 1;

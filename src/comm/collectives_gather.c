@@ -51,7 +51,7 @@ static int subtree(int relative, int size)
     return relative + ranks < size ? ranks : size - relative;
 }
 
-/* A leaf's block never leaves send or recv. */
+/* A leaf's block never leaves send or recv: half of all ranks need no scratch at all. */
 static int64_t subtree_bytes(const struct collective_shape *s, int rank)
 {
     int ranks = subtree(ring_down(rank, s->root, s->size), s->size);
@@ -59,7 +59,7 @@ static int64_t subtree_bytes(const struct collective_shape *s, int rank)
 }
 
 /* turn: the blocks of all ranks between the root's scratch, where they count from the root, and its
- * buffer. */
+ * buffer, where they count from rank 0. Charged as copies: a real library pays for it, too. */
 static void turn(const struct collective_call *k, bool out)
 {
     int size = comm_size(k->comm);

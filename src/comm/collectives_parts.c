@@ -1,7 +1,11 @@
 /* collectives_parts.c - the steps that several collectives are made of (collectives_internal.h).
  *
  * Powers of two (fold), halving and doubling, binomial trees, and the four ways to move data: a
- * message, an exchange, a copy that costs time, a copy that does not. */
+ * message, an exchange, a copy that costs time, a copy that does not. The fold of P = 6 into a core
+ * of 4:
+ *
+ *     rank     0   1   2   3   4   5
+ *     core         0       1   2   3       0 gives to 1, 2 gives to 3; they get the answer back */
 #include "comm/collectives_internal.h"
 
 /* Of the first 2 rest ranks the odd ones work for their left neighbours, so that ranks that combine
@@ -187,6 +191,7 @@ struct collective_shape collective_shape(const struct collective_call *k)
     return s;
 }
 
+/* A handful of rows: searched from the front. */
 const struct collective_algorithm *collective_in_table(const struct collective_table *t,
                                                        const char *name)
 {

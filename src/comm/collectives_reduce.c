@@ -5,7 +5,8 @@
  * combine. */
 #include "comm/collectives_internal.h"
 
-/* Two vectors: what is combined so far, where that cannot be recv, and what came in. */
+/* Two vectors: what is combined so far, where that cannot be recv, and what came in. Every rank has
+ * both, whatever its role, so that the size does not depend on the root. */
 static int64_t two_vectors(const struct collective_shape *s, int rank)
 {
     (void)rank;
@@ -86,8 +87,9 @@ static void linear_cost(const struct collective_shape *s, struct collective_cost
     tree_cost(s, s->size - 1, 0, out);
 }
 
-/* Down from the last rank to the first, then to the root: one vector at a time, no rank busy
- * twice. */
+/* Down from the last rank to the first, then to the root: one vector at a time, no rank busy twice.
+ * (P - 1) (alpha + n beta + n gamma), as a linear reduction, but no rank takes more than one
+ * message. */
 static void chain(const struct collective_call *k)
 {
     int size = comm_size(k->comm), rank = comm_rank(k->comm);
@@ -116,7 +118,8 @@ static int gather_rank(int root, int size)
 }
 
 /* Each rank sends the parts it has to the rank that differs in the lowest bit in which it is not
- * `target`: a binomial tree whose root is the target. */
+ * `target`: a binomial tree whose root is the target. After round j whoever goes on has the parts
+ * of 2^(j+1) ranks, which lie together. */
 static void gather_parts(const struct collective_call *k, const struct fold *f, int target,
                          void *acc)
 {

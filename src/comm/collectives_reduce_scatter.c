@@ -62,7 +62,8 @@ static void ring(const struct collective_call *k)
     own_copy(k, k->recv, out, block_count(k, rank));
 }
 
-/* Part p of the core: the blocks of the ranks that its rank p works for. */
+/* Part p of the core: the blocks of the ranks that its rank p works for: two for the first `rest`
+ * of them, one for the others. */
 static int64_t core_part(const struct collective_call *k, const struct fold *f, int part)
 {
     return block_place(k, part < f->rest ? 2 * part : part + f->rest);

@@ -1,4 +1,7 @@
-/* comm_publish.c - outputs of ranks that share one memory: a copy each (comm.h). */
+/* comm_publish.c - outputs of ranks that share one memory: a copy each (comm.h).
+ *
+ * The copy is not charged: publishing is the simulator's way to look at an answer, no part of the
+ * program. */
 #include <string.h>
 
 #include "base/check.h"

@@ -1,4 +1,11 @@
-/* blocks.c - local elimination around the reduction of the interface rows (blocks.h). */
+/* blocks.c - local elimination around the reduction of the interface rows (blocks.h).
+ *
+ *     rank k-1            rank k                         rank k+1
+ *     ..  o  o  e    |    o  o  o  o  e    |    o  o  ..      o: inside, e: interface, the last row
+ *               '------- spike S -------'   how e of rank k couples to it once the o are gone
+ *
+ * eliminate_inside, couple, reduction of the e, back: physics 5.4 a. Time for m rows a rank: m - 1
+ * times the elimination and the substitution, and the reduction of P rows (10.8). */
 #include "kernel/blocks.h"
 
 #include <string.h>

@@ -1,4 +1,12 @@
-/* chain.c - parallel Newton-Euler on blocks of a chain (chain.h). */
+/* chain.c - parallel Newton-Euler on blocks of a chain (chain.h).
+ *
+ * With m bodies a rank each recurrence is: a local sweep that starts from zero, a scan over the
+ * ends of the blocks, a shift of the true end by one rank, and a second local sweep (physics 3.3).
+ * Time on an ideal machine, per body x + 6 flops for a transform and a sum (x = 42, dense 66), y =
+ * 63 for a composition:
+ *
+ *     V    (2 (x + 6) + y) (m - 1) + scan        V'   2 (x + 6) (m - 1) + scan
+ *     F    (2 m - 1) (x + 6) + scan              (physics 10.9; the shift hides behind the scan) */
 #include "kernel/chain.h"
 
 #include <string.h>

@@ -1,4 +1,9 @@
-/* closure.c - loop forces from the open system's accelerations (closure.h). */
+/* closure.c - loop forces from the open system's accelerations (closure.h).
+ *
+ * Steps of an evaluation: closure_meet (poses and velocities between the two owners of each loop),
+ * closure_loads (unit loop forces as loads of their bodies), the solution of the open system,
+ * closure_solve (S and residual to rank 0, lambda to all). At most four messages a loop, and a
+ * broadcast. */
 #include "kernel/closure.h"
 
 #include <string.h>

@@ -1,4 +1,13 @@
-/* compound.c - rake and merge (compound.h). */
+/* compound.c - rake and merge (compound.h).
+ *
+ * A compound answers two forces with two accelerations, whatever bodies it consists of:
+ *
+ *     f_1, a_1 -> [ top joint ... bottom body ] <- f_2, a_2
+ *
+ * RAKE closes a joint between a leaf and the bottom of its parent: the leaf becomes an inertia dI
+ * and a load dp that the parent feels. MERGE closes the joint between the bottom of u and the top
+ * of v: f_v follows from the condition that the joint's constraints hold, and u and v become one
+ * compound. */
 #include "kernel/compound.h"
 
 #include <string.h>

@@ -1,5 +1,11 @@
 /* contraction.c - forward dynamics of a tree around the contraction: loads, accelerations, loops,
- * refinements (contraction.h). */
+ * refinements (contraction.h).
+ *
+ * One evaluation: place the bodies; scan the velocities; meet the other sides of loops; in the
+ * paper's form the bias forces; contract, solve the roots, undo (contraction_solve.c);
+ * accelerations of all bodies; joint accelerations; inner refinements; loop forces; outer
+ * refinements. Every step works on all columns (the real loads and one unit load for each loop
+ * constraint) at once. */
 #include "kernel/contraction.h"
 
 #include <math.h>

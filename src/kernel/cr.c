@@ -3,7 +3,11 @@
  *
  * With kappa = rank + 1, level s = 1, 2, 4, ..: rows with kappa mod 2s = s are eliminated, those
  * with kappa mod 2s = 0 go on. A row is eliminated once, so one factor is all that a further
- * right-hand side needs. Backward stable. */
+ * right-hand side needs. Backward stable. P = 7, rows by kappa, x: eliminated at this level:
+ *
+ *     s = 1    x   2   x   4   x   6   x
+ *     s = 2        x       4       x
+ *     s = 4                4               solved alone; then 2 and 6, then 1, 3, 5, 7 */
 #include "kernel/scan.h"
 #include "kernel/reduction.h"
 #include "kernel/tags.h"

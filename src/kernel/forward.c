@@ -1,5 +1,12 @@
 /* forward.c - the constraint force algorithm on a block of a chain (forward.h). Symbols as in
- * physics 4. */
+ * physics 4.
+ *
+ *                   scans system            accelerations        accuracy (physics 8.2)
+ *     paper (4.2)     3   A FS = -B FT      C FT + B^T FS        loses what its bias loses
+ *     direct (4.3)    1   A FS = -W^T Z     H^T (Z + D W FS)     to the last digits
+ *
+ * Both use the same A, the same solvers and the same exchange of edge data (4.5). The direct form
+ * never multiplies D out: it works through forces and accelerations of bodies (forward_form.c). */
 #include "kernel/forward.h"
 
 #include <math.h>

@@ -1,4 +1,8 @@
-/* micro.c - micro-benchmarks of a machine's messages (micro.h). */
+/* micro.c - micro-benchmarks of a machine's messages (micro.h).
+ *
+ * Patterns that are published for real machines, so that a machine file can be compared with
+ * measurements: latency and rate (pingpong), one step of recursive doubling (shift), total
+ * exchange, bisection, hot spot, barrier. Nobody looks at the data. */
 #include "kernel/micro.h"
 
 #include "comm/collectives.h"

@@ -1,4 +1,12 @@
-/* motion.c - time steps of one rank's joints (motion.h). */
+/* motion.c - time steps of one rank's joints (motion.h).
+ *
+ *     semi-implicit Euler   order 1   1 evaluation a step      u += h u', then q += h N(q) u
+ *     kick-drift-kick       order 2   1                        h/2 of u', h of q, h/2 of the new u'
+ *     Runge-Kutta           order 4   4                        the classical scheme
+ *     linearly implicit     order 1   1                        springs as at the step's end
+ *
+ * No message in here: a step is local, since each rank owns whole joints. physics 9 has errors and
+ * limits of stability. */
 #include "kernel/motion.h"
 
 #include <math.h>

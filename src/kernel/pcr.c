@@ -2,7 +2,9 @@
  * adds.
  *
  * In step j every row is eliminated towards its neighbours at distance 2^j and at the same time
- * receives theirs; after ceil(log2 n) steps every row stands alone. */
+ * receives theirs; after ceil(log2 n) steps every row stands alone. No way back, hence half the
+ * steps of cyclic reduction, for n log2 n eliminations in place of n; not backward stable (physics
+ * 8.4). */
 #include "kernel/scan.h"
 #include "kernel/reduction.h"
 

@@ -1,4 +1,9 @@
-/* references.c - serial answers, tolerances and baselines; see references.h. */
+/* references.c - serial answers, tolerances and baselines; see references.h.
+ *
+ * A run is right when it agrees with a serial algorithm that shares no code with it but the joints:
+ * RNEA for joint forces, ABA for accelerations, the serial integrator for time steps. A run is fast
+ * when it beats the fastest of the serial codes on one node, whose operations are counted and
+ * priced by the same rules. */
 #include "kernel/references.h"
 
 #include <math.h>

@@ -1,4 +1,14 @@
-/* scan.c - recursive doubling over ranks (scan.h). */
+/* scan.c - recursive doubling over ranks (scan.h).
+ *
+ * P = 8, incoming form; an arrow is one message of v (48 bytes), with T (96 bytes) where marked:
+ *
+ *     step 0, d = 1   0 -> 1 =T> 2 =T> 3 =T> 4 =T> 5 =T> 6 =T> 7
+ *     step 1, d = 2   0 -> 2   1 -> 3   2 =T> 4   3 =T> 5   4 =T> 6   5 =T> 7
+ *     step 2, d = 4   0 -> 4   1 -> 5   2 -> 6   3 -> 7
+ *
+ * After step j rank k holds the sum over the ranks k - 2^(j+1) + 1 .. k; a sender below 2^j has no
+ * T^(j). For P = 2^lg a scan has P lg - P + 1 messages, of which P lg - 2 (P - 1) carry a T
+ * (physics 3.1). */
 #include "kernel/scan.h"
 
 #include <string.h>

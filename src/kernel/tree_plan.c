@@ -1,4 +1,8 @@
-/* tree_plan.c - pieces of a tree and the order of its contraction (tree_plan.h). */
+/* tree_plan.c - pieces of a tree and the order of its contraction (tree_plan.h).
+ *
+ * Everything in here follows from the parents of the bodies and from P, is made once before the
+ * ranks run, and is the same on all of them: the ranks need no messages to agree on what comes
+ * next. Time and memory O(n log n), against O(n / P) work of a rank in every evaluation. */
 #include "kernel/tree_plan.h"
 
 #include <string.h>

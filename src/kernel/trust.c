@@ -1,4 +1,8 @@
-/* trust.c - residual and condition of a run; see trust.h. */
+/* trust.c - residual and condition of a run; see trust.h.
+ *
+ * The solver sees by how much its answer violates the constraints, and how much of the diagonal
+ * elimination has used up. Neither needs a reference, so that answers are judged where no serial
+ * code could run. */
 #include "kernel/trust.h"
 
 #include <math.h>

@@ -105,6 +105,7 @@ void dense_product_tn(int a, int b, int k, const real *A, const real *B, real *C
         }
 }
 
+/* What a received update costs its receiver (physics 5.2, wr). */
 void dense_subtract(int n, real *a, const real *b, struct work *w)
 {
     w->flop += (uint64_t)n;

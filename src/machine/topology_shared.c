@@ -31,6 +31,7 @@ static void crossbar_start(const struct topology *t, uint64_t choice, struct rou
     c->left = t->nlink; /* 0: straight through; bus: once over it */
 }
 
+/* One step over the bus, none on a crossbar. */
 static bool crossbar_next(const struct topology *t, struct route_cursor *c, struct hop *h)
 {
     (void)t;

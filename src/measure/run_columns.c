@@ -1,4 +1,8 @@
-/* run_columns.c - the columns of every struct of run_result.h: a new result is a member there and a row here. */
+/* run_columns.c - the columns of every struct of run_result.h: a new result is a member there and a
+ * row here.
+ *
+ * Names are those of the database and end in their unit; what may be absent is COLUMN_NULL, with
+ * the condition or the number that says so. */
 #include "measure/run_row.h"
 
 /* A member of the run's result, and one of the row itself. */

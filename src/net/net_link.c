@@ -59,6 +59,7 @@ static struct flight *flight_take(struct net *n)
     return f;
 }
 
+/* Last in, first out: the record just used is still in the cache. */
 static void flight_return(struct net *n, struct flight *f)
 {
     struct link_level *g = n->state;

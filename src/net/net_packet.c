@@ -3,7 +3,12 @@
  * An event of a resource looks at the FIFO fronts that ask for it, grants it to one whose flits
  * will find room behind it, and works out at once everything that follows from the grant: until
  * when the resource is taken, when the packet may ask for its next one, when the packet behind it
- * may ask, when it has arrived. */
+ * may ask, when it has arrived.
+ *
+ *     grant at t:   link taken [t, t + S)   head at its end t + tau   FIFO before it left at t + S
+ *
+ * S is the length of the packet in flits at the rate of the link, or longer if it still comes in
+ * slower. */
 #include "net/net_packet.h"
 
 /* Second look of a resource at the same time: for packets that go where another has just made room.

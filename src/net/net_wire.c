@@ -1,5 +1,9 @@
 /* net_wire.c - what every level asks of the wire: sizes in packets and flits, routes, the slowest
- * rate of a route. */
+ * rate of a route.
+ *
+ * A message is cut into packets, each with a header, in whole flits: for b bytes of payload in
+ * packets of at most p bytes, header h and flits of f bytes, floor((b-1)/p) ceil((p+h)/f) +
+ * ceil((last+h)/f) flits. */
 #include "net/net_internal.h"
 
 int64_t net_packets(const struct net *n, int64_t bytes)

@@ -2,7 +2,8 @@
  * arrive.
  *
  * Messages without dependencies are started one event ahead, in the order (time, number), so that
- * the queue holds what is in the network and not the whole list. */
+ * the queue holds what is in the network and not the whole list. The same lists drive flit-level
+ * reference simulators, so that levels can be compared message by message (docs/network.md 4). */
 #include "net/traffic.h"
 
 #include <stdlib.h>

@@ -1,5 +1,9 @@
 /* event_queue.c - a wheel of wheels for the future, a sorted run and a heap for the present; see
- * event_queue.h. */
+ * event_queue.h.
+ *
+ * Example: now = 0, events at 5, 70 and 5000 ps. Level 0 holds 5; level 1 (64 ps a bucket) holds 70
+ * in bucket 1; level 2 (4096 ps a bucket) holds 5000 in bucket 1. When 5 is done, bucket 1 of level
+ * 1 is spread from 64 ps on: 70 moves to level 0. An event is moved at most once a level. */
 #include "sim/event_queue.h"
 
 #include <stdlib.h>

@@ -1,4 +1,7 @@
-/* sim.c - the clock and the loop. */
+/* sim.c - the clock and the loop.
+ *
+ * One thread, one queue, one clock: an event may post others, never wait. What waits are fibers,
+ * which events wake up (vp). */
 #include "sim/sim.h"
 
 #include <math.h>
@@ -30,6 +33,7 @@ struct sim *sim_create(void)
     return s;
 }
 
+/* Events that are still pending own nothing: they are dropped. */
 void sim_destroy(struct sim *s)
 {
     if (!s) return;

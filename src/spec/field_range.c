@@ -1,4 +1,6 @@
-/* field_range.c - whether a value is within its field's bounds, and refusals (field_list.h). */
+/* field_range.c - whether a value is within its field's bounds, and refusals (field_list.h).
+ *
+ * Bounds are inclusive, in SI, and belong to every entry of a list. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

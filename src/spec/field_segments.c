@@ -69,6 +69,7 @@ static const struct field rows[] = {
 
 enum { NROW = sizeof rows / sizeof *rows };
 
+/* Line ends count as blanks: a list may stand over several lines. */
 static const char *skip_blanks(const char *s)
 {
     while (isspace((unsigned char)*s)) s++;

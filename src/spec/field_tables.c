@@ -71,6 +71,8 @@ void fields_config(const struct run_spec *run, struct text *out)
 }
 
 /* What the manual says a value is. "one of" is followed by the choices. */
+/* What the manual says a value is. "one of" is followed by the choices, "a list, each" by the unit
+ * of its entries. */
 static const char *kind_name(const struct field *f)
 {
     switch (f->kind) {
@@ -119,6 +121,9 @@ static void document_range(const struct field *f, FILE *out)
 }
 
 /* No default: the key is required. An empty default is told as nothing. */
+/* No default: the key is required. An empty default is told as nothing. One line a setting:
+ *
+ *     - `machine.node.clock`: processor clock, ... *a frequency, 1 Hz to 10 THz; required* */
 static void document_field(const struct field_table *t, const struct field *f, FILE *out)
 {
     fprintf(out, "- `%s%s%s`: %s.", t->prefix, t->prefix[0] != '\0' ? "." : "", f->key, f->doc);

@@ -3,7 +3,13 @@
  * One struct serves all built-in programs: formulation to refinement act on multibody dynamics,
  * message to ring_ranks on the benchmarks. A setting that cannot act on the program at hand is
  * "idle": it is told to a user who sets it and left out of tables, but it is part of the
- * configuration. */
+ * configuration. Solvers:
+ *
+ *     thomas            serial block Cholesky on rank 0 (physics 5.1), the reference
+ *     cr                cyclic reduction (5.2): backward stable, 2 lg P steps
+ *     pcr-symmetric     parallel cyclic reduction (5.3 ii): lg P steps; pcr: the textbook's form (5.3 i)
+ *     cr-pcr            some levels of the first, then the second (5.4 d)
+ *     partition         local elimination, then cr or pcr-symmetric on one row a rank (5.4 a) */
 #include "spec/kernel_spec.h"
 
 #include <string.h>
@@ -133,6 +139,7 @@ static const char *idle_unless_shift(const struct run_spec *r)
     return kernel_spec_has(&r->kernel, PROGRAM_DISTANCE) ? NULL : "only 'shift' has a distance";
 }
 
+/* Sizes act on all benchmarks but barriers. */
 static const char *idle_without_message(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
@@ -140,6 +147,7 @@ static const char *idle_without_message(const struct run_spec *r)
     return kernel_spec_has(&r->kernel, PROGRAM_MESSAGE) ? NULL : "a barrier has no size";
 }
 
+/* An algorithm, or the machine's rules. */
 static const char *idle_without_algorithm(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);
@@ -158,6 +166,7 @@ static const char *idle_without_root(const struct run_spec *r)
                : "only broadcast, reduce, gather and scatter have a root";
 }
 
+/* How many ranks stand in one ring. */
 static const char *idle_unless_ring(const struct run_spec *r)
 {
     const char *why = idle_with_model(r);

@@ -1,6 +1,11 @@
 /* model_spec.c - the settings of a multibody scene.
  *
- * A generator makes n bodies in a shape; joints, inertias, pose and loads are drawn from the seed.
+ * A generator makes n bodies in a shape; joints, inertias, pose and loads are drawn from the seed:
+ *
+ *     serial-chain, polymer            every body hangs on the one before
+ *     comb, star, random-tree, dendrimer   trees: the parents follow a rule, or the seed
+ *     ring, four-bar                   closed chains, cut open at one joint (physics 7.1)
+ *
  * URDF files give bodies and joints, vector files also the state and the loads. What the file
  * gives, the settings cannot: these rows are idle then, and say why. */
 #include "spec/model_spec.h"
@@ -204,6 +209,8 @@ static const struct field fields[] = {
     {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
      .fallback = "0 N m s/rad", .idle = idle_from_file, .doc = "damping of the joints, 0: none"},
     /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8. */
+    /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8.
+     * With the projection of physics 7.5 it would not be needed. */
     {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation), .min = 0, .max = 1e9,
      .fallback = "0 rad/s", .idle = idle_unless_closed,
      .doc = "closed loops: alpha = beta of Baumgarte's method, at most about one over the step size; 0: none"},

@@ -44,6 +44,7 @@ static const struct field fields[] = {
      .fallback = "",
      .doc = "a program of your own instead of a built-in one: source (.c, .cc, .f90), or what "
             "`mimdsim cc` made of it"},
+    /* Divided into words as a shell does, without its variables. */
     {.key = "arguments",
      .kind = FIELD_TEXT,
      AT(arguments),
@@ -90,6 +91,7 @@ const struct field *program_sheet_find(const struct program_sheet *p, const char
     return NULL;
 }
 
+/* The same reader as for built-in settings: unit, range and choices are checked. */
 const char *program_parameter_text(const struct field *f, const char *text, struct arena *a,
                                    char *why, int size)
 {
@@ -104,6 +106,8 @@ const char *program_parameter_text(const struct field *f, const char *text, stru
 }
 
 /* Values travel as "name = value" lines: the text is what identity and store keep anyway. */
+/* Values travel as "name = value" lines: the text is what identity and store keep anyway. One that
+ * does not fit into the buffer is cut. */
 bool program_value_find(const char *lines, const char *name, char *buffer, int size)
 {
     /* A name matches whole: " = " must follow at once. */
@@ -119,6 +123,7 @@ bool program_value_find(const char *lines, const char *name, char *buffer, int s
     return false;
 }
 
+/* The form in which values travel: one line each, in the order declared. */
 void program_lines_add(struct text *lines, const char *name, const char *value)
 {
     text_add(lines, "%s = %s\n", name, value);

@@ -1,4 +1,8 @@
-/* run_spec.c - the settings of a run itself, and all tables together. */
+/* run_spec.c - the settings of a run itself, and all tables together.
+ *
+ * ranks and seed, and what is to be recorded. How the run is executed (what is computed although
+ * nothing asks for it, who hears how far it is) is no setting and no part of its identity (struct
+ * run_order). */
 #include "spec/run_spec.h"
 
 #include <string.h>

@@ -5,7 +5,9 @@
  *
  * of a message of b bytes, by the numbers of its segment. The classic form (limits of short and
  * eager messages) is the same thing with up to three segments, so that levels and processors need
- * one rule. */
+ * one rule:
+ *
+ *     0 B up to the lower limit, from there to the higher one, beyond it */
 #include "spec/software_spec.h"
 
 /* -1 in a segment: not given there. */
@@ -27,7 +29,7 @@ static struct software_segment completed(const struct software_spec *s, struct s
 }
 
 /* What short.*, eager.* and rendezvous.* say of messages of `from` bytes, the smallest of a
- * segment. */
+ * segment. All messages of a segment are alike: no limit lies inside one. */
 static struct software_segment classic(const struct software_spec *s, int64_t from)
 {
     struct software_segment x = {.from = from,
