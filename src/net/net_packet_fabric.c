@@ -206,8 +206,10 @@ static void flight_cut(const struct fabric *f, struct flight *w)
     w->last = (int32_t)last;
 }
 
-/* A link offers the channels of the message's deadlock class; ports offer all of them. */
-static void pass_init(struct fabric *f, struct flight *w, int h, const struct hop *way)
+/* A link offers the channels of the message's deadlock class; ports offer all of them. No flit takes
+ * more than `longest`. */
+static void pass_init(struct fabric *f, struct flight *w, int h, const struct hop *way,
+                      sim_ps longest)
 {
     struct pass *s = &w->pass[h];
     int class = way->vc_class < f->nclass ? way->vc_class : f->nclass - 1;
@@ -215,7 +217,8 @@ static void pass_init(struct fabric *f, struct flight *w, int h, const struct ho
     bool link = h > 0 && h < w->nhop;
     s->channel = (int16_t)(link ? class * f->nlane : 0);
     s->nchannel = (int16_t)(link ? f->nlane : f->nchannel);
-    s->flit = net_resource_rate(f->net, way->link, w->m->bytes).flit;
+    const sim_ps flit = net_resource_rate(f->net, way->link, w->m->bytes).flit;
+    s->flit = flit < longest ? flit : longest;
 }
 
 /* The route is found once, when the message is handed over; random routes by its id. */
@@ -232,10 +235,7 @@ struct flight *flight_take(struct fabric *f, struct net_message *m)
      * of times wraps. */
     const sim_ps longest = PS_TOO_LONG / ((int64_t)(w->npacket - 1) * w->full + w->last);
     if (w->slowest > longest) w->slowest = longest;
-    for (int h = 0; h <= nhop; h++) {
-        pass_init(f, w, h, &way[h]);
-        if (w->pass[h].flit > longest) w->pass[h].flit = longest;
-    }
+    for (int h = 0; h <= nhop; h++) pass_init(f, w, h, &way[h], longest);
     f->nflight++;
     return w;
 }

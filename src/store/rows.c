@@ -73,7 +73,11 @@ static void add_columns(const char *name, size_t length, struct text *sql)
         for (int k = 0; t->segment[k] != NULL; k++) columns_define(t->segment[k], sql);
         return;
     }
-    CHECK(!"a table of schema.sql without columns");
+    /* our own mistake in schema.sql, which a message without the table's name would not find */
+    struct text missing = {0};
+    text_add(&missing, "schema.sql asks for the columns of '%.*s', which row_table lacks",
+             (int)length, name);
+    check_failed(__FILE__, __LINE__, missing.s);
 }
 
 /* schema.sql has a line "@table@" where the columns of that table belong. */
