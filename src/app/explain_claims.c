@@ -12,8 +12,8 @@
 
 #include "app/explain_answer.h"
 #include "app/explain_search.h"
+#include "app/stored.h"
 #include "base/check.h"
-#include "base/digest.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "report/report.h"
@@ -219,15 +219,6 @@ static bool answer_together(struct inquest *q)
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
-/* One hash. */
-static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
-{
-    (void)ncolumn;
-    (void)name;
-    text_copy(context, 65, value[0] ? value[0] : "");
-    return false;
-}
-
 /* What the answers depend on: seed, claims, their runs, and which claims are judged at all. */
 static void identity(const struct inquest *q, char hex[65])
 {
@@ -237,27 +228,7 @@ static void identity(const struct inquest *q, char hex[65])
         text_add(&all, "%s %s\n", q->claim[i].rule->id, q->claim[i].subject.identity);
     for (int i = 0; i < q->rules->n && i < MOST_CLAIMS; i++)
         text_add(&all, "%d%s\n", q->judged[i], q->rules->rule[i].sql);
-    digest_sha256_hex(all.s, all.length, hex);
-    text_free(&all);
-}
-
-/* An error reads as no: then it is searched again. */
-static bool is_stored(struct inquest *q, const char *hex)
-{
-    char stored[65] = "";
-    struct err ignored;
-    err_clear(&ignored);
-    return store_select(q->bench.store, "SELECT value FROM meta WHERE key = 'explain'", 0, NULL,
-                        take_text, stored, &ignored) &&
-           strcmp(stored, hex) == 0;
-}
-
-/* Table meta: key and value. */
-static bool keep_meta(struct inquest *q, const char *key, const char *text)
-{
-    static const char *const name[] = {"key", "value"};
-    const struct store_value value[] = {store_text(key), store_text(text)};
-    return store_insert(q->bench.store, "meta", 2, name, value, q->bench.e);
+    stored_digest(&all, hex);
 }
 
 /* Remove what was answered before, also of claims that hold by now. */
@@ -285,14 +256,15 @@ static bool inquire(struct inquest *q)
     if (!find_failing(q)) return false;
     identity(q, hex);
     /* Answered before, from the same runs and rules. */
-    if (!q->bench.common->force && is_stored(q, hex)) return true;
+    if (!q->bench.common->force && stored_is(q->bench.store, "explain", hex)) return true;
     if (!store_note_build(q->bench.store, q->bench.e) || !clear_answers(q) || !search_claims(q))
         return false;
     for (int i = 0; i < q->n; i++)
         if (!answer_claim(q, &q->claim[i])) return false;
     if (!answer_together(q)) return false;
     snprintf(took, sizeof took, "%.2f", host_seconds() - began);
-    return keep_meta(q, "explain_s", took) && keep_meta(q, "explain", hex);
+    return stored_keep(q->bench.store, "explain_s", took, q->bench.e) &&
+           stored_keep(q->bench.store, "explain", hex, q->bench.e);
 }
 
 bool explain_claims(const struct common *c, const struct claim_rules *rules, uint64_t seed,

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/stored.h"
 #include "base/check.h"
 #include "base/digest.h"
 #include "base/text.h"
@@ -145,22 +146,12 @@ static bool read_subject(struct explain_subject *s, struct explain_bench *b)
 static void identify(struct explain_subject *s)
 {
     struct text all = {0};
-    for (int i = 0; i < s->nspec; i++) text_add(&all, "%s\n", s->spec[i].config_hash);
-    for (int i = 0; i < s->nrule; i++) text_add(&all, "%s\n%s\n", s->rule[i]->id, s->rule[i]->sql);
-    digest_sha256_hex(all.s, all.length, s->identity);
-    text_free(&all);
+    stored_add_runs(&all, s->spec, s->nspec);
+    for (int i = 0; i < s->nrule; i++) stored_add_claim(&all, s->rule[i]);
+    stored_digest(&all, s->identity);
 }
 
 /* --- stored points ---------------------------------------------------------------------------- */
-
-/* One hash. */
-static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
-{
-    (void)ncolumn;
-    (void)name;
-    text_copy(context, 65, value[0] ? value[0] : "");
-    return false;
-}
 
 /* The state of reading stored points back. */
 struct loading {
@@ -233,14 +224,12 @@ static bool take_id(void *context, int ncolumn, const char *const *name,
 /* Answers, maps and points of an older identity go together, and the new identity is noted. */
 static bool forget(struct explain_subject *s, struct explain_bench *b, const char *meta)
 {
-    static const char *const name[] = {"key", "value"};
-    const struct store_value value[] = {store_text(meta), store_text(s->identity)};
     struct store_value subject = store_text(s->name);
     if (!store_begin(b->store, b->e)) return false;
     bool ok = store_delete(b->store, "explain_answer", "subject", subject, b->e) &&
               store_delete(b->store, "explain_map", "subject", subject, b->e) &&
               store_delete(b->store, "explain_point", "subject", subject, b->e) &&
-              store_insert(b->store, "meta", 2, name, value, b->e);
+              stored_keep(b->store, meta, s->identity, b->e);
     if (ok) return store_commit(b->store, b->e);
     store_rollback(b->store);
     return false;
@@ -250,11 +239,10 @@ static bool forget(struct explain_subject *s, struct explain_bench *b, const cha
 static bool load(struct explain_subject *s, struct explain_bench *b)
 {
     struct text meta = {0};
-    char stored[65] = "";
+    char stored[65];
     text_add(&meta, "explain.%s", s->name);
-    const char *const key[] = {meta.s}, *const subject[] = {s->name};
-    bool ok = store_select(b->store, "SELECT value FROM meta WHERE key = ?1", 1, key, take_text,
-                           stored, b->e);
+    const char *const subject[] = {s->name};
+    bool ok = stored_note(b->store, meta.s, stored, b->e);
     if (ok && (b->common->force || strcmp(stored, s->identity) != 0)) ok = forget(s, b, meta.s);
     text_free(&meta);
     struct loading l = {s, b, NULL};

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/stored.h"
 #include "base/check.h"
 #include "base/digest.h"
 #include "base/progress.h"
@@ -178,31 +179,9 @@ static bool read_plans(struct sampler *p)
 static void identity(const struct sampler *p, char hex[65])
 {
     struct text all = {0};
-    for (int i = 0; i < p->nspec; i++) text_add(&all, "%s\n", p->spec[i].config_hash);
-    for (int i = 0; i < p->rules->n; i++)
-        text_add(&all, "%s\n%s\n", p->rules->rule[i].id, p->rules->rule[i].sql);
-    digest_sha256_hex(all.s, all.length, hex);
-    text_free(&all);
-}
-
-/* One hash. */
-static bool take_text(void *context, int ncolumn, const char *const *name, const char *const *value)
-{
-    (void)ncolumn;
-    (void)name;
-    text_copy(context, 65, value[0] ? value[0] : "");
-    return false;
-}
-
-/* Whether these very samples are stored. */
-static bool are_stored(const struct sampler *p, const char *hex)
-{
-    char stored[65] = "";
-    struct err ignored;
-    err_clear(&ignored);
-    return store_select(p->store, "SELECT value FROM meta WHERE key = 'samples'", 0, NULL,
-                        take_text, stored, &ignored) &&
-           strcmp(stored, hex) == 0;
+    stored_add_runs(&all, p->spec, p->nspec);
+    for (int i = 0; i < p->rules->n; i++) stored_add_claim(&all, &p->rules->rule[i]);
+    stored_digest(&all, hex);
 }
 
 /* What was drawn, for figures that show a verdict against a parameter. */
@@ -263,19 +242,12 @@ static bool clear_tables(struct sampler *p)
     return false;
 }
 
-static bool keep_meta(struct sampler *p, const char *key, const char *text)
-{
-    static const char *const name[] = {"key", "value"};
-    const struct store_value value[] = {store_text(key), store_text(text)};
-    return store_insert(p->store, "meta", 2, name, value, p->e);
-}
-
 /* The hash is stored last: an interrupted sampling begins again. */
 static bool run_samples(struct sampler *p)
 {
     char hex[65];
     identity(p, hex);
-    if (!p->common->force && are_stored(p, hex)) return true;
+    if (!p->common->force && stored_is(p->store, "samples", hex)) return true;
     if (!p->common->quiet)
         fprintf(stderr, "mimdsim: %d samples of %d uncertain parameters, %d runs\n", p->nsample,
                 p->nuncertain, p->nspec);
@@ -284,7 +256,8 @@ static bool run_samples(struct sampler *p)
     bool ok = clear_tables(p) && run_campaign(p->spec, NULL, p->nspec, NULL, p->common->jobs,
                                               p->common->quiet, keep_result, p, p->e);
     snprintf(took, sizeof took, "%.2f", host_seconds() - began);
-    return ok && keep_meta(p, "samples_s", took) && keep_meta(p, "samples", hex);
+    return ok && stored_keep(p->store, "samples_s", took, p->e) &&
+           stored_keep(p->store, "samples", hex, p->e);
 }
 
 /* Scenes, draws and plans, then one campaign of all samples. */

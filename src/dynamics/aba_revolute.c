@@ -21,17 +21,6 @@ struct motion {
     real v[3];
 };
 
-/* r = E Rz. */
-enum { TURN_FLOP = 18 };
-static inline void turn(real *restrict r, const real *restrict e, real s, real c)
-{
-    for (int i = 0; i < 9; i += 3) {
-        r[i] = c * e[i] + s * e[i + 1];
-        r[i + 1] = c * e[i + 1] - s * e[i];
-        r[i + 2] = e[i + 2];
-    }
-}
-
 /* Velocity, bias acceleration and velocity force of one body. */
 enum {
     START_FLOP = MAT3_VEC_FLOP + 2 + 1 + 2 * VEC3_CROSS_FLOP + MAT3_VEC_FLOP + 2 * VEC3_CROSS_FLOP + VEC3_SCALE_FLOP +
@@ -131,15 +120,7 @@ static inline void hand_down(const struct revolute *body, const struct link *l, 
     const real *p = body->t;
     rotate(l, ra, b, c);
     /* shift: d = b + p~ c, A' = A - d p~ + p~ b^T */
-    d[0] = b[0] + (p[1] * c[2] - p[2] * c[1]);
-    d[1] = b[1] + (p[1] * c[4] - p[2] * c[3]);
-    d[2] = b[2] + (p[1] * c[5] - p[2] * c[4]);
-    d[3] = b[3] + (p[2] * c[0] - p[0] * c[2]);
-    d[4] = b[4] + (p[2] * c[1] - p[0] * c[4]);
-    d[5] = b[5] + (p[2] * c[2] - p[0] * c[5]);
-    d[6] = b[6] + (p[0] * c[1] - p[1] * c[0]);
-    d[7] = b[7] + (p[0] * c[3] - p[1] * c[1]);
-    d[8] = b[8] + (p[0] * c[4] - p[1] * c[2]);
+    mat3_add_skew_mul_sym3(d, b, p, c);
     real *a = parent->a;
     a[0] += ra[0] + ((d[2] + b[2]) * p[1] - (d[1] + b[1]) * p[2]);
     a[1] += ra[1] + ((d[0] * p[2] - d[2] * p[0]) + (p[1] * b[5] - p[2] * b[4]));
@@ -190,7 +171,7 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
         struct link *l = &link[i];
-        turn(l->r, b->e, sine[i], cosine[i]);
+        mat3_turn_z(l->r, b->e, sine[i], cosine[i]);
         if (at_rest) vec3_set(l->n, 0, 0, 0), vec3_set(l->f, 0, 0, 0);
         else start(b, u[i], b->parent < 0 ? base.w : motion[b->parent].w, motion[i].w, l);
         rigid(b, l);
@@ -215,7 +196,7 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
 
 bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
-    const int body = TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
+    const int body = MAT3_TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
     const int moving = d->at_rest ? ELIMINATE_AT_REST_FLOP + ACCELERATE_AT_REST_FLOP
                                   : START_FLOP + ELIMINATE_FLOP + ACCELERATE_FLOP;
     revolute_count(d, (struct revolute_cost){.body = body + moving, .child = HAND_DOWN_FLOP, .div = 1}, w);

@@ -46,16 +46,12 @@ enum { BIAS = 45, SLIDING = 18 };
 #define STEPS(n) .step = {.flop = 2 * (n)}
 
 /* turn_about_z: r = E Rz(theta); TURN flops, sine and cosine. */
-enum { TURN = 18 };
+enum { TURN = MAT3_TURN_FLOP };
 static inline void turn_about_z(const real *e, real theta, real *r)
 {
     real s, c;
     angle_sincos(theta, &s, &c);
-    for (int i = 0; i < 3; i++) {
-        r[3 * i] = c * e[3 * i] + s * e[3 * i + 1];
-        r[3 * i + 1] = c * e[3 * i + 1] - s * e[3 * i];
-        r[3 * i + 2] = e[3 * i + 2];
-    }
+    mat3_turn_z(r, e, s, c);
 }
 
 /* shift: p = t + E (x, y, z); SHIFT flops. */

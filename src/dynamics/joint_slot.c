@@ -66,36 +66,18 @@ static void step(const struct body *b, real *q, const real *u, real h)
     for (int i = 3; i < b->d; i++) q[1 + i] += h * u[i];
 }
 
-/* One free direction, physics 1.3: H = [U; 0], [0; R^T x]. */
-const struct joint_motion JOINT_DEFINE(slot) = {
-    .slides = true,
-    .subspace = subspace,
-    .place = place,
-    .kappa = kappa,
-    .qdot = qdot,
-    .step = step,
-    .cost = {.subspace = {.flop = QUATERNION + COLUMNS, .div = 1},
-             .place = QUATERNION_PLACE + SLIDE + SHIFT + COLUMNS,
-             .place_div = 1,
-             .rate = 48,
-             .bias = BIAS + SLIDING + VEC3_CROSS_ADD_FLOP,
-             QUATERNION_STEPS(1),
-             DENSE(4)},
-};
-
-/* The same with two. */
-const struct joint_motion JOINT_DEFINE(point_plane) = {
-    .slides = true,
-    .subspace = subspace,
-    .place = place,
-    .kappa = kappa,
-    .qdot = qdot,
-    .step = step,
-    .cost = {.subspace = {.flop = QUATERNION + COLUMNS, .div = 1},
-             .place = QUATERNION_PLACE + SLIDES + SHIFT + COLUMNS,
-             .place_div = 1,
-             .rate = 60,
-             .bias = BIAS + SLIDING + VEC3_CROSS_ADD_FLOP,
-             QUATERNION_STEPS(2),
-             DENSE(5)},
-};
+/* H = [U; 0], [0; R^T x] with one free direction or two (physics 1.3); `d` degrees of freedom, of which `free` are
+ * displacements, at `slide` flops. */
+#define SLIDING_BALL(d, free, slide)                                                                                   \
+    {                                                                                                                  \
+        .slides = true, .subspace = subspace, .place = place, .kappa = kappa, .qdot = qdot, .step = step,              \
+        .cost = {.subspace = {.flop = QUATERNION + COLUMNS, .div = 1},                                                 \
+                 .place = QUATERNION_PLACE + (slide) + SHIFT + COLUMNS,                                                \
+                 .place_div = 1,                                                                                       \
+                 .rate = 12 * (d),                                                                                     \
+                 .bias = BIAS + SLIDING + VEC3_CROSS_ADD_FLOP,                                                         \
+                 QUATERNION_STEPS(free),                                                                               \
+                 DENSE(d)},                                                                                            \
+    }
+const struct joint_motion JOINT_DEFINE(slot) = SLIDING_BALL(4, 1, SLIDE);
+const struct joint_motion JOINT_DEFINE(point_plane) = SLIDING_BALL(5, 2, SLIDES);

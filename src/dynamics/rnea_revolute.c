@@ -28,17 +28,6 @@ static inline void spin_matrix(struct motion *c)
     k[6] = xz - al[1], k[7] = yz + al[0], k[8] = -(xx + yy);
 }
 
-/* r = E Rz. */
-enum { TURN_FLOP = 18 };
-static inline void turn(real *restrict r, const real *restrict e, real s, real c)
-{
-    for (int i = 0; i < 9; i += 3) {
-        r[i] = c * e[i] + s * e[i + 1];
-        r[i + 1] = c * e[i + 1] - s * e[i];
-        r[i + 2] = e[i + 2];
-    }
-}
-
 /* w, al, a of body c from its parent's p: the joint adds z u and z ud + w* x z u. */
 enum { CARRY_FLOP = 2 * MAT3_VEC_FLOP + 18 + 1 + 5 + MAT3_VEC_FLOP + SPIN_FLOP };
 static inline void carry(const struct revolute *b, const real *r, real u, real ud, const struct motion *p,
@@ -126,7 +115,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
         const struct revolute *b = &d->revolute[i];
         const struct motion *p = b->parent < 0 ? &base : &motion[(unsigned)b->parent & slots];
         struct motion *c = &motion[(unsigned)i & slots];
-        turn(load[i].r, b->e, sine[i], cosine[i]);
+        mat3_turn_z(load[i].r, b->e, sine[i], cosine[i]);
         if (at_rest) {
             carry_at_rest(b, load[i].r, ud[i], p, c);
             newton_euler_at_rest(b, c, load[i].f, load[i].n);
@@ -148,8 +137,8 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
 
 void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
-    const int body = d->at_rest ? TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP
-                                : TURN_FLOP + CARRY_FLOP + NEWTON_EULER_FLOP;
+    const int body = d->at_rest ? MAT3_TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP
+                                : MAT3_TURN_FLOP + CARRY_FLOP + NEWTON_EULER_FLOP;
     if (d->at_rest) sweep(d, true, q, u, ud, tau);
     else sweep(d, false, q, u, ud, tau);
     const int load = d->load ? SCREW_ADD_FLOP : 0;

@@ -39,12 +39,18 @@ static void add_body(const struct dynamics *d, int i, const struct xform *x, str
     for (int k = 0; k < 3; k++) t->com[k] += b->m * c[k];
 }
 
+/* All bodies at q in motion u: poses, velocities and bias in d; where they are in the base's frame. */
+static struct xform *world_motion(struct dynamics *d, const real *q, const real *u)
+{
+    dynamics_place(d, q);
+    dynamics_velocities(d, u);
+    return world_poses(d);
+}
+
 void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t)
 {
     struct arena_mark mark = arena_mark(d->arena);
-    dynamics_place(d, q);
-    dynamics_velocities(d, u);
-    struct xform *x = world_poses(d);
+    const struct xform *x = world_motion(d, q, u);
     *t = (struct motion_totals){0};
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
@@ -59,9 +65,7 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
 void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out)
 {
     struct arena_mark mark = arena_mark(d->arena);
-    dynamics_place(d, q);
-    dynamics_velocities(d, u);
-    struct xform *x = world_poses(d);
+    const struct xform *x = world_motion(d, q, u);
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         static const real still[6] = {0};

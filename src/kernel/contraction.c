@@ -308,8 +308,9 @@ static void loop_forces(struct contraction *k, real *f)
 
 /* refine: u' += M^-1 (tau - inverse dynamics(u')) (physics 8.6, outer refinement). False when that
  * would not have made it better. */
-static bool refine(struct contraction *k, struct refinement *course)
+static bool refine(void *solver, struct refinement *course)
 {
+    struct contraction *k = solver;
     struct tree *t = &k->tree;
     comm_stage(t->comm, STAGE_ACCELERATION);
     tree_acceleration(t, k->answer);
@@ -342,25 +343,14 @@ static bool refine(struct contraction *k, struct refinement *course)
     return true;
 }
 
-/* refine_outside: as often as the job allows and it helps. */
+/* refine_outside: as often as the job allows and it helps. The paper's residual does not see the
+ * errors of its bias forces. */
 static void refine_outside(struct contraction *k)
 {
-    struct comm *c = k->tree.comm;
-    const int outer = k->tree.job->spec->kernel.outer_refinements;
-    /* of the answer itself; a correction has a residual of its own */
-    const real residual = k->residual, scale = k->residual_scale;
-    struct refinement course = {.before = 1};
-    /* the paper's residual does not see the errors of its bias forces */
-    const real known = k->direct ? residual : (real)INFINITY;
-    bool going = outer > 0 && refinement_begin(&course, c, TAG_EXTREME, known);
-    k->refined = k->tree.job->spec->kernel.inner_refinements;
-    for (int pass = 0; going && pass < outer; pass++) {
-        going = refine(k, &course);
-        k->refined += going;
-    }
-    /* the error that the last pass found */
-    k->residual = course.before < residual ? course.before : residual;
-    k->residual_scale = scale;
+    const struct kernel_spec *spec = &k->tree.job->spec->kernel;
+    k->refined = spec->inner_refinements +
+                 refinement_run(k->tree.comm, TAG_EXTREME, spec->outer_refinements, k->direct,
+                                &k->residual, &k->residual_scale, refine, k);
 }
 
 /* evaluate: the answer from the coordinates and rates in the tree. */

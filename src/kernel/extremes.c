@@ -57,6 +57,25 @@ bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residu
     return worst > (real)1e6 * REAL_EPSILON;
 }
 
+int refinement_run(struct comm *c, int tag, int most, bool sees, real *residual, real *scale,
+                   bool (*correct)(void *solver, struct refinement *course), void *solver)
+{
+    /* of the answer itself; a correction has a residual of its own */
+    const real first = *residual, size = *scale;
+    struct refinement course = {.before = 1};
+    int done = 0;
+    bool going = most > 0 && refinement_begin(&course, c, tag, sees ? first : (real)INFINITY);
+    /* all ranks go on or stop together: correct decides by numbers that all of them know */
+    for (int pass = 0; going && pass < most; pass++) {
+        going = correct(solver, &course);
+        done += going;
+    }
+    /* the error that the last pass found */
+    *residual = course.before < first ? course.before : first;
+    *scale = size;
+    return done;
+}
+
 /* Two maxima in one message: sizes of the correction and of the answer. */
 bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction,
                        const real *answer)

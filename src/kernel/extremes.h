@@ -24,6 +24,17 @@ struct refinement {
  * force on its own, would rather add errors than remove any. An infinite residual says that it tells nothing. */
 bool refinement_begin(struct refinement *r, struct comm *c, int tag, real residual);
 
+/* refinement_run: at most `most` corrections of the solution whose residual and scale these are.
+ *
+ *   sees      in   the residual tells whether the answer needs a correction; false: it has to be tried
+ *   correct   in   one correction of `solver`; false: it would not have made the answer better
+ *   residual  in out  of the answer; afterwards the smaller of it and of the last correction
+ *   scale     in out  of the answer; corrections have scales of their own, so it is put back
+ *
+ *   Returns the number of corrections. Every rank must call. */
+int refinement_run(struct comm *c, int tag, int most, bool sees, real *residual, real *scale,
+                   bool (*correct)(void *solver, struct refinement *course), void *solver);
+
 /* refinement_accept: whether the correction (n of each rank) to the answer is smaller than the one before it. */
 bool refinement_accept(struct refinement *r, struct comm *c, int tag, int n, const real *correction,
                        const real *answer);

@@ -326,8 +326,9 @@ static void evaluate_paper(struct forward *f)
 
 /* refine: u' += M^-1 (tau - inverse dynamics(u')) with the factors at hand (physics 8.6, outer
  * refinement). False when that would not have made it better. */
-static bool refine(struct forward *f, struct refinement *course)
+static bool refine(void *solver, struct refinement *course)
 {
+    struct forward *f = solver;
     struct chain *ch = &f->chain;
     const int nu = chain_nu(ch->shared, ch->lo, ch->hi);
     real *rest = f->gain; /* not needed any more; at least as many numbers as joint rates */
@@ -352,25 +353,14 @@ static bool refine(struct forward *f, struct refinement *course)
     return true;
 }
 
-/* refine_outside: as often as the job allows and it helps. */
+/* refine_outside: as often as the job allows and it helps. The paper's residual does not see the
+ * errors of its bias forces. */
 static void refine_outside(struct forward *f)
 {
-    struct chain *ch = &f->chain;
-    const int outer = ch->job->spec->kernel.outer_refinements;
-    /* of the answer itself; a correction has a residual of its own */
-    const real residual = f->residual, scale = f->residual_scale;
-    struct refinement course = {.before = 1};
-    /* the paper's residual does not see the errors of its bias forces */
-    const real known = f->direct ? residual : (real)INFINITY;
-    bool going = outer > 0 && refinement_begin(&course, ch->comm, TAG_EXTREME, known);
-    f->refined = ch->job->spec->kernel.inner_refinements;
-    for (int pass = 0; going && pass < outer; pass++) {
-        going = refine(f, &course);
-        f->refined += going;
-    }
-    /* the error that the last pass found */
-    f->residual = course.before < residual ? course.before : residual;
-    f->residual_scale = scale;
+    const struct kernel_spec *spec = &f->chain.job->spec->kernel;
+    f->refined = spec->inner_refinements +
+                 refinement_run(f->chain.comm, TAG_EXTREME, spec->outer_refinements, f->direct,
+                                &f->residual, &f->residual_scale, refine, f);
 }
 
 /* evaluate: ud from the coordinates and rates in the chain. The stages of the paper's figures. */

@@ -114,6 +114,16 @@ static inline void sym6_add(struct sym6 *y, const struct sym6 *x)
     for (int i = 0; i < 9; i++) y->b[i] += x->b[i];
 }
 
+/* mat3_add_skew_mul_sym3: d = b + p~ C for a symmetric C; 36 flops. d may not be b. */
+static inline void mat3_add_skew_mul_sym3(real *d, const real *b, const real *p, const real *c)
+{
+    d[0] = b[0] + (p[1] * c[2] - p[2] * c[1]), d[1] = b[1] + (p[1] * c[4] - p[2] * c[3]);
+    d[2] = b[2] + (p[1] * c[5] - p[2] * c[4]), d[3] = b[3] + (p[2] * c[0] - p[0] * c[2]);
+    d[4] = b[4] + (p[2] * c[1] - p[0] * c[4]), d[5] = b[5] + (p[2] * c[2] - p[0] * c[5]);
+    d[6] = b[6] + (p[0] * c[1] - p[1] * c[0]), d[7] = b[7] + (p[0] * c[3] - p[1] * c[1]);
+    d[8] = b[8] + (p[0] * c[4] - p[1] * c[2]);
+}
+
 /* sym6_move: *y = X S X^T, from the child frame to the parent frame; y may not be s.
  *
  *   Rotate the three blocks, then shift: b' = b + p~ c, a' = a - b' p~ + p~ b^T (symmetric). */
@@ -127,15 +137,7 @@ static inline void sym6_move(struct sym6 *y, const struct xform *x, const struct
     mat3_mul_transposed(b, t, x->r);
     const real *c = y->c;
     real *d = y->b;
-    d[0] = b[0] + (p[1] * c[2] - p[2] * c[1]);
-    d[1] = b[1] + (p[1] * c[4] - p[2] * c[3]);
-    d[2] = b[2] + (p[1] * c[5] - p[2] * c[4]);
-    d[3] = b[3] + (p[2] * c[0] - p[0] * c[2]);
-    d[4] = b[4] + (p[2] * c[1] - p[0] * c[4]);
-    d[5] = b[5] + (p[2] * c[2] - p[0] * c[5]);
-    d[6] = b[6] + (p[0] * c[1] - p[1] * c[0]);
-    d[7] = b[7] + (p[0] * c[3] - p[1] * c[1]);
-    d[8] = b[8] + (p[0] * c[4] - p[1] * c[2]);
+    mat3_add_skew_mul_sym3(d, b, p, c);
     y->a[0] += (d[2] * p[1] - d[1] * p[2]) + (p[1] * b[2] - p[2] * b[1]);
     y->a[1] += (d[0] * p[2] - d[2] * p[0]) + (p[1] * b[5] - p[2] * b[4]);
     y->a[2] += (d[1] * p[0] - d[0] * p[1]) + (p[1] * b[8] - p[2] * b[7]);

@@ -79,6 +79,17 @@ static inline void mat3_transposed_mul(real *c, const real *a, const real *b)
         for (int j = 0; j < 3; j++) c[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
 }
 
+/* mat3_turn_z: r = E Rz for the turn's sine and cosine; MAT3_TURN_FLOP. */
+enum { MAT3_TURN_FLOP = 18 };
+static inline void mat3_turn_z(real *restrict r, const real *restrict e, real s, real c)
+{
+    for (int i = 0; i < 9; i += 3) {
+        r[i] = c * e[i] + s * e[i + 1];
+        r[i + 1] = c * e[i + 1] - s * e[i];
+        r[i + 2] = e[i + 2];
+    }
+}
+
 /* mat3_transpose: y = x^T. mat3_identity: y = U. mat3_skew: y = x~, so that y z = x x z. */
 static inline void mat3_transpose(real *y, const real *x)
 {

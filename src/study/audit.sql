@@ -205,25 +205,17 @@ WHERE s.stage IS NULL;
 
 -- Rows that are numbered from 0: one that is missing leaves a gap, but for the last.
 -- rule: numbers
-SELECT run_id, 'of stages 0 to ' || max(stage) || ' there are ' || count(*)
-FROM stage
-GROUP BY run_id
-HAVING max(stage) + 1 <> count(*) OR min(stage) <> 0
-UNION ALL
-SELECT run_id, 'of serial codes 0 to ' || max(ordinal) || ' there are ' || count(*)
-FROM baseline
-GROUP BY run_id
-HAVING max(ordinal) + 1 <> count(*) OR min(ordinal) <> 0
-UNION ALL
-SELECT run_id, 'of checks 0 to ' || max(ordinal) || ' there are ' || count(*)
-FROM error_check
-GROUP BY run_id
-HAVING max(ordinal) + 1 <> count(*) OR min(ordinal) <> 0
-UNION ALL
-SELECT run_id, 'of spans 0 to ' || max(span) || ' there are ' || count(*)
-FROM span
-GROUP BY run_id
-HAVING max(span) + 1 <> count(*) OR min(span) <> 0
+SELECT run_id, 'of ' || what || ' 0 to ' || last || ' there are ' || n
+FROM (
+    SELECT 'stages' AS what, run_id, min(stage) AS first, max(stage) AS last, count(*) AS n
+    FROM stage GROUP BY run_id
+    UNION ALL
+    SELECT 'serial codes', run_id, min(ordinal), max(ordinal), count(*) FROM baseline GROUP BY run_id
+    UNION ALL
+    SELECT 'checks', run_id, min(ordinal), max(ordinal), count(*) FROM error_check GROUP BY run_id
+    UNION ALL
+    SELECT 'spans', run_id, min(span), max(span), count(*) FROM span GROUP BY run_id)
+WHERE last + 1 <> n OR first <> 0
 UNION ALL
 SELECT id, links || ' links were recorded, ' || n || ' are stored, up to number ' || last
 FROM (SELECT r.id, links, count(l.link) AS n, coalesce(max(l.link), -1) AS last, min(links,
@@ -344,7 +336,7 @@ SELECT NULL, suite || ', ' || subject || ', ' || quantity || ' ' || at || ': ' |
     ', verdict ' || verdict
 FROM check_point
 WHERE (value IS NULL) <> (relative_error IS NULL) OR reference IS NULL OR tolerance IS NULL OR
-    abs(relative_error - (value - reference) / reference) > 1e-9 * (1 + abs(relative_error)) OR
+    abs(relative_error - (value - reference) / reference) > 1e-15 * (1 + abs(relative_error)) OR
     (verdict = 'fail' AND cause = '' AND coalesce(abs(relative_error) <= tolerance, 1)) OR
     (verdict = 'explained' AND coalesce(abs(relative_error) <= tolerance, 1)) OR
     (verdict IN ('explained', 'not-testable') AND cause = '' AND value IS NOT NULL) OR

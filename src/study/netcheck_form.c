@@ -112,16 +112,15 @@ static const struct key hand_keys[] = {
     {NULL, IGNORED},
 };
 
+/* What both kinds of random loads have: where, who sends to whom, and in which network. */
+#define LOAD_KEYS                                                                                  \
+    {"topology", NEEDED}, {"pattern", NEEDED}, {"packet_flits", NEEDED}, {"vcs", CONDITION},       \
+        {"buf_flits_per_vc", CONDITION}, {"pipeline", READ}, {"tie", READ}
+
 /* Mean latencies under a random load; the points have keys of their own. */
 static const struct key load_keys[] = {
-    {"topology", NEEDED},
-    {"pattern", NEEDED},
-    {"packet_flits", NEEDED},
+    LOAD_KEYS,
     {"points", NEEDED},
-    {"vcs", CONDITION},
-    {"buf_flits_per_vc", CONDITION},
-    {"pipeline", READ},
-    {"tie", READ},
     {"routing_function", READ},
     {"routing", READ},
     {"overdriven_accepted", IGNORED},
@@ -139,19 +138,13 @@ static const struct key point_keys[] = {
 /* The load at which the mean latency is three times that of the empty network, between two
  * bounds. */
 static const struct key saturation_keys[] = {
-    {"topology", NEEDED},
-    {"pattern", NEEDED},
-    {"packet_flits", NEEDED},
+    LOAD_KEYS,
     {"saturation_low", NEEDED},
-    {"vcs", CONDITION},
-    {"buf_flits_per_vc", CONDITION},
     {"saturation_high", ANSWER},
     {"zero_load_latency", ALIKE},
     {"max_channel_load_per_unit_injection", ALIKE},
     {"channel_bound", ALIKE},
     {"probes", ALIKE},
-    {"pipeline", READ},
-    {"tie", READ},
     {"criterion", IGNORED},
     {NULL, IGNORED},
 };

@@ -22,29 +22,8 @@
 #include "base/text.h"
 #include "../support/made_run.h"
 #include "../support/scratch.h"
+#include "database_file.h"
 #include "store/store.h"
-
-struct fixture {
-    char folder[200], path[256];
-    struct err e;
-};
-
-static int make_folder(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    *state = f;
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    struct fixture *f = *state;
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
 
 static void write_file(const char *path, const char *text)
 {
@@ -52,14 +31,6 @@ static void write_file(const char *path, const char *text)
     assert_non_null(out);
     fputs(text, out);
     fclose(out);
-}
-
-static void sql(const char *path, const char *text)
-{
-    sqlite3 *db;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
 /* A database of ours with `count` runs. */

@@ -20,39 +20,9 @@
 #include "base/text.h"
 #include "../support/made_run.h"
 #include "../support/scratch.h"
+#include "database_file.h"
 #include "spec/identity.h"
 #include "store/store.h"
-
-struct fixture {
-    char folder[200], path[256], kept[264];
-    struct err e;
-};
-
-static int make_folder(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    scratch_make(f->folder, sizeof f->folder);
-    scratch_path(f->path, sizeof f->path, f->folder, "t.db");
-    *state = f;
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    struct fixture *f = *state;
-    scratch_remove(f->folder);
-    free(f);
-    return 0;
-}
-
-static void sql(const char *path, const char *text)
-{
-    sqlite3 *db;
-    char *why = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    if (sqlite3_exec(db, text, NULL, NULL, &why) != SQLITE_OK) fail_msg("%s: %s", text, why);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
-}
 
 /* The first value of a query on the file as it is, without this program; in a buffer that the next call
  * overwrites. */
