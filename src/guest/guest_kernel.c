@@ -23,6 +23,7 @@ struct guest_run {
     struct guest_world ranks; /* of the run */
     struct guest_world *job;  /* = &ranks: what the ranks are given */
     struct guest_results results;
+    struct text said;
 };
 
 static const char *const one_stage[] = {"program"};
@@ -92,6 +93,7 @@ static void kernel_close(struct program_run *r)
     if (g == NULL) return;
     guest_world_close(&g->ranks);
     guest_results_clear(&g->results);
+    text_free(&g->said);
     loader_close(g->reader);
 }
 
@@ -103,7 +105,10 @@ static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct 
                                     .part = GUEST_RUN,
                                     .cost = g->cost,
                                     .memory = scratch,
-                                    .results = &g->results};
+                                    .results = &g->results,
+                                    .output = r->spec.program.output,
+                                    .said = &g->said};
+    r->said = &g->said;
     g->job = &g->ranks;
     r->job = &g->job;
     return guest_world_open(&g->ranks, &r->spec.machine.node, r->spec.nrank, e);

@@ -9,6 +9,7 @@
 #include "base/picoseconds.h"
 #include "base/progress.h"
 #include "loader/block_costs.h"
+#include "loader/crash.h"
 #include "vp/world.h"
 
 /* --- what the loader asks for ----------------------------------------------------------------- */
@@ -42,14 +43,22 @@ static void sleep_ps(void *context, int64_t ps)
 
 static void output(void *context, int stream, const char *data, size_t n)
 {
-    const struct guest_rank *g = context;
-    (void)g;
-    fwrite(data, 1, n, stream == 2 ? stderr : stdout);
+    struct guest_rank *g = context;
+    const int which = stream == 2;
+    guest_line_add(&g->line[which], g->comm->rank, which + 1, data, n, g->world->output,
+                   g->world->said);
+}
+
+static void end_lines(struct guest_rank *g)
+{
+    for (int i = 0; i < 2; i++)
+        guest_line_end(&g->line[i], g->comm->rank, i + 1, g->world->output, g->world->said);
 }
 
 static void fail(void *context, const char *text)
 {
     struct guest_rank *g = context;
+    end_lines(g);
     g->comm->file = NULL; /* the text says where */
     g->comm->type->end_run(g->comm, text);
 }
@@ -78,10 +87,14 @@ static bool price_blocks(struct guest_world *w, struct err *e)
 bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank, struct err *e)
 {
     char why[256];
+    const struct program_spec *p = &w->spec->program;
     w->node = node_cost_make(node);
-    w->image = loader_open(w->spec->program.image, e);
+    w->image = loader_open(p->image, e);
     if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
         return false;
+    /* From here on a crash, or a loop that calls nothing, is this program's. */
+    crash_watch(w->image);
+    crash_limit(p->host_limit > 0 ? p->host_limit : PROGRAM_HOST_LIMIT);
     /* Collectives by the rules of the machine's software, unless a rank chooses one by name. */
     if (!collective_rules_parse(w->spec->machine.software.collectives, w->rule, &w->nrule, why,
                                 (int)sizeof why))
@@ -91,6 +104,8 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
 
 void guest_world_close(struct guest_world *w)
 {
+    crash_limit(0);
+    crash_watch(NULL);
     loader_close(w->image);
     w->image = NULL;
 }
@@ -136,6 +151,7 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
     if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);
     if (end.exited) refuse_exit(g, end.status);
     loader_exit(g->instance, 0);
+    end_lines(g);
 }
 
 /* --- one processor ---------------------------------------------------------------------------- */

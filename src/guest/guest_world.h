@@ -8,13 +8,14 @@
 #include "base/arena.h"
 #include "comm/collective_rules.h"
 #include "comm/comm.h"
+#include "guest/guest_lines.h"
 #include "guest/guest_results.h"
 #include "loader/loader.h"
 #include "machine/node_cost.h"
 #include "measure/run_result.h"
 #include "spec/run_spec.h"
 
-enum { GUEST_STACK_BYTES = 8 << 20, GUEST_LINE = 512 };
+enum { GUEST_STACK_BYTES = 8 << 20 };
 
 /* Which function of the image the ranks execute. */
 enum guest_part { GUEST_RUN, GUEST_CHECK, GUEST_SERIAL /* and those that follow: serial codes */ };
@@ -33,6 +34,8 @@ struct guest_world {
     struct collective_rule rule[COLLECTIVE_MAX_RULES]; /* of the machine's software */
     struct run_result *check;                          /* where comm_error goes; NULL: nowhere */
     double tolerance;
+    enum program_output output;        /* what becomes of the ranks' lines */
+    struct text *said;                 /* where they gather; NULL: nowhere */
     bool asked_size; /* a rank asked how many ranks the run has */
 };
 
@@ -43,6 +46,7 @@ struct guest_rank {
     struct loader_instance *instance;
     const struct mimdsim_program *declared;                         /* in this rank's own copy */
     const struct collective_algorithm *algorithm[COLLECTIVE_KINDS]; /* by comm_algorithm */
+    struct guest_line line[2]; /* of standard output and error */
     double host_s; /* cost by host time: when the rank last went on */
 };
 

@@ -59,12 +59,12 @@ struct program_run {
     int nbody, nu;                   /* bodies and degrees of freedom of the scene; 0: it has none */
     double metre, kilogram, second;  /* its units in SI; 0: it has none */
     struct comm_output output[PROGRAM_OUTPUTS]; /* made by prepare */
+    const struct text *said; /* lines of the result, see run_result.said; NULL: none */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
 struct program_estimate {
-    double messages, bytes; /* sent, all ranks */
-    double flops;           /* all ranks */
+    double messages, bytes, flops; /* sent and computed, all ranks */
     double rank_bytes;      /* host memory per rank, workspace and messages in flight */
 };
 

@@ -23,9 +23,11 @@
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
 /* The arrays of a result, in the order in which they travel. */
+enum { PARTS = 5 };
+
 struct parts {
-    void **array[4];
-    size_t bytes[4]; /* 0: the array is not there */
+    void **array[PARTS];
+    size_t bytes[PARTS]; /* 0: the array is not there */
 };
 
 /* Sizes follow from the counts in the result, so that both ends of the pipe know them. */
@@ -33,9 +35,11 @@ static struct parts parts_of(struct run_result *r)
 {
     size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
     return (struct parts){
-        {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link},
+        {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link,
+         (void **)&r->said},
         {rows * sizeof *r->stage, (r->finish_ps ? (size_t)r->nrank : 0) * sizeof *r->finish_ps,
-         (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link},
+         (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link,
+         (size_t)r->nsaid},
     };
 }
 
@@ -79,7 +83,7 @@ static bool send_answer(int fd, struct answer *a)
     if (!write_all(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct parts p = parts_of(&a->result);
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < PARTS; i++)
         if (!write_all(fd, *p.array[i], p.bytes[i])) return false;
     return true;
 }
@@ -90,7 +94,7 @@ static bool receive_answer(int fd, struct answer *a, struct arena *arena)
     if (!read_all(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
     struct parts p = parts_of(&a->result);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < PARTS; i++) {
         *p.array[i] = p.bytes[i] ? arena_take(arena, p.bytes[i]) : NULL;
         if (!read_all(fd, *p.array[i], p.bytes[i])) return false;
     }

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "guest/guest_program.h"
 #include "kernel/programs.h"
 #include "machine/node_cost.h"
@@ -63,6 +64,7 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
 {
     *r = (struct program_run){.type = type_of(spec), .spec = *spec, .arena = a};
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
+    if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
         return err_set(e, ERR_CONFIG, "program '%s' is not at hand: only a scenario says where it is",
                        spec->kernel.name);
@@ -147,6 +149,14 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     refuse_long_baselines(out);
 }
 
+/* What the ranks wrote, out of memory that is about to go. */
+static void take_lines(const struct text *said, struct arena *a, struct run_result *out)
+{
+    if (said->length == 0) return;
+    out->nsaid = (int64_t)said->length + 1;
+    out->said = arena_text(a, said->s);
+}
+
 /* For the last words of a CHECK that fails in this run. */
 static void describe(void *context, char *buffer, int size)
 {
@@ -178,6 +188,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
         out->nu = r.nu;
         verify(&r, scratch, out);
     }
+    if (ok && r.said) take_lines(r.said, a, out);
     check_note_set(NULL, NULL);
     run_close(&r);
     arena_destroy(scratch);

@@ -29,6 +29,13 @@ enum program_cost {
     PROGRAM_COST_HOST      /* the time that this computer took: another one in every run */
 };
 
+/* What becomes of the lines that ranks write. */
+enum program_output {
+    PROGRAM_OUTPUT_KEEP, /* they are part of the result */
+    PROGRAM_OUTPUT_SHOW, /* and are written at once to the streams of this process */
+    PROGRAM_OUTPUT_LABEL /* likewise, each with its rank before it */
+};
+
 struct program_spec {
     char file[256];      /* as it was asked for; "": a built-in program */
     char arguments[256]; /* of an MPI program, divided as a shell divides words */
@@ -38,8 +45,12 @@ struct program_spec {
     enum program_kind kind;
     char hash[65];          /* SHA-256 of the image, or of source, compiler and flags; "": none */
     const char *parameters; /* "NAME = VALUE" lines in the order declared, borrowed; NULL: none */
+    enum program_output output; /* of the order */
+    double host_limit;      /* of the order: processor time after which a run has failed [s] */
     const char *image;      /* the file to be loaded, borrowed; NULL: not known */
 };
+
+enum { PROGRAM_HOST_LIMIT = 600 }; /* where host_limit is 0 [s] */
 
 /* What a program declares, read from its image before any of its code runs. */
 struct program_sheet {

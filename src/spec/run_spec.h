@@ -42,6 +42,8 @@ struct run_heartbeat;
 struct run_order {
     unsigned keep;                   /* KEEP_*: what is computed although nothing asks for it */
     struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere; borrowed */
+    enum program_output output;      /* of people's own programs: their lines */
+    double host_limit;               /* of people's own programs: processor time of a run [s]; 0: PROGRAM_HOST_LIMIT */
     struct level_choice level_choice;
 };
 

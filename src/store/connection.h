@@ -22,6 +22,7 @@
     X(RUN_SETTING, "INSERT INTO run_setting VALUES (?1, ?2)")                                                          \
     X(BEGIN, "BEGIN IMMEDIATE")                                                                                        \
     X(COMMIT, "COMMIT")                                                                                                \
+    X(PROGRAM_LINE, "INSERT INTO program_line VALUES (?1, ?2, ?3, ?4, ?5)")                                            \
     X(RUN_INSERT, NULL)                                                                                                \
     X(STAGE, NULL)                                                                                                     \
     X(RANK_STAGE, NULL)                                                                                                \
@@ -45,7 +46,8 @@ enum {
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */
-    STORE_SPAN_ROWS = 20000         /* a longer timeline is a file */
+    STORE_SPAN_ROWS = 20000,        /* a longer timeline is a file */
+    STORE_LINE_ROWS = 1000          /* lines of output kept of one run */
 };
 
 struct store {

@@ -479,3 +479,13 @@ CREATE TABLE IF NOT EXISTS explain_answer (
     sentence  TEXT NOT NULL,           -- the answer in words
     PRIMARY KEY (subject, goal)
 ) STRICT, WITHOUT ROWID;
+
+-- What the ranks of a person's own program wrote, in the order in which they wrote it; of very much the beginning.
+CREATE TABLE IF NOT EXISTS program_line (
+    run_id INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    line   INTEGER NOT NULL,           -- order of the lines, from 0
+    rank   INTEGER NOT NULL,           -- who wrote it
+    stream INTEGER NOT NULL,           -- 1: standard output, 2: standard error
+    text   TEXT NOT NULL,              -- without its end
+    PRIMARY KEY (run_id, line)
+) STRICT, WITHOUT ROWID;

@@ -251,6 +251,35 @@ static bool put_spans(struct store *s, int64_t run, const struct run_result *r, 
     return true;
 }
 
+/* "RANK STREAM TEXT" (run_result.said) as a row. */
+static bool put_line(struct store *s, int64_t run, int number, const char *line, int length, struct err *e)
+{
+    struct binding b;
+    char *rest;
+    const long rank = strtol(line, &rest, 10), stream = strtol(rest, &rest, 10);
+    if (!bind_start(s, STATEMENT_PROGRAM_LINE, &b, e)) return false;
+    bind_int(&b, run);
+    bind_int(&b, number);
+    bind_int(&b, rank);
+    bind_int(&b, stream);
+    /* One space ends the numbers; those that follow are the program's. */
+    sqlite3_bind_text(b.statement, b.next, rest + 1, length - (int)(rest + 1 - line), SQLITE_STATIC);
+    return store_step(s, b.statement, e);
+}
+
+/* What the ranks wrote: the beginning, as it is for people. */
+static bool put_lines(struct store *s, int64_t run, const struct run_result *r, struct err *e)
+{
+    if (s->passing || r->said == NULL) return true;
+    const char *line = r->said;
+    for (int i = 0; *line != '\0' && i < STORE_LINE_ROWS; i++) {
+        const char *end = strchrnul(line, '\n');
+        if (!put_line(s, run, i, line, (int)(end - line), e)) return false;
+        line = *end != '\0' ? end + 1 : end;
+    }
+    return true;
+}
+
 /* An older row of the same identity goes, with everything that belongs to it (ON DELETE
  * CASCADE). */
 static bool remove_old(struct store *s, const struct run_spec *spec, struct err *e)
@@ -277,7 +306,7 @@ bool store_put(struct store *s, const struct run_spec *spec, const struct run_or
     bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, order, r, &run, e) &&
               put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) &&
               put_baselines(s, run, r, e) && put_errors(s, run, r, e) &&
-              put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e);
+              put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e) && put_lines(s, run, r, e);
     if (!alone) return ok;
     if (ok) return store_commit(s, e);
     store_rollback(s);

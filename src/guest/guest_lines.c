@@ -1,0 +1,44 @@
+/* guest_lines.c - see guest_lines.h. */
+#include "guest/guest_lines.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+
+/* One whole line goes to the result, up to a limit, and to people. */
+static void emit(const struct guest_line *line, int rank, int stream, enum program_output output,
+                 struct text *said)
+{
+    if (said != NULL && said->length < GUEST_SAID_MOST)
+        text_add(said, "%d %d %.*s\n", rank, stream, line->n, line->text);
+    if (output == PROGRAM_OUTPUT_KEEP) return;
+    FILE *to = stream == 2 ? stderr : stdout;
+    if (output == PROGRAM_OUTPUT_LABEL) fprintf(to, "[%d] ", rank);
+    fprintf(to, "%.*s\n", line->n, line->text);
+    /* The rank may crash in its next step: what it wrote before is seen. */
+    fflush(to);
+}
+
+void guest_line_add(struct guest_line *line, int rank, int stream, const char *data, size_t n,
+                    enum program_output output, struct text *said)
+{
+    if (line->text == NULL) line->text = malloc(GUEST_LINE);
+    CHECK(line->text != NULL);
+    for (size_t i = 0; i < n; i++) {
+        const bool end = data[i] == '\n';
+        if (!end) line->text[line->n++] = data[i] != '\0' ? data[i] : '?'; /* texts end at a NUL */
+        if (!end && line->n < GUEST_LINE) continue;
+        emit(line, rank, stream, output, said);
+        line->n = 0;
+    }
+}
+
+void guest_line_end(struct guest_line *line, int rank, int stream, enum program_output output,
+                    struct text *said)
+{
+    if (line->n > 0) emit(line, rank, stream, output, said);
+    free(line->text);
+    *line = (struct guest_line){0};
+}
