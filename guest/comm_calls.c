@@ -204,6 +204,7 @@ WEAK void comm_fail_at(struct comm *c, const char *file, int line, const char *f
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    guest_flush();
     CALLS->fail(c, text, file, line);
     __builtin_unreachable();
 }

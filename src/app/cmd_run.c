@@ -29,6 +29,9 @@ static const char doc[] =
     "is 1. A plan with no valid point is refused. Failed points are tried again the next time.\n\n"
     "--shard K/N: only the runs of shard K of N, so that N hosts share the plan (mimdsim merge joins "
     "their databases). --point ID: only this run of the plan (mimdsim plan lists them).\n\n"
+    "PROGRAM: a program of your own, as source or as made by mimdsim cc, makes a scenario by itself "
+    "(t3e-300, 1 to 16 ranks); see docs/own-program.md. --limit SECONDS: a run of such a program has "
+    "failed when it takes more processor time than this (default 600 s).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -42,6 +45,7 @@ struct keep {
     int invalid, deadlock, redundant, refined; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
+    double limit;          /* of people's own programs [s], 0: as usual */
     bool quiet;
 };
 
@@ -114,7 +118,8 @@ static bool settle_plan(const struct common *c, const struct plan *p, struct pla
     struct run_spec *run = TAKE(p->arena, p->nrun, struct run_spec);
     memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
     k->order = TAKE(p->arena, p->nrun, struct run_order);
-    for (int i = 0; i < p->nrun; i++) k->order[i] = (struct run_order){.keep = keep_all ? KEEP_ALL : 0};
+    const struct run_order usual = {.keep = keep_all ? KEEP_ALL : 0, .host_limit = k->limit};
+    for (int i = 0; i < p->nrun; i++) k->order[i] = usual;
     *settled = *p;
     settled->run = k->run = run;
     return levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e);
@@ -157,13 +162,15 @@ int cmd_run(int argc, char **argv)
     bool keep_all = take_flag(&argc, argv, "--keep-all");
     const char *shard = take_value(&argc, argv, "--shard");
     struct part part = {.point = take_value(&argc, argv, "--point")};
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO", doc, 1, 1);
+    double limit;
     struct err e;
     err_clear(&e);
+    const bool limited = take_seconds(&argc, argv, "--limit", &limit, &e);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e, .quiet = c.quiet};
-    bool ok = shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
+    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit};
+    bool ok = limited && shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
               check_point(part.point, &p, &e);
     c.force = c.force || keep_all; /* the same results, but not the same row */
     ok = ok && answer(&c, &p, &part, keep_all, &k, &e);

@@ -4,6 +4,8 @@
  * ends options here as it does there. */
 #include "app/flag.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* argv keeps its NULL at the end. */
@@ -44,4 +46,15 @@ const char *take_value(int *argc, char **argv, const char *name)
         }
     }
     return value;
+}
+
+bool take_seconds(int *argc, char **argv, const char *name, double *seconds, struct err *e)
+{
+    const char *text = take_value(argc, argv, name);
+    char *end;
+    *seconds = 0;
+    if (text == NULL) return true;
+    *seconds = strtod(text, &end);
+    if (end != text && *end == '\0' && isfinite(*seconds) && *seconds > 0) return true;
+    return err_set(e, ERR_USAGE, "%s: '%.40s' is not a number of seconds above 0", name, text);
 }

@@ -380,6 +380,7 @@ static void call_error(struct comm *handle, const char *quantity, double relativ
 
 static void call_fail(struct comm *handle, const char *text, const char *file, int line)
 {
+    guest_rank_end_lines(rank_of(handle));
     stop(at(handle, file, line), "%s", text);
 }
 

@@ -104,6 +104,7 @@ static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct 
     g->ranks = (struct guest_world){.spec = &r->spec,
                                     .part = GUEST_RUN,
                                     .cost = g->cost,
+                                    .calls = &guest_calls,
                                     .memory = scratch,
                                     .results = &g->results,
                                     .output = r->spec.program.output,
@@ -156,6 +157,7 @@ static void run_check(struct program_run *r, struct run_result *out)
     struct guest_results none = {0};
     struct guest_world w = {.spec = &r->spec,
                             .cost = g->cost,
+                            .calls = &guest_calls,
                             .memory = memory,
                             .results = &none,
                             .seen = &g->results,

@@ -1,4 +1,5 @@
-/* guest_program.h - people's own programs as programs of runs: what they declare, and how their ranks run.
+/* guest_program.h - people's own programs as programs of runs: what they declare, and how their
+ * ranks run.
  *
  * A program is an image made by `mimdsim cc` (room loader). One that declares itself by
  * mimdsim/program.h is a kernel: its parameters are set, its results are gathered, compared with

@@ -49,7 +49,7 @@ static void output(void *context, int stream, const char *data, size_t n)
                    g->world->said);
 }
 
-static void end_lines(struct guest_rank *g)
+void guest_rank_end_lines(struct guest_rank *g)
 {
     for (int i = 0; i < 2; i++)
         guest_line_end(&g->line[i], g->comm->rank, i + 1, g->world->output, g->world->said);
@@ -58,7 +58,7 @@ static void end_lines(struct guest_rank *g)
 static void fail(void *context, const char *text)
 {
     struct guest_rank *g = context;
-    end_lines(g);
+    guest_rank_end_lines(g);
     g->comm->file = NULL; /* the text says where */
     g->comm->type->end_run(g->comm, text);
 }
@@ -143,7 +143,7 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
     g->declared = guest_declared(g->instance);
     guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
     struct mimdsim_host *host = loader_host(g->instance);
-    host->comm = &guest_calls;
+    host->comm = w->calls;
     host->comm_rank = (struct comm *)g;
     g->host_s = host_seconds();
     struct loader_outcome end = loader_start(g->instance, 1, argv);
@@ -151,7 +151,7 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
     if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);
     if (end.exited) refuse_exit(g, end.status);
     loader_exit(g->instance, 0);
-    end_lines(g);
+    guest_rank_end_lines(g);
 }
 
 /* --- one processor ---------------------------------------------------------------------------- */

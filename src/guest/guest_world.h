@@ -22,21 +22,22 @@ enum guest_part { GUEST_RUN, GUEST_CHECK, GUEST_SERIAL /* and those that follow:
 
 /* All ranks of one image in one run, or one processor with a serial code. */
 struct guest_world {
-    const struct run_spec *spec;      /* of the run it belongs to */
-    struct loader_template *image;    /* owned */
-    int part;                         /* enum guest_part */
-    enum program_cost cost;           /* how its computing is counted */
-    struct node_cost node;            /* what counted operations cost on a processor */
-    struct arena *memory;             /* what comm_memory takes; borrowed */
-    struct guest_results *results;    /* what it publishes; borrowed */
-    const struct guest_results *seen; /* what a check looks at; NULL: nothing */
+    const struct run_spec *spec;        /* of the run it belongs to */
+    struct loader_template *image;      /* owned */
+    int part;                           /* enum guest_part */
+    enum program_cost cost;             /* how its computing is counted */
+    struct node_cost node;              /* what counted operations cost on a processor */
+    const struct comm_functions *calls; /* what it may call: guest_calls */
+    struct arena *memory;               /* what comm_memory takes; borrowed */
+    struct guest_results *results;      /* what it publishes; borrowed */
+    const struct guest_results *seen;   /* what a check looks at; NULL: nothing */
     int nrule;
     struct collective_rule rule[COLLECTIVE_MAX_RULES]; /* of the machine's software */
     struct run_result *check;                          /* where comm_error goes; NULL: nowhere */
     double tolerance;
-    enum program_output output;        /* what becomes of the ranks' lines */
-    struct text *said;                 /* where they gather; NULL: nowhere */
-    bool asked_size; /* a rank asked how many ranks the run has */
+    enum program_output output; /* what becomes of the ranks' lines */
+    struct text *said;          /* where they gather; NULL: nowhere */
+    bool asked_size;            /* a rank asked how many ranks the run has */
 };
 
 /* One rank. What the program knows as struct comm is this. */
@@ -47,7 +48,7 @@ struct guest_rank {
     const struct mimdsim_program *declared;                         /* in this rank's own copy */
     const struct collective_algorithm *algorithm[COLLECTIVE_KINDS]; /* by comm_algorithm */
     struct guest_line line[2]; /* of standard output and error */
-    double host_s; /* cost by host time: when the rank last went on */
+    double host_s;             /* cost by host time: when the rank last went on */
 };
 
 /* guest_calls: the functions behind mimdsim/program.h. */
@@ -74,6 +75,9 @@ void guest_world_close(struct guest_world *w);
 /* guest_rank_run: the text of one rank (rank_program.run): job is its world, workspace a
  * guest_rank. */
 void guest_rank_run(struct comm *c, const void *job, void *workspace);
+
+/* guest_rank_end_lines: lines that the rank has begun are whole. */
+void guest_rank_end_lines(struct guest_rank *g);
 
 /* guest_alone: run part `part` of the image on one processor of the run's machine.
  *

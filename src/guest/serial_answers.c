@@ -80,7 +80,8 @@ const struct serial_answer *serial_answer(struct program_cache *cache, const str
     struct arena *memory = arena_create();
     struct run_result *out = TAKE(memory, 1, struct run_result);
     struct guest_results results = {0};
-    struct guest_world w = {.spec = spec, .cost = cost, .memory = memory, .results = &results};
+    struct guest_world w = {
+        .spec = spec, .cost = cost, .calls = &guest_calls, .memory = memory, .results = &results};
     struct err e;
     err_clear(&e);
     const bool made = guest_alone(&w, part, stack_bytes, memory, out, &e);

@@ -101,8 +101,8 @@ struct run_result {
     uint64_t digest;           /* of all matched messages and clocks: same input, same digest */
 
     int64_t nsaid;
-    char *said;                /* (nsaid, with the NUL) what ranks of a person's own program wrote, in the order written:
-                                  "RANK STREAM TEXT" lines; in the run's arena, NULL: nothing */
+    char *said;                /* (nsaid, with the NUL) lines that ranks of a person's own program wrote, in
+                                  that order: "RANK STREAM TEXT"; in the run's arena, NULL: nothing */
     int64_t nspan;
     struct span *span;         /* in the run's arena, NULL unless recorded */
     int nlink;

@@ -53,16 +53,16 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
 
 /* --- one run ------------------------------------------------------------------------------------------------------ */
 
-/* Built in, or somebody's own. */
-static const struct program_type *type_of(const struct run_spec *spec)
+const struct program_type *run_program(const struct run_spec *spec)
 {
+    /* By kind, not by name: somebody's program may be called as a built-in one. */
     return spec->kernel.own ? guest_program(spec->program.kind) : program_find(spec->kernel.name);
 }
 
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
               struct program_run *r, struct err *e)
 {
-    *r = (struct program_run){.type = type_of(spec), .spec = *spec, .arena = a};
+    *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
     if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
@@ -74,6 +74,7 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
     return r->type->open(r, e);
 }
 
+/* Images are mapped memory: an arena would not give it back. */
 void run_close(struct program_run *r)
 {
     if (r->type && r->type->close) r->type->close(r);
@@ -149,7 +150,8 @@ static void verify(struct program_run *r, struct arena *scratch, struct run_resu
     refuse_long_baselines(out);
 }
 
-/* What the ranks wrote, out of memory that is about to go. */
+/* What the ranks wrote, out of memory that is about to go. Also what ranks of a run that failed
+ * wrote before: often it says why. */
 static void take_lines(const struct text *said, struct arena *a, struct run_result *out)
 {
     if (said->length == 0) return;

@@ -29,6 +29,9 @@ void run_cache_destroy(struct run_cache *cache);
 bool run_sharing(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,
                  struct run_result *out, struct err *e);
 
+/* run_program: the program of `spec`, built in or a person's own; NULL: there is none. */
+const struct program_type *run_program(const struct run_spec *spec);
+
 /* run_open: the program of `spec`, opened (program.h) but not prepared; memory from `a`, which must live as long as
  * *r, as must `cache`. Returns false as run_one. */
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,

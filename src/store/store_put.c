@@ -251,8 +251,10 @@ static bool put_spans(struct store *s, int64_t run, const struct run_result *r, 
     return true;
 }
 
-/* "RANK STREAM TEXT" (run_result.said) as a row. */
-static bool put_line(struct store *s, int64_t run, int number, const char *line, int length, struct err *e)
+/* "RANK STREAM TEXT" (run_result.said) as a row: whoever looks for what one rank said selects by
+ * columns. */
+static bool put_line(struct store *s, int64_t run, int number, const char *line, int length,
+                     struct err *e)
 {
     struct binding b;
     char *rest;
@@ -267,7 +269,8 @@ static bool put_line(struct store *s, int64_t run, int number, const char *line,
     return store_step(s, b.statement, e);
 }
 
-/* What the ranks wrote: the beginning, as it is for people. */
+/* What the ranks wrote: the beginning, as it is for people. A program that prints in its innermost
+ * loop must not fill a disk. */
 static bool put_lines(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     if (s->passing || r->said == NULL) return true;
@@ -306,7 +309,8 @@ bool store_put(struct store *s, const struct run_spec *spec, const struct run_or
     bool ok = find_build(s, e) && remove_old(s, spec, e) && put_run(s, spec, order, r, &run, e) &&
               put_settings(s, run, spec->config_text, e) && put_stages(s, run, r, e) &&
               put_baselines(s, run, r, e) && put_errors(s, run, r, e) &&
-              put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e) && put_lines(s, run, r, e);
+              put_omissions(s, run, r, e) && put_links(s, run, r, e) && put_spans(s, run, r, e) &&
+              put_lines(s, run, r, e);
     if (!alone) return ok;
     if (ok) return store_commit(s, e);
     store_rollback(s);

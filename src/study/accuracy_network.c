@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "machine/node_cost.h"
 #include "machine/topology.h"
+#include "run/run.h"
 #include "study/accuracy_ladder.h"
 #include "study/trial.h"
 
@@ -85,6 +86,7 @@ static bool closed_form(struct ladder *l, double *seconds, double *host_s)
     struct topology *t = topology_create(&m->topology, l->arena, &e);
     if (!t || !trial_open(&r, &l->spec, l->model, l->state, l->arena, &e)) return false;
     r.type->estimate(&r, &x);
+    run_close(&r);
     int P = l->spec.nrank;
     double hops = 0, bytes = x.messages > 0 ? x.bytes / x.messages : 0;
     /* Mean distance from node 0 to the other nodes that hold a rank: topologies are symmetric

@@ -88,7 +88,7 @@ static bool take_spec(void *context, int ncolumn, const char *const *name,
     char why[256];
     const bool failed = strcmp(v[1].text, "failed") == 0;
     if (failed || !audit_spec(spec, v[0].text, g->arena, why, sizeof why) ||
-        spec->model_file[0] != '\0') {
+        spec->model_file[0] != '\0' || spec->kernel.own) {
         g->report->nleft++; /* a text that cannot be read has been told */
         return true;
     }

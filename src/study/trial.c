@@ -11,6 +11,7 @@
 #include "kernel/programs.h"
 #include "kernel/trust.h"
 #include "run/launch.h"
+#include "run/run.h"
 
 /* Relative to the largest number of the reference, not number by number: a component that
  * cancels has no relative accuracy of its own. */
@@ -65,7 +66,7 @@ bool trial_open(struct program_run *r, const struct run_spec *spec, const struct
                 const struct state *s, struct arena *a, struct err *e)
 {
     /* The program by its name, as for a run of a scenario. */
-    *r = (struct program_run){.type = program_find(spec->kernel.name), .spec = *spec, .arena = a};
+    *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
     if (!r->type) return err_set(e, ERR_CONFIG, "no kernel is called '%s'", spec->kernel.name);
     return m ? dynamics_open(r, m, s, e) : r->type->open(r, e);
 }
@@ -105,5 +106,6 @@ struct trial trial_run(const struct run_spec *spec, const struct model *m, const
                       launch_largest_message(r), a, a, result, &e);
     if (good) answer(&t, r, result);
     else text_copy(t.text, sizeof t.text, e.text);
+    run_close(r);
     return t;
 }

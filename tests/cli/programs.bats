@@ -148,6 +148,63 @@ failing() {
     failing aborts "rank 1" "aborts.c:1" "calls abort()"
 }
 
+@test "a crash, a stack overflow and an endless loop fail with rank and line, and the others go on" {
+    program crashes <<<'static void run(struct comm *c)
+{
+    double x = 1;
+    if (comm_rank(c) == 3)
+        *(volatile int *)8 = 1;
+    if (comm_rank(c) == 0) comm_publish(c, 0, 0, 1, &x);
+}'
+    failing crashes "rank 3 in run (crashes.c:5): segmentation fault at address 0x8" "1 of 2 runs failed"
+    program deep <<<'static int f(volatile int k)
+{
+    volatile char b[4096];
+    b[0] = (char)k;
+    return f(k + 1) + b[0];
+}
+static void run(struct comm *c) { if (comm_rank(c) == 1) f(0); }'
+    failing deep "rank 1 in f (deep.c:" "stack overflow"
+    program loops <<<'static void run(struct comm *c)
+{
+    if (comm_rank(c) == 1)
+        for (;;) *(volatile int64_t *)&n += 1;
+}'
+    image loops
+    fails_with 1 mimdsim run ./loops.so --set ranks=2 --limit 0.5
+    stderr_says "rank 1 in run (loops.c:4): still busy after 0.5 s"
+    works mimdsim query mimdsim.db "SELECT status FROM run WHERE kernel = 'loops'"
+    [ "${lines[1]}" = failed ]
+    fails_with 64 mimdsim run ./loops.so --limit never
+    stderr_says "--limit: 'never' is not a number of seconds"
+}
+
+@test "a program that starts threads, or divides by zero, fails by name" {
+    program threads <<<'#include <pthread.h>
+static void *f(void *x) { return x; }
+static void run(struct comm *c) { pthread_t t; if (comm_rank(c) == 1) pthread_create(&t, NULL, f, NULL); }'
+    failing threads "rank 1" "threads.c:3" "pthread_create()"
+    program divides <<<'static void run(struct comm *c) { volatile int z = comm_rank(c) - 1; z = 100 / z; }'
+    failing divides "rank 1 in run (divides.c:1)" "division by zero"
+}
+
+@test "what ranks write is kept with the run, also what they wrote before they failed" {
+    program writes <<<'static void run(struct comm *c)
+{
+    double x = 1;
+    printf("rank %d\nof %d", comm_rank(c), comm_size(c));
+    fprintf(stderr, "said\n");
+    if (comm_rank(c) == 1) comm_fail(c, "enough");
+    if (comm_rank(c) == 0) comm_publish(c, 0, 0, 1, &x);
+}'
+    image writes
+    fails_with 1 mimdsim run ./writes.so --set ranks=2
+    [[ $output != *"of 2"* ]]
+    works mimdsim query mimdsim.db "SELECT group_concat(rank || stream || text, '|') FROM (SELECT * FROM program_line
+        ORDER BY rank, stream, line)"
+    [ "${lines[1]}" = "01rank 0|01of 2|02said|11rank 1|11of 2|12said" ]
+}
+
 @test "a file that is no program, or declares nothing sound, is refused" {
     printf 'no program' >text.so
     fails_with 65 mimdsim run ./text.so
