@@ -99,8 +99,8 @@ static bool is_return(const struct loader_instance *i, uint64_t pc)
 /* Frames: the place itself, then what looks like return addresses on the stack. Without frame
  * pointers there is no better way that is safe here; the first one is right unless dead words look
  * alike. */
-static void note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc,
-                        uintptr_t sp)
+__attribute__((no_sanitize("address"))) static void
+note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc, uintptr_t sp)
 {
     add_frame(r, i->t, pc);
     const uint64_t *word = (const uint64_t *)((sp + 7) / 8 * 8);

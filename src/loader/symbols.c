@@ -100,6 +100,18 @@ static void *tls_get_address(const uint64_t index[2])
     return (char *)(uintptr_t)index[0] + index[1];
 }
 
+/* Memory comes from where the whole process has it, which need not be libc: a preloaded allocator,
+ * a sanitizer. */
+static bool is_allocator(const char *name)
+{
+    static const char *const allocator[] = {
+        "malloc",         "calloc",        "realloc",  "free",   "reallocarray",
+        "posix_memalign", "aligned_alloc", "memalign", "valloc", "malloc_usable_size"};
+    for (size_t i = 0; i < sizeof allocator / sizeof *allocator; i++)
+        if (strcmp(name, allocator[i]) == 0) return true;
+    return false;
+}
+
 static void *host_symbol(const struct loader_template *t, const char *name, const char *version)
 {
     void *at = NULL;
@@ -108,6 +120,7 @@ static void *host_symbol(const struct loader_template *t, const char *name, cons
         name += sizeof host_prefix - 1;
         version = NULL;
     }
+    if (is_allocator(name)) return dlsym(RTLD_DEFAULT, name);
     if (version) at = dlvsym(t->libc, name, version);
     if (!at && version) at = dlvsym(t->libm, name, version);
     if (!at) at = dlsym(t->libc, name);
