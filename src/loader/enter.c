@@ -29,6 +29,7 @@ __asm__(
     "    mov %rdi, %rax\n"
     "    mov %rsi, %r11\n"
     "    mov (%r11), %rdi\n    mov 8(%r11), %rsi\n    mov 16(%r11), %rdx\n    mov 24(%r11), %rcx\n"
+    "    mov 32(%r11), %r8\n    mov 40(%r11), %r9\n"
     "    xor %r15d, %r15d\n"
     "    call *%rax\n"
     "    mov (%rsp), %rdx\n"
@@ -50,7 +51,7 @@ __asm__(
     "    jmp loader_return\n"
     ".size loader_leave, . - loader_leave\n");
 #else
-int64_t loader_enter(void *function, const int64_t argument[4], struct loader_frame *frame)
+int64_t loader_enter(void *function, const int64_t argument[6], struct loader_frame *frame)
 {
     (void)function, (void)argument, (void)frame;
     CHECK(!"loader_open refuses programs on this host");
@@ -63,8 +64,8 @@ _Noreturn void loader_leave(struct loader_frame *frame, int64_t value)
 }
 #endif
 
-struct loader_outcome loader_call(struct loader_instance *i, void *function,
-                                  const int64_t argument[4])
+struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
+                                      const int64_t argument[6])
 {
     struct loader_frame frame = {.outer = i->frame};
     const bool outermost = i->outermost == NULL;
@@ -81,6 +82,13 @@ struct loader_outcome loader_call(struct loader_instance *i, void *function,
     if (frame.count && i->t->hooks->elapse_ps) i->t->hooks->elapse_ps(i->context, frame.count);
     return (struct loader_outcome){
         .exited = i->exited, .status = i->exited ? i->status : 0, .value = value};
+}
+
+struct loader_outcome loader_call(struct loader_instance *i, void *function,
+                                  const int64_t argument[4])
+{
+    const int64_t six[6] = {argument[0], argument[1], argument[2], argument[3]};
+    return loader_call_six(i, function, six);
 }
 
 /* Places whose values only the program's own code knows: functions chosen by the processor's

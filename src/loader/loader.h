@@ -98,11 +98,15 @@ struct loader_outcome loader_start(struct loader_instance *i, int argc, char **a
 struct loader_outcome loader_call(struct loader_instance *i, void *function,
                                   const int64_t argument[4]);
 
+/* loader_call_six: loader_call with six arguments. */
+struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
+                                      const int64_t argument[6]);
+
 /* loader_exit: the rank ends with `status` as by exit: exit functions, destructors, streams. */
 struct loader_outcome loader_exit(struct loader_instance *i, int status);
 
-/* loader_main: constructors, main(argc, argv), exit functions and destructors; returns the exit
- * status. */
+/* loader_main: constructors, main(argc, argv) or mimdsim_main, exit functions and destructors;
+ * returns the exit status. */
 int loader_main(struct loader_instance *i, int argc, char **argv);
 
 /* loader_address_text: "function (file.c:12)" for an address in an instance, as far as the file

@@ -80,9 +80,9 @@ struct loader_frame {
     struct loader_frame *outer;
 };
 
-/* loader_enter: call function(argument[0..3]) with r15 = 0, as loader_call says (enter.c).
+/* loader_enter: call function(argument[0..5]) with r15 = 0, as loader_call says (enter.c).
  * loader_leave: make that call return `value` now; the stack between is forgotten. */
-int64_t loader_enter(void *function, const int64_t argument[4], struct loader_frame *frame);
+int64_t loader_enter(void *function, const int64_t argument[6], struct loader_frame *frame);
 _Noreturn void loader_leave(struct loader_frame *frame, int64_t value);
 
 /* --- libraries.c: files_read: the program and what it needs, in t->file and t->order. */

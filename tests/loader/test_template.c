@@ -97,6 +97,8 @@ static void calls_return_or_exit_and_begin_anew(void **state)
     assert_false(loader_start(i, 0, (char *[]){NULL}).exited);
     assert_int_equal(call(i, "sum", 100).value, 1127);
     assert_int_equal(call(i, "sum", 200).value, 2227);
+    const int64_t six[6] = {1, 2, 3, 4, 5, 6};
+    assert_int_equal(loader_call_six(i, loader_symbol(i, "weighted"), six).value, 91);
     struct loader_outcome o = call(i, "leave", 5);
     assert_true(o.exited);
     assert_int_equal(o.status, 5);

@@ -1,4 +1,5 @@
-/* parts.c - a program to look at: a patched constant, a section of its own, calls with arguments and exits. */
+/* parts.c - a program to look at: a patched constant, a section of its own, calls with arguments
+ * and exits. */
 #include <mimdsim/host.h>
 #include <stdlib.h>
 
@@ -11,6 +12,10 @@ long sum(long a, long b, long c, long d)
 {
     calls++;
     return 1000 * calls + a + b + c + d;
+}
+long weighted(long a, long b, long c, long d, long e, long f)
+{
+    return a + 2 * b + 3 * c + 4 * d + 5 * e + 6 * f;
 }
 void leave(int status) { exit(status); }
 int main(void) { return mimdsim_host->rank; }
