@@ -7,6 +7,7 @@
 #include "loader/crash.h"
 
 #include <errno.h>
+#include <execinfo.h>
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -96,16 +97,23 @@ static bool is_return(const struct loader_instance *i, uint64_t pc)
     return false;
 }
 
-/* Frames: the place itself, then what looks like return addresses on the stack. Without frame
- * pointers there is no better way that is safe here; the first one is right unless dead words look
- * alike. */
+/* The place in the program: where it is itself, or where it called the C library or the simulator
+ * from. Their frames are known to the unwinder, which stops at the first one of the program: that
+ * is the place. Where it finds nothing (a call to an address that is no code), the first word of
+ * the stack that looks like a return address is. */
 __attribute__((no_sanitize("address"))) static void
 note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc, uintptr_t sp)
 {
-    add_frame(r, i->t, pc);
+    void *frame[64];
+    if (add_frame(r, i->t, pc)) return;
+    const int n = backtrace(frame, 64);
+    for (int k = 0; k < n; k++)
+        if (is_return(i, (uint64_t)(uintptr_t)frame[k]) &&
+            add_frame(r, i->t, (uint64_t)(uintptr_t)frame[k] - 1))
+            return;
     const uint64_t *word = (const uint64_t *)((sp + 7) / 8 * 8);
     for (int k = 0; k < SCAN_WORDS && (uintptr_t)&word[k] < i->stack; k++)
-        if (is_return(i, word[k])) add_frame(r, i->t, word[k] - 1);
+        if (is_return(i, word[k]) && add_frame(r, i->t, word[k] - 1)) return;
 }
 
 /* An access near the stack pointer, far below the stack's beginning, to what is protected or not
@@ -173,6 +181,9 @@ bool crash_guard_begin(struct crash_record *record, struct err *e)
         return err_set(e, ERR_INTERNAL, "no memory for a signal stack: %s", strerror(errno));
     *g = (struct guard){.magic = GUARD_MAGIC, .record = record};
     const stack_t s = {.ss_sp = g, .ss_size = GUARD_BYTES};
+    /* The C library loads its unwinder at the first use, which is nothing for a handler. */
+    void *here[1];
+    (void)backtrace(here, 1);
     if (sigaltstack(&s, &g->stack_before) != 0) {
         munmap(g, GUARD_BYTES);
         return err_set(e, ERR_INTERNAL, "no signal stack: %s", strerror(errno));
