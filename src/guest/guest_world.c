@@ -78,10 +78,15 @@ static bool price_blocks(struct guest_world *w, struct err *e)
     struct block_table table;
     size_t size;
     table.entry = loader_template_section(w->image, BLOCK_TABLE_SECTION, &size);
-    if (table.entry == NULL || w->cost != PROGRAM_COST_BLOCKS) return true;
+    /* Where host time is the cost, blocks only tell that something was computed since the last
+     * call. */
+    const struct node_cost told = {.instruction = 1}, *c = &w->node;
+    if (table.entry == NULL || w->cost == PROGRAM_COST_AUTHOR) return true;
+    if (w->cost == PROGRAM_COST_HOST) c = &told;
     table.n = size / sizeof *table.entry;
     table.address = loader_template_address(w->image, table.entry);
-    return block_costs_patch(&table, at_address, w->image, &w->node, w->spec->program.factor, e);
+    return block_costs_patch(&table, at_address, w->image, c,
+                             c == &told ? 1 : w->spec->program.factor, e);
 }
 
 bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank, struct err *e)
