@@ -91,11 +91,26 @@ static int run_verb(const struct verb *v, int argc, char **argv)
 }
 
 /* Help, version, or a verb. */
+/* The verb whose command this is when it was started as mimdsim-cc, mimdsim-c++ or mimdsim-f90,
+ * links to this program for build systems that take one word as a compiler; NULL: started as
+ * itself. */
+static const struct verb *verb_of_name(const char *program)
+{
+    static const char prefix[] = "mimdsim-";
+    const char *slash = strrchr(program, '/'), *name = slash != NULL ? slash + 1 : program;
+    if (strncmp(name, prefix, sizeof prefix - 1) != 0) return NULL;
+    for (const struct verb *v = verb_list; v->name; v++)
+        if (takes_compiler_options(v) && strcmp(name + sizeof prefix - 1, v->name) == 0) return v;
+    return NULL;
+}
+
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";
     /* argp's own errors end with the status for wrong usage. */
     argp_err_exit_status = err_exit_status(ERR_USAGE);
+    const struct verb *named = argc > 0 ? verb_of_name(argv[0]) : NULL;
+    if (named != NULL) return run_verb(named, argc, argv);
     /* Nothing was asked for: help, but as an error. */
     if (argc < 2) {
         print_help(stderr);

@@ -133,6 +133,13 @@ entries() {
     readelf -d p | grep -q libgfortran
 }
 
+@test "mimdsim-cc is mimdsim cc in one word" {
+    works "${MIMDSIM%/*}/mimdsim-cc" --version
+    stdout_is "$(gcc --version)"
+    works "${MIMDSIM%/*}/mimdsim-cc" -O2 one.c two.c -lm -o prog
+    [ "$(blocks prog)" -ge 3 ]
+}
+
 @test "make's own rules and CMake's toolchain build a project" {
     printf 'prog: one.o two.o\n\t$(CC) $(CFLAGS) -o $@ $^ -lm\n' >Makefile
     make -s CC="$MIMDSIM cc" CFLAGS=-O1
@@ -150,7 +157,7 @@ add_executable(t one.c)
 target_link_libraries(t two m)
 file(WRITE answers "${HAVE_STRDUP} ${HAVE_NO_SUCH_FUNCTION}")
 END
-    cmake -DCMAKE_TOOLCHAIN_FILE="$MIMDSIM_SRCDIR/share/mimdsim.cmake" -DMIMDSIM_PROGRAM="$MIMDSIM" . >log 2>&1
+    cmake -DCMAKE_TOOLCHAIN_FILE="$MIMDSIM_SRCDIR/share/mimdsim.cmake" -DMIMDSIM_FOLDER="${MIMDSIM%/*}" . >log 2>&1
     [ "$(cat answers)" = "1 " ]
     make -s >>log 2>&1
     [ -x t ] && readelf -n libtwo.so | grep -q mimdsim
