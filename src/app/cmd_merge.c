@@ -9,14 +9,19 @@
 static const char doc[] =
     "Put the runs of the databases IN... into OUT, which is made where there is none.\n\n"
     "Example: mimdsim merge fig6.db one.db two.db\n"
-    "\vA run is known by its settings, seed and repetition. A run that OUT holds already stays; one that did not "
-    "end ok there is replaced by one that did. Merging the same databases again changes nothing. When the same run "
-    "has two different digests, nothing is merged from that database, and the message names both builds (exit 65). "
-    "Verdicts on claims and explanations are not merged, because they judge all runs together: make them again with "
+    "\vA run is known by its settings, seed and repetition. A run that OUT holds already stays; "
+    "one that did not "
+    "end ok there is replaced by one that did. Merging the same databases again changes nothing. "
+    "When the same run "
+    "has two different digests, nothing is merged from that database, and the message names both "
+    "builds (exit 65). "
+    "Verdicts on claims and explanations are not merged, because they judge all runs together: "
+    "make them again with "
     "`mimdsim claims`.";
 
 /* One line, or one object, for a database that was merged. */
-static void tell(const struct common *c, struct json *j, const char *from, const struct store_merged *m)
+static void tell(const struct common *c, struct json *j, const char *from,
+                 const struct store_merged *m)
 {
     if (c->json) {
         json_object(j);
@@ -28,8 +33,8 @@ static void tell(const struct common *c, struct json *j, const char *from, const
         json_end(j);
         return;
     }
-    printf("%s: %lld runs added, %lld replaced, %lld were there", from, (long long)m->added, (long long)m->replaced,
-           (long long)m->present);
+    printf("%s: %lld runs added, %lld replaced, %lld were there", from, (long long)m->added,
+           (long long)m->replaced, (long long)m->present);
     if (m->studies > 0) printf("; %lld rows of studies added", (long long)m->studies);
     printf("\n");
 }
@@ -47,6 +52,7 @@ int cmd_merge(int argc, char **argv)
     struct json j = json_make(stdout);
     /* Databases are merged one by one; those before the first that is refused stay merged. */
     if (ok && c.json) json_array(&j);
+    /* In the order given; the first that fails ends it, and those before it stay merged. */
     for (int i = 1; ok && i < c.narg; i++) {
         struct store_merged m;
         ok = store_merge(s, c.arg[i], &m, &e);

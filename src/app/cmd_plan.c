@@ -10,24 +10,29 @@
 #include "app/verb.h"
 #include "base/json.h"
 
-static const char doc[] =
-    "List the runs of SCENARIO without running them: identity, kernel, machine, n, P, seed and repetition.\n\n"
-    "Example: mimdsim plan fig6 --shards 4\n"
-    "         mimdsim plan fig6 | tail -n +2 | cut -f 1 | parallel mimdsim run fig6 --point {} -o {}.db\n"
-    "\v--shards N adds the shard of N that each run belongs to (`mimdsim run SCENARIO --shard K/N`). Columns are "
-    "separated by tabs, and the first line names them. --json writes one document. `mimdsim run SCENARIO --point ID` "
-    "makes one of these runs, and `mimdsim merge` joins the databases.";
+static const char doc[] = "List the runs of SCENARIO without running them: identity, kernel, "
+                          "machine, n, P, seed and repetition.\n\n"
+                          "Example: mimdsim plan fig6 --shards 4\n"
+                          "         mimdsim plan fig6 | tail -n +2 | cut -f 1 | parallel mimdsim "
+                          "run fig6 --point {} -o {}.db\n"
+                          "\v--shards N adds the shard of N that each run belongs to (`mimdsim run "
+                          "SCENARIO --shard K/N`). Columns are "
+                          "separated by tabs, and the first line names them. --json writes one "
+                          "document. `mimdsim run SCENARIO --point ID` "
+                          "makes one of these runs, and `mimdsim merge` joins the databases.";
 
 /* One run, columns separated by tabs; the reason of a point that cannot run comes last. */
+/* Tab separated, so that `cut` finds the columns. */
 static void line(const struct run_spec *r, int shards)
 {
-    printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name, r->machine.name, r->model.nbody,
-           r->nrank, (unsigned long long)r->seed, r->rep);
+    printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name,
+           r->machine.name, r->model.nbody, r->nrank, (unsigned long long)r->seed, r->rep);
     if (shards > 0) printf("\t%d", shard_of(r, shards));
     printf("%s%s\n", r->refused != NULL ? "\trefused: " : "", r->refused != NULL ? r->refused : "");
 }
 
 /* The same as an object. */
+/* The same as an object of the document. */
 static void row(struct json *j, const struct run_spec *r, int shards)
 {
     char id[sizeof r->config_hash + 16];
@@ -48,6 +53,7 @@ static void row(struct json *j, const struct run_spec *r, int shards)
 }
 
 /* A head and a line per run, or one list. */
+/* Nothing is run, so nothing is stored. */
 static void list(const struct common *c, const struct plan *p, int shards)
 {
     struct json j = json_make(stdout);
@@ -68,7 +74,8 @@ static bool read_shards(const char *text, int *shards, struct err *e)
     if (text == NULL) return true;
     snprintf(whole, sizeof whole, "1/%s", text);
     if (strlen(text) > 20 || !shard_parse(whole, &s, e))
-        return err_set(e, ERR_USAGE, "--shards '%.40s': expected a number of shards, such as 8", text);
+        return err_set(e, ERR_USAGE, "--shards '%.40s': expected a number of shards, such as 8",
+                       text);
     *shards = s.of;
     return true;
 }

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* 15 hexadecimal digits are 60 bits: more than enough, and no number is negative. */
 enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 }; /* more hosts than anyone has; 60 bits */
 
 /* NULL is no shard: then all runs are wanted. */
@@ -16,15 +17,18 @@ bool shard_parse(const char *text, struct shard *out, struct err *e)
     if (text == NULL) return true;
     int used = 0;
     /* %n tells whether the whole text was read. */
-    const bool read = sscanf(text, "%9d/%9d%n", &out->number, &out->of, &used) == 2 && text[used] == '\0';
+    const bool read =
+        sscanf(text, "%9d/%9d%n", &out->number, &out->of, &used) == 2 && text[used] == '\0';
     if (read && out->number >= 1 && out->number <= out->of && out->of <= MOST_SHARDS) return true;
-    return err_set(e, ERR_USAGE, "--shard '%.40s': expected K/N with 1 <= K <= N <= %d, such as 1/8", text,
+    return err_set(e, ERR_USAGE,
+                   "--shard '%.40s': expected K/N with 1 <= K <= N <= %d, such as 1/8", text,
                    MOST_SHARDS);
 }
 
 int shard_of(const struct run_spec *run, int of)
 {
-    /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by one. */
+    /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by one.
+     */
     /* Fifteen hexadecimal digits fit into 64 bits and are more than enough to be even. */
     char digits[HASH_DIGITS + 1];
     snprintf(digits, sizeof digits, "%.*s", HASH_DIGITS, run->config_hash);

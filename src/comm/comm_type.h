@@ -24,6 +24,7 @@ struct comm_request {
     int64_t mask, capacity; /* receive: bits of the tag that count; room in buffer [B] */
     int64_t posted_ps;      /* receive: when it was posted */
     int kind, open;         /* of the implementation */
+    uint32_t path;          /* of the implementation: what made a send complete, for critical paths */
 };
 
 struct comm_envelope;

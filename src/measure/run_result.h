@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/work.h"
+#include "measure/path.h"
 
 enum run_status { RUN_OK, RUN_INVALID, RUN_DEADLOCK, RUN_FAILED };
 
@@ -105,6 +106,9 @@ struct run_result {
                                   that order: "RANK STREAM TEXT"; in the run's arena, NULL: nothing */
     int64_t nspan;
     struct span *span;         /* in the run's arena, NULL unless recorded */
+    int64_t npath;
+    struct path_step *path;    /* the critical path in the order of time, in the run's arena, NULL unless recorded */
+    int64_t path_nodes, path_bytes; /* of the graph that it was found in, and its memory [B] */
     int nlink;
     struct link_load *link;    /* in the run's arena, NULL unless recorded */
 

@@ -17,6 +17,7 @@
 #include "spec/machine_spec.h"
 
 struct topology;
+struct path_log;
 struct net;
 
 /* Lanes of the levels' events: deliveries and freed resources, starts of messages, arriving heads, arbitration.
@@ -34,6 +35,7 @@ struct net_message {
     sim_ps arrival;     /* out: when the tail arrived */
     sim_ps uncontended; /* out: when it would have arrived had no other message (of another rank) been in its way;
                            the sender's own gap g and port are part of it, as in LogGP */
+    uint32_t path;      /* in: node of `ready` in the graph of net_set_path; out: node of `arrival` */
 };
 
 typedef void net_deliver_fn(void *context, struct net_message *m);
@@ -46,6 +48,7 @@ struct net_type {
     void (*occupy)(struct net *n, int link, sim_ps now, sim_ps busy); /* NULL: the level cannot */
     bool (*deadlock)(const struct net *n, char *text, int size); /* messages remain and no event: names the cycle */
     bool asks; /* for others' messages when a message comes to a link (net_ask_others) */
+    bool paths; /* it says what binds at each resource (net_set_path); else its contention is one lump a message */
 };
 
 /* net_create: the level of `m->network` over `t`.
@@ -67,6 +70,10 @@ void net_send(struct net *n, struct net_message *m);
  * none may say true, and says false before its first, which then is late at ports that were promised ahead of its time.
  */
 void net_set_in_order(struct net *n, bool in_order);
+
+/* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL: do not. Call it
+ * before any message is sent. */
+void net_set_path(struct net *n, struct path_log *log);
 
 /* net_zero_load: arrival - ready of a single message in an empty network, the closed form [ps]. */
 sim_ps net_zero_load(const struct net *n, int src, int dst, int64_t bytes);

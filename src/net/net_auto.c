@@ -184,4 +184,4 @@ static void auto_send(struct net *n, struct net_message *m)
 }
 
 const struct net_type net_auto = {"auto",        LEVEL_AUTO,      auto_create, auto_send,
-                                  packet_occupy, packet_deadlock, false};
+                                  packet_occupy, packet_deadlock, false, false};

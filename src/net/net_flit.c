@@ -23,4 +23,4 @@ static bool flit_deadlock(const struct net *n, char *text, int size)
 }
 
 const struct net_type net_flit = {"flit",        LEVEL_FLIT,    flit_create, packet_send,
-                                  packet_occupy, flit_deadlock, false};
+                                  packet_occupy, flit_deadlock, false, false};

@@ -12,6 +12,7 @@
 #include "base/picoseconds.h"
 #include "machine/topology.h"
 #include "net/net.h"
+#include "net/net_keys.h"
 
 /* How fast a resource moves flits. */
 struct net_rate {
@@ -56,6 +57,8 @@ struct net {
     bool port_private;      /* messages of one node are handed over in the order of their ready times */
     int64_t in_flight;      /* messages accepted and not yet delivered */
     struct link_load *load; /* (nresource), NULL unless wanted */
+    struct path_log *path;  /* critical paths (net_path.h), NULL unless recorded; borrowed */
+    struct net_hold *hold;  /* (nresource) with path */
     void *state;            /* of the level */
 };
 
@@ -117,10 +120,12 @@ static inline sim_ps net_port_busy(const struct net *n, int64_t bytes, int64_t f
     return net_rate_time(p->rate, flits - 1) + (p->gap > flit ? p->gap : flit);
 }
 
-/* net_arrive: hand m over, its three times filled in. */
+/* net_arrive: hand m over, its three times filled in. net_path_whole: net_path.h. */
+void net_path_whole(const struct net *n, struct net_message *m);
 static inline void net_arrive(struct net *n, struct net_message *m)
 {
     n->in_flight--;
+    if (n->path && !n->type->paths) net_path_whole(n, m);
     n->deliver(n->context, m);
 }
 
@@ -133,18 +138,6 @@ static inline void net_account(struct net *n, int resource, int messages, int64_
     l->bytes += bytes;
     l->busy_ps += busy;
     l->queue_ps += queue;
-}
-
-/* net_event_key: order of events of one lane and time: by input port, then message. */
-static inline uint64_t net_event_key(int port, int64_t id)
-{
-    return (uint64_t)(port & 0xffffff) << 24 | (uint64_t)(id & 0xffffff);
-}
-
-/* net_start_key: order of starts at one time: by id, of which the upper half names the sender. */
-static inline uint64_t net_start_key(int64_t id)
-{
-    return (uint64_t)(id >> 32 & 0xffffff) << 24 | (uint64_t)(id & 0xffffff);
 }
 
 #endif

@@ -9,7 +9,7 @@
  *
  * Events: one per link and one for the ejection port, which already knows the arrival. The
  * injection port of a node with one sender needs none. */
-#include "net/net_internal.h"
+#include "net/net_path.h"
 
 /* A message on its way. */
 struct flight {
@@ -19,6 +19,7 @@ struct flight {
     int port;     /* through which it arrives there */
     int64_t flits;
     struct net_rate slow; /* slowest rate of the route */
+    uint32_t path;        /* node at which the head was last, where critical paths are recorded */
     struct flight *next;  /* in the pool of unused ones */
 };
 
@@ -74,9 +75,11 @@ static sim_ps resource_take(struct net *n, int resource, const struct net_messag
     struct link_level *g = n->state;
     /* Others' messages go by links alone; those that came since a link was last taken are served
      * before. */
-    if (n->others && !net_is_injection(n, resource) && !net_is_ejection(n, resource))
-        g->free[resource] =
-            n->others(n->others_context, resource - n->nnode, now, g->free[resource]);
+    if (n->others && !net_is_injection(n, resource) && !net_is_ejection(n, resource)) {
+        const sim_ps before = g->free[resource];
+        g->free[resource] = n->others(n->others_context, resource - n->nnode, now, before);
+        if (g->free[resource] > before) net_path_others(n, resource);
+    }
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
     net_account(n, resource, 1, m->bytes, busy, at - now);
@@ -90,6 +93,7 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
 {
     struct hop h;
     int port = f->port;
+    if (n->path) f->path = net_path_take(n, f->resource, f->path, x, f->m->bytes);
     if (topology_next(n->topology, &f->cursor, &h)) {
         f->resource = net_resource(n, h.link);
         f->port = h.port;
@@ -107,11 +111,15 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
     struct flight *f = (struct flight *)(uintptr_t)argument;
     sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->m->bytes), f->flits);
     sim_ps x = resource_take(n, f->resource, f->m, now, busy);
+    if (n->path) f->path = net_path_hops(n, f->path, 1, f->resource);
     if (!net_is_ejection(n, f->resource)) {
         head_sent(n, f, x);
         return;
     }
     struct net_message *m = f->m;
+    if (n->path)
+        m->path = net_path_tail(n, net_path_take(n, f->resource, f->path, x, m->bytes), f->slow,
+                                m->bytes);
     m->arrival = x + net_rate_time(f->slow, f->flits - 1) + net_end(n, m->bytes);
     flight_return(n, f);
     net_arrive(n, m);
@@ -128,6 +136,8 @@ static void link_inject(struct net *n, struct net_message *m)
     f->slow = net_slowest(n, m, &nhop);
     f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
     f->port = topology_injection_port(n->topology, m->src);
+    f->resource = net_injection(n, m->src);
+    f->path = m->path;
     sim_ps busy = net_port_busy(n, m->bytes, f->flits), own = 0;
     /* When the port would have been free for this processor alone. */
     if (g->nprocessor > 1) {
@@ -162,7 +172,8 @@ static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
     struct link_level *g = n->state;
     sim_ps *free = &g->free[net_resource(n, link)];
     *free = ps_later(now > *free ? now : *free, busy);
+    net_path_others(n, net_resource(n, link));
 }
 
 const struct net_type net_link = {"link",      LEVEL_LINK, link_create, link_send,
-                                  link_occupy, NULL,       true};
+                                  link_occupy, NULL,       true,        true};

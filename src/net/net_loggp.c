@@ -6,7 +6,7 @@
  * which is LogGP with G the time of a flit and L = R tau + end. Where the port has one sender,
  * whose messages come in the order of their ready times, the answer is known in net_send and costs
  * no event. */
-#include "net/net_internal.h"
+#include "net/net_path.h"
 
 struct loggp {
     sim_ps *port;     /* (nnode) when the injection port is free */
@@ -52,6 +52,10 @@ static void loggp_inject(struct net *n, struct net_message *m)
     if (g->nprocessor > 1)
         m->uncontended =
             port_take(&g->own_port[m->src * g->nprocessor + m->processor], m->ready, busy) + flight;
+    if (n->path) {
+        const uint32_t sent = net_path_take(n, net_injection(n, m->src), m->path, m->injected, m->bytes);
+        m->path = net_path_tail(n, net_path_hops(n, sent, nhop + 1, -1), slow, m->bytes);
+    }
     net_account(n, net_injection(n, m->src), 1, m->bytes, busy, m->injected - m->ready);
     net_arrive(n, m);
 }
@@ -72,4 +76,4 @@ static void loggp_send(struct net *n, struct net_message *m)
 }
 
 const struct net_type net_loggp = {"loggp", LEVEL_LOGGP, loggp_create, loggp_send,
-                                   NULL,    NULL,        false};
+                                   NULL,    NULL,        false,        true};

@@ -465,4 +465,4 @@ void packet_send(struct net *n, struct net_message *m)
 }
 
 const struct net_type net_packet = {"packet",      LEVEL_PACKET,    packet_create, packet_send,
-                                    packet_occupy, packet_deadlock, false};
+                                    packet_occupy, packet_deadlock, false, false};

@@ -23,7 +23,7 @@
 enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
 
 /* The arrays of a result, in the order in which they travel. */
-enum { PARTS = 5 };
+enum { PARTS = 6 };
 
 struct parts {
     void **array[PARTS];
@@ -36,10 +36,10 @@ static struct parts parts_of(struct run_result *r)
     size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
     return (struct parts){
         {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link,
-         (void **)&r->said},
+         (void **)&r->said, (void **)&r->path},
         {rows * sizeof *r->stage, (r->finish_ps ? (size_t)r->nrank : 0) * sizeof *r->finish_ps,
          (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link,
-         (size_t)r->nsaid},
+         (size_t)r->nsaid, (size_t)r->npath * sizeof *r->path},
     };
 }
 

@@ -18,6 +18,7 @@ enum baseline_rule { BASELINES_ALL, BASELINES_NEEDED };
 struct record_spec {
     bool spans;  /* who did what from when to when (timeline) */
     bool links;  /* per-link busy time and queueing */
+    bool path;   /* what binds: the critical path (mimdsim why). No setting: whoever asks for it says so */
     enum baseline_rule baselines;
 };
 

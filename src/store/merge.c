@@ -1,8 +1,9 @@
 /* merge.c - one database attached to another one, and its rows taken over; see merge.h.
  *
- * Numbers of rows mean nothing outside their database. So rows that others refer to (builds, settings,
- * runs) are found again by what identifies them, and references are translated on the way. The list of
- * tables comes from the schema itself: a new table with a run_id is merged without a word here. */
+ * Numbers of rows mean nothing outside their database. So rows that others refer to (builds,
+ * settings, runs) are found again by what identifies them, and references are translated on the
+ * way. The list of tables comes from the schema itself: a new table with a run_id is merged without
+ * a word here. */
 #include "store/merge.h"
 
 #include <string.h>
@@ -12,20 +13,23 @@
 
 /* Studies whose rows stand for themselves. Verdicts on claims and explanations are left out: they
  * judge all runs of a database together, so after a merge they are to be made anew. */
-static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability", "omission"};
+static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability",
+                                          "omission"};
 
 /* The number that `sql` returns. */
 static bool number(struct store *s, const char *sql, int64_t *out, struct err *e)
 {
     sqlite3_stmt *q = NULL;
-    const bool ok = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
+    const bool ok =
+        sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
     if (ok) *out = sqlite3_column_int64(q, 0);
     else store_failed(s, e);
     sqlite3_finalize(q);
     return ok;
 }
 
-/* --- the other database ------------------------------------------------------------------------------------------ */
+/* --- the other database
+ * ------------------------------------------------------------------------------------------ */
 
 /* By device and inode: two paths may name one file. */
 static bool same_file(const char *a, const char *b)
@@ -37,14 +41,16 @@ static bool same_file(const char *a, const char *b)
 /* Whether it is a database of this version: opening it as every reader does tells. */
 static bool look_at(const struct store *s, const char *from, struct err *e)
 {
-    if (same_file(s->path, from)) return err_set(e, ERR_USAGE, "%s would be merged into itself", from);
+    if (same_file(s->path, from))
+        return err_set(e, ERR_USAGE, "%s would be merged into itself", from);
     struct store *other = store_open(from, STORE_READ, e);
     if (other == NULL) return false;
     const bool older = store_remark(other) != NULL;
     store_close(other);
-    return !older || err_set(e, ERR_DATA,
-                             "database %s is of an older version; `mimdsim query --upgrade %s` upgrades it", from,
-                             from);
+    return !older ||
+           err_set(e, ERR_DATA,
+                   "database %s is of an older version; `mimdsim query --upgrade %s` upgrades it",
+                   from, from);
 }
 
 /* As schema `other` of the same connection, so that one statement can read both. */
@@ -68,18 +74,21 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
                 " (SELECT 1 FROM other.sqlite_schema o WHERE o.name = m.name AND o.type = 'table')",
                 &strange, e))
         return false;
-    return strange == 0 || err_set(e, ERR_DATA, "database %s lacks %lld of the tables of this version", from,
-                                   (long long)strange);
+    return strange == 0 ||
+           err_set(e, ERR_DATA, "database %s lacks %lld of the tables of this version", from,
+                   (long long)strange);
 }
 
-/* --- which runs -------------------------------------------------------------------------------------------------- */
+/* ---- which runs ---- */
 
-/* Two programs that disagree about one run: whoever is right, a merge must not choose in silence. */
+/* Two programs that disagree about one run: whoever is right, a merge must not choose in silence.
+ */
 static bool check_digests(struct store *s, const char *from, struct err *e)
 {
     /* Only runs that ended well have a digest that means something; both builds are told. */
     static const char sql[] =
-        "SELECT h.config_hash, h.seed, h.rep, h.digest, o.digest, hb.version || ' ' || hb.git || ' ' || hb.compiler,"
+        "SELECT h.config_hash, h.seed, h.rep, h.digest, o.digest, hb.version || ' ' || hb.git || ' "
+        "' || hb.compiler,"
         " ob.version || ' ' || ob.git || ' ' || ob.compiler FROM main.run h"
         " JOIN other.run o USING (config_hash, seed, rep)"
         " JOIN main.build hb ON hb.id = h.build_id JOIN other.build ob ON ob.id = o.build_id"
@@ -92,7 +101,8 @@ static bool check_digests(struct store *s, const char *from, struct err *e)
         const char *text[7];
         for (int i = 0; i < 7; i++) text[i] = (const char *)sqlite3_column_text(q, i);
         ok = err_set(e, ERR_DATA,
-                     "run %.12s, seed %s, repetition %s has digest %s in %s (build %s) and %s in %s (build %s);"
+                     "run %.12s, seed %s, repetition %s has digest %s in %s (build %s) and %s in "
+                     "%s (build %s);"
                      " one of them is wrong: run it again with --force",
                      text[0], text[1], text[2], text[3], s->path, text[5], text[4], from, text[6]);
     } else if (code != SQLITE_DONE) {
@@ -106,41 +116,47 @@ static bool check_digests(struct store *s, const char *from, struct err *e)
  * Counts what is taken and what stays. */
 static bool choose_runs(struct store *s, struct store_merged *done, struct err *e)
 {
-    return store_exec(s,
-                      "CREATE TEMP TABLE merge_run (old INTEGER PRIMARY KEY, here INTEGER, new INTEGER);"
-                      "INSERT INTO merge_run (old, here) SELECT o.id, h.id FROM other.run o"
-                      " LEFT JOIN main.run h USING (config_hash, seed, rep)"
-                      " WHERE h.id IS NULL OR (h.status <> 'ok' AND o.status = 'ok')",
-                      e) &&
+    return store_exec(
+               s,
+               "CREATE TEMP TABLE merge_run (old INTEGER PRIMARY KEY, here INTEGER, new INTEGER);"
+               "INSERT INTO merge_run (old, here) SELECT o.id, h.id FROM other.run o"
+               " LEFT JOIN main.run h USING (config_hash, seed, rep)"
+               " WHERE h.id IS NULL OR (h.status <> 'ok' AND o.status = 'ok')",
+               e) &&
            number(s, "SELECT count(*) FROM merge_run WHERE here IS NULL", &done->added, e) &&
            number(s, "SELECT count(*) FROM merge_run WHERE here IS NOT NULL", &done->replaced, e) &&
-           number(s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)", &done->present, e);
+           number(s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)",
+                  &done->present, e);
 }
 
-/* --- rows -------------------------------------------------------------------------------------------------------- */
+/* ---- rows ---- */
 
 /* How a column of a table is taken over. */
 static const char *translation(const char *column)
 {
     if (strcmp(column, "run_id") == 0) return "m.new";
     if (strcmp(column, "build_id") == 0)
-        return "(SELECT h.id FROM main.build h JOIN other.build o USING (version, git, compiler, flags)"
+        return "(SELECT h.id FROM main.build h JOIN other.build o USING (version, git, compiler, "
+               "flags)"
                " WHERE o.id = t.build_id)";
     if (strcmp(column, "setting_id") == 0)
-        return "(SELECT h.id FROM main.setting h JOIN other.setting o USING (key, value) WHERE o.id = t.setting_id)";
+        return "(SELECT h.id FROM main.setting h JOIN other.setting o USING (key, value) WHERE "
+               "o.id = t.setting_id)";
     return NULL;
 }
 
 /* The columns of a table, but for the number of the row, and what each gets. */
-static bool list_columns(struct store *s, const char *table, struct text *to, struct text *from, struct err *e)
+static bool list_columns(struct store *s, const char *table, struct text *to, struct text *from,
+                         struct err *e)
 {
     sqlite3_stmt *q = NULL;
-    bool ok = sqlite3_prepare_v2(s->db, "SELECT name FROM pragma_table_info(?1, 'main') WHERE name <> 'id'", -1, &q,
-                                 NULL) == SQLITE_OK;
+    bool ok = sqlite3_prepare_v2(
+                  s->db, "SELECT name FROM pragma_table_info(?1, 'main') WHERE name <> 'id'", -1,
+                  &q, NULL) == SQLITE_OK;
     if (ok) sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC);
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
-        const char *name = (const char *)sqlite3_column_text(q, 0), *comma = to->length > 0 ? ", " : "",
-                   *translated = translation(name);
+        const char *name = (const char *)sqlite3_column_text(q, 0),
+                   *comma = to->length > 0 ? ", " : "", *translated = translation(name);
         text_add(to, "%s\"%s\"", comma, name);
         if (translated != NULL) text_add(from, "%s%s", comma, translated);
         else text_add(from, "%st.\"%s\"", comma, name);
@@ -148,13 +164,15 @@ static bool list_columns(struct store *s, const char *table, struct text *to, st
     return (sqlite3_finalize(q) == SQLITE_OK && ok) || store_failed(s, e);
 }
 
-/* INSERT the rows of other.`table` as t that `which` (the rest of the query, "" for all) chooses. */
-static bool take_rows(struct store *s, const char *insert, const char *table, const char *which, struct err *e)
+/* INSERT the rows of other.`table` as t that `which` (the rest of the query, "" for all) chooses.
+ */
+static bool take_rows(struct store *s, const char *insert, const char *table, const char *which,
+                      struct err *e)
 {
     struct text to = {0}, from = {0}, sql = {0};
     bool ok = list_columns(s, table, &to, &from, e);
-    text_add(&sql, "%s INTO main.\"%s\" (%s) SELECT %s FROM other.\"%s\" t %s", insert, table, to.s, from.s, table,
-             which);
+    text_add(&sql, "%s INTO main.\"%s\" (%s) SELECT %s FROM other.\"%s\" t %s", insert, table, to.s,
+             from.s, table, which);
     ok = ok && store_exec(s, sql.s, e);
     text_free(&to);
     text_free(&from);
@@ -169,7 +187,9 @@ static bool take_runs(struct store *s, struct err *e)
      * already. */
     return take_rows(s, "INSERT OR IGNORE", "build", "", e) &&
            take_rows(s, "INSERT OR IGNORE", "setting",
-                     "WHERE t.id IN (SELECT setting_id FROM other.run_setting JOIN merge_run ON run_id = old)", e) &&
+                     "WHERE t.id IN (SELECT setting_id FROM other.run_setting JOIN merge_run ON "
+                     "run_id = old)",
+                     e) &&
            store_exec(s, "DELETE FROM main.run WHERE id IN (SELECT here FROM merge_run)", e) &&
            take_rows(s, "INSERT", "run", "JOIN merge_run m ON m.old = t.id ORDER BY t.id", e) &&
            store_exec(s,
@@ -182,14 +202,16 @@ static bool take_runs(struct store *s, struct err *e)
 static bool take_parts(struct store *s, struct err *e)
 {
     sqlite3_stmt *q = NULL;
-    bool ok = sqlite3_prepare_v2(s->db,
-                                 "SELECT DISTINCT m.name FROM main.sqlite_schema m, pragma_foreign_key_list(m.name) f"
-                                 " WHERE m.type = 'table' AND f.\"table\" = 'run' AND f.\"from\" = 'run_id'",
-                                 -1, &q, NULL) == SQLITE_OK;
+    bool ok =
+        sqlite3_prepare_v2(
+            s->db,
+            "SELECT DISTINCT m.name FROM main.sqlite_schema m, pragma_foreign_key_list(m.name) f"
+            " WHERE m.type = 'table' AND f.\"table\" = 'run' AND f.\"from\" = 'run_id'",
+            -1, &q, NULL) == SQLITE_OK;
     if (!ok) store_failed(s, e);
     while (ok && sqlite3_step(q) == SQLITE_ROW)
-        ok = take_rows(s, "INSERT", (const char *)sqlite3_column_text(q, 0), "JOIN merge_run m ON m.old = t.run_id",
-                       e);
+        ok = take_rows(s, "INSERT", (const char *)sqlite3_column_text(q, 0),
+                       "JOIN merge_run m ON m.old = t.run_id", e);
     sqlite3_finalize(q);
     return ok;
 }
@@ -205,7 +227,7 @@ static bool take_studies(struct store *s, struct store_merged *done, struct err 
     return ok;
 }
 
-/* --- all of it --------------------------------------------------------------------------------------------------- */
+/* ---- all of it ---- */
 
 bool store_merge(struct store *s, const char *from, struct store_merged *done, struct err *e)
 {
@@ -213,9 +235,10 @@ bool store_merge(struct store *s, const char *from, struct store_merged *done, s
     if (!look_at(s, from, e) || !attach(s, from, e)) return false;
     /* trusted_schema: functions that a stranger's view or trigger calls are refused. Checks
      * first, then runs, then what refers to them; the last statement commits. */
-    bool ok = store_exec(s, "PRAGMA trusted_schema = OFF; BEGIN IMMEDIATE", e) && check_tables(s, from, e) &&
-              check_digests(s, from, e) && choose_runs(s, done, e) && take_runs(s, e) && take_parts(s, e) &&
-              take_studies(s, done, e) && store_exec(s, "DROP TABLE merge_run; COMMIT", e);
+    bool ok = store_exec(s, "PRAGMA trusted_schema = OFF; BEGIN IMMEDIATE", e) &&
+              check_tables(s, from, e) && check_digests(s, from, e) && choose_runs(s, done, e) &&
+              take_runs(s, e) && take_parts(s, e) && take_studies(s, done, e) &&
+              store_exec(s, "DROP TABLE merge_run; COMMIT", e);
     if (!ok && !sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     sqlite3_exec(s->db, "PRAGMA trusted_schema = ON; DETACH other", NULL, NULL, NULL);
     s->build_id = 0; /* its row may have been forgotten with the rest */

@@ -489,3 +489,32 @@ CREATE TABLE IF NOT EXISTS program_line (
     text   TEXT NOT NULL,              -- without its end
     PRIMARY KEY (run_id, line)
 ) STRICT, WITHOUT ROWID;
+
+-- What limits a run (mimdsim why): its critical path by stage and cause; the times add up to the run's.
+CREATE TABLE IF NOT EXISTS critical_path (
+    run_id  INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    stage   TEXT NOT NULL,             -- name of the stage
+    cause   TEXT NOT NULL,             -- computing, send overhead, hop latency, ...
+    time_ps INTEGER NOT NULL,          -- of the path
+    steps   INTEGER NOT NULL,          -- of the path
+    PRIMARY KEY (run_id, stage, cause)
+) STRICT, WITHOUT ROWID;
+-- What each parameter of the machine contributes to the critical path.
+CREATE TABLE IF NOT EXISTS sensitivity (
+    run_id           INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    key              TEXT NOT NULL,    -- full name of the setting
+    rate             INTEGER NOT NULL CHECK (rate IN (0, 1)),  -- 1: larger is faster
+    time_ps          INTEGER NOT NULL, -- of the path that is proportional to it, or to its inverse
+    count            REAL,             -- how often the path pays it; NULL: by segments of message size
+    factor_5_percent REAL,             -- on the time behind it, with which the run takes 5 % longer; NULL: not known
+    same_path        INTEGER CHECK (same_path IN (0, 1)),  -- 1: up to there no other path takes over
+    PRIMARY KEY (run_id, key)
+) STRICT, WITHOUT ROWID;
+-- The same run on idealised machines.
+CREATE TABLE IF NOT EXISTS ideal (
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    machine     TEXT NOT NULL,         -- zero latency, infinite bandwidth, ...
+    what        TEXT NOT NULL,         -- which settings that is
+    makespan_ps INTEGER,               -- NULL: it cannot be run
+    PRIMARY KEY (run_id, machine)
+) STRICT, WITHOUT ROWID;

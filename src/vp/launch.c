@@ -1,4 +1,5 @@
 /* launch.c - a message sets out: into the network, or over the memory that two processors of one node share. */
+#include "vp/path.h"
 #include "vp/vp.h"
 
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
@@ -13,5 +14,8 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
     m->net.injected = m->net.ready;
     m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
     m->net.uncontended = m->net.arrival;
+    if (w->path)
+        m->net.path = path_add(w->path, m->net.path, m->net.arrival, PATH_MEMORY, from->comm.rank,
+                               -1, -1, m->net.bytes);
     w->arrived(m);
 }

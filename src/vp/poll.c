@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/picoseconds.h"
 #include "vp/explain.h"
+#include "vp/path.h"
 #include "vp/matching.h"
 
 enum { POLL_PART = 8, SERIES_PART = 16 };
@@ -154,6 +155,7 @@ static struct unmatched *await(struct vp *v, struct comm_request *look)
     vp_block(v, WAITING_RECEIVE, look);
     struct unmatched *u = look->detail;
     const sim_ps begin = v->clock;
+    vp_path_join(v, u->m->net.path);
     vp_wait_until(v, u->m->net.arrival, u->m->net.uncontended);
     if (v->world->record->spans)
         vp_span(v, SPAN_WAIT, begin, v->clock, u->source->rank, u->m->bytes, -1);

@@ -3,6 +3,7 @@
  * and the machine's software time. The sender's request is complete when the clear to send is
  * there, that of a synchronous message when its data arrived. */
 #include "base/check.h"
+#include "vp/path.h"
 #include "vp/vp.h"
 
 /* The three parts travel as the same message with another size and start. */
@@ -33,9 +34,16 @@ void rendezvous_send(struct vp *v, struct message *m, struct comm_request *r)
 void rendezvous_matched(struct message *m, struct comm_request *r, sim_ps now)
 {
     (void)r;
+    struct vp *v = m->to;
+    struct path_log *p = v->world->path;
+    const sim_ps ready = now + message_cost(&v->world->software, m->bytes)->rendezvous;
     m->delay += m->net.arrival - m->net.uncontended;
     m->kind = MESSAGE_CLEAR_TO_SEND;
-    travel(m, m->to, m->from, 0, now + message_cost(&m->to->world->software, m->bytes)->rendezvous);
+    /* The request binds unless the receive was posted after it had arrived. */
+    if (p)
+        m->net.path = path_add(p, now > m->net.arrival ? vp_path_until(v, now) : m->net.path, ready,
+                               PATH_RENDEZVOUS, v->comm.rank, v->stage, -1, m->bytes);
+    travel(m, v, m->from, 0, ready);
 }
 
 /* the sender's request ends in `state` at the message's arrival; nobody may wait for it */
@@ -45,6 +53,7 @@ static void release_sender(struct message *m, int state)
     if (!s) return;
     s->active = state;
     s->detail = (void *)(intptr_t)m->net.arrival;
+    s->path = m->net.path;
     m->send = NULL;
     vp_notify(m->from, s, m->net.arrival);
 }

@@ -1,26 +1,45 @@
 /* server.c - one kernel server for the whole machine (a network daemon, one big lock): every
  * message end passes it, first come first served. */
 #include "base/picoseconds.h"
+#include "vp/path.h"
 #include "vp/vp.h"
 
+static sim_ps service_time(const struct world *w, int64_t bytes)
+{
+    return w->software.kernel_time + ps_rounded(w->software.kernel_byte * (double)bytes);
+}
+
+/* Whoever finds the server busy is bound by whom it serves: by the moment when that began. */
+static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
+{
+    struct world *w = v->world;
+    v->path = v->server_start > now
+                  ? path_add(w->path, w->server_path, v->server_start, PATH_SERVER, w->served_rank,
+                             w->served_stage, -1, w->server_bytes)
+                  : vp_path_until(v, now);
+    w->server_path = v->path;
+    w->server_bytes = bytes;
+    w->served_rank = v->comm.rank;
+    w->served_stage = v->stage;
+}
+
 /* An event, so that those who come at one time are served in the order of the queue, by rank. */
-static void begin_service(void *subject, uint64_t service, sim_ps now)
+static void begin_service(void *subject, uint64_t bytes, sim_ps now)
 {
     struct vp *v = subject;
     struct world *w = v->world;
     v->server_start = now > w->server_free ? now : w->server_free;
-    w->server_free = ps_later(v->server_start, (sim_ps)service);
+    if (w->path) bind_path(v, now, (int64_t)bytes);
+    w->server_free = ps_later(v->server_start, service_time(w, (int64_t)bytes));
     vp_wake(w, v);
 }
 
 /* The caller waits for its turn, and is charged the service time that is returned. */
 sim_ps server_pass(struct vp *v, int64_t bytes)
 {
-    const struct software_cost *s = &v->world->software;
-    sim_ps service = s->kernel_time + ps_rounded(s->kernel_byte * (double)bytes);
     sim_at(v->world->sim, v->clock, LANE_SERVER, (uint64_t)v->comm.rank, begin_service, v,
-           (uint64_t)service);
+           (uint64_t)bytes);
     vp_block(v, WAITING_SERVER, NULL);
     vp_wait_until(v, v->server_start, v->clock);
-    return service;
+    return service_time(v->world, bytes);
 }

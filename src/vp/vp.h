@@ -55,6 +55,7 @@ struct vp {
     sim_ps finish;       /* clock at its end */
     struct fiber *fiber;
     struct random noise;
+    uint32_t path; /* node of `clock`, where critical paths are recorded */
 };
 
 struct world {
@@ -80,12 +81,17 @@ struct world {
 
     struct message *free_message[MESSAGE_CLASSES];
 
+    struct path_log *path; /* what binds (path.h), NULL unless recorded; owned */
+    uint32_t barrier_path; /* of barrier_latest, then of barrier_release */
     int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;
 
     const struct vp *late; /* the rank whose clock would pass the end of time, NULL: none */
     int64_t background_events; /* of other jobs' traffic, pending */
     sim_ps server_free; /* kernel server */
+    uint32_t server_path; /* of the message end that it served last: when it began; whose that was */
+    int served_rank, served_stage;
+    int64_t server_bytes;
     int64_t span_capacity;
 
     void (*arrived)(struct message *m); /* what the end of a message's trip means */
@@ -129,21 +135,16 @@ void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int pe
  * bytes and ready time. `from` and `to` are the ranks at the ends of this trip. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to);
 
-/* --- vp_comm.c --- */
-
-/* vp_comm_type: comm.h as a virtual processor implements it. */
+/* vp_comm_type: comm.h as a virtual processor implements it (vp_comm.c). */
 extern const struct comm_type vp_comm_type;
 
-/* --- server.c --- */
-
-/* server_pass: be served by the machine's one kernel server for a message end of `bytes`; blocks, charges waiting to
- * contention, and returns the service time that is still to be charged as overhead. */
+/* server_pass (server.c): be served by the machine's one kernel server for a message end of
+ * `bytes`; blocks, charges waiting to contention, and returns the service time that is still to be
+ * charged as overhead. */
 sim_ps server_pass(struct vp *v, int64_t bytes);
 
-/* --- background.c --- */
-
-/* background_start: begin the seeded traffic of others on the links, when the machine has it; it ends with the ranks.
- * Acts at levels that can occupy a link (net_occupy); the plan reports it as unused at the others. */
+/* background_start (background.c): begin the seeded traffic of others on the links, when the machine
+ * has it; it ends with the ranks. It acts at levels that can occupy a link (net_occupy). */
 void background_start(struct world *w, uint64_t seed);
 
 #endif

@@ -10,6 +10,7 @@
 #include "comm/collectives.h"
 #include "vp/explain.h"
 #include "vp/matching.h"
+#include "vp/path.h"
 #include "vp/vp.h"
 
 enum { BARRIER_TAG = 1 << 30 };
@@ -23,7 +24,9 @@ static void charge_send(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
+    const sim_ps served = v->clock;
     vp_advance(v, v->clock + cost);
+    vp_path(v, PATH_SEND, served, m->bytes);
     vp_stage_time(v)->send_ps += cost;
     if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
 }
@@ -37,7 +40,9 @@ static void charge_receive(struct vp *v, const struct message *m)
         sim_ps service = server_pass(v, m->bytes);
         cost = cost > service ? cost : service;
     }
+    const sim_ps served = v->clock;
     vp_advance(v, v->clock + cost);
+    vp_path(v, PATH_RECV, served, m->bytes);
     vp_stage_time(v)->recv_ps += cost;
     if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
 }
@@ -61,6 +66,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     charge_send(v, m);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
+    m->net.path = v->path;
     if (m->to->matching) matching_announce(m);
     return m;
 }
@@ -137,6 +143,7 @@ static void finish_receive(struct vp *v, struct comm_request *r)
 {
     struct message *m = r->detail;
     sim_ps begin = v->clock;
+    vp_path_join(v, m->net.path);
     vp_wait_until(v, m->net.arrival, m->net.uncontended);
     if (v->world->record->spans) vp_span(v, SPAN_WAIT, begin, v->clock, r->peer, m->bytes, -1);
     charge_receive(v, m);
@@ -155,6 +162,7 @@ static void finish_synchronous(struct vp *v, struct comm_request *r)
     const sim_ps time = (sim_ps)(intptr_t)r->detail, held = time > v->clock ? time - v->clock : 0;
     if (held && v->world->record->spans) vp_span(v, SPAN_SEND, v->clock, time, r->peer, r->bytes, -1);
     vp_stage_time(v)->send_ps += held;
+    vp_path_join(v, r->path);
     vp_advance(v, v->clock + held);
     r->active = REQUEST_DONE;
     r->detail = NULL;
@@ -173,6 +181,7 @@ static void vp_wait(struct comm *c, struct comm_request *r)
     }
     if (r->active == REQUEST_SENT) {
         sim_ps time = (sim_ps)(intptr_t)r->detail;
+        vp_path_join(v, r->path);
         vp_wait_until(v, time, time);
         r->active = REQUEST_DONE;
         r->detail = NULL;
@@ -188,16 +197,23 @@ static void vp_wait(struct comm *c, struct comm_request *r)
 static void hardware_barrier(struct vp *v)
 {
     struct world *w = v->world;
-    if (v->clock > w->barrier_latest) w->barrier_latest = v->clock;
+    if (v->clock > w->barrier_latest) {
+        w->barrier_latest = v->clock;
+        w->barrier_path = v->path;
+    }
     if (++w->barrier_count < w->nrank) {
         vp_block(v, WAITING_BARRIER, NULL);
     } else {
         w->barrier_release = w->barrier_latest + w->software.barrier;
+        if (w->path)
+            w->barrier_path = path_add(w->path, path_at(w->path, w->barrier_path, w->barrier_latest),
+                                       w->barrier_release, PATH_BARRIER, -1, v->stage, -1, 1);
         w->barrier_count = 0;
         w->barrier_latest = 0;
         for (int i = 0; i < w->nrank; i++)
             if (&w->vp[i] != v) vp_wake(w, &w->vp[i]);
     }
+    vp_path_join(v, w->barrier_path);
     vp_wait_until(v, w->barrier_release, w->barrier_release);
 }
 
@@ -212,7 +228,8 @@ static void vp_barrier(struct comm *c)
     if (v->world->record->spans) vp_span(v, SPAN_BARRIER, begin, v->clock, -1, 0, -1);
 }
 
-static inline void compute(struct vp *v, sim_ps cost)
+/* `work` NULL: time that was not counted. */
+static inline void compute(struct vp *v, sim_ps cost, const struct work *work)
 {
     const struct world *w = v->world;
     sim_ps begin = v->clock;
@@ -221,6 +238,8 @@ static inline void compute(struct vp *v, sim_ps cost)
         cost = factor > 0 ? ps_rounded((double)cost * factor) : 0;
     }
     vp_advance(v, v->clock + cost);
+    if (w->path && work) vp_path_work(v, begin, work);
+    else vp_path(v, PATH_COMPUTE, begin, -1);
     vp_stage_time(v)->compute_ps += cost;
     if (w->record->spans) vp_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
 }
@@ -229,14 +248,14 @@ static void vp_work(struct comm *c, const struct work *work)
 {
     struct vp *v = (struct vp *)c;
     work_add(&vp_stage_time(v)->work, work);
-    compute(v, node_cost_ps(&v->world->node_cost, work));
+    compute(v, node_cost_ps(&v->world->node_cost, work), work);
 }
 
 static void vp_elapse(struct comm *c, int64_t ps)
 {
     struct vp *v = (struct vp *)c;
     if (ps < 0) vp_misuse(v, "computing for %lld ps", (long long)ps);
-    compute(v, ps < PS_TOO_LONG ? ps : PS_TOO_LONG);
+    compute(v, ps < PS_TOO_LONG ? ps : PS_TOO_LONG, NULL);
 }
 
 static void vp_stage(struct comm *c, int stage)

@@ -11,6 +11,7 @@
 #include "measure/run_heartbeat.h"
 #include "vp/explain.h"
 #include "vp/matching.h"
+#include "vp/path.h"
 #include "vp/vp.h"
 
 enum { STACK_BYTES = 64 * 1024 };
@@ -165,6 +166,21 @@ static void collect(struct world *w)
     r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
 }
 
+/* The critical path ends with the rank that ends last, the first of several. */
+static void trace_path(struct world *w)
+{
+    struct run_result *r = w->result;
+    int last = 0;
+    for (int i = 1; i < w->nrank; i++)
+        if (w->vp[i].finish > w->vp[last].finish) last = i;
+    struct vp *v = &w->vp[last];
+    v->clock = v->finish;
+    vp_path(v, PATH_POLL, v->finish, 0);
+    r->path = path_trace(w->path, v->path, &r->npath, w->arena);
+    r->path_nodes = path_nodes(w->path);
+    r->path_bytes = path_bytes(w->path);
+}
+
 static void copy_links(struct world *w)
 {
     int n;
@@ -192,6 +208,7 @@ static bool build(struct world *w, struct err *e)
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
     net_set_in_order(w->net, w->eager_only);
+    if (w->record->path) net_set_path(w->net, w->path = path_log_create());
     w->fibers = fiber_pool_create(w->nrank, w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES, e);
     return w->fibers != NULL;
 }
@@ -209,6 +226,7 @@ static void run(struct world *w, uint64_t seed)
     if (w->nfinished == w->nrank && !w->failed) {
         collect(w);
         copy_links(w);
+        if (w->path) trace_path(w);
         return;
     }
     const bool late = w->late || sim_beyond(w->sim), deadlock = !w->failed && !late;
@@ -248,6 +266,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
     name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);
     if (ok) run(&w, seed);
+    path_log_destroy(w.path);
     fiber_pool_destroy(w.fibers);
     sim_destroy(w.sim);
     arena_destroy(w.scratch);

@@ -1,0 +1,189 @@
+/* cmd_why.c - mimdsim why: what limits a run, what each parameter contributes, and what would help.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/arguments.h"
+#include "app/flag.h"
+#include "app/verb.h"
+#include "app/why_print.h"
+#include "plan/file_kind.h"
+#include "spec/identity.h"
+#include "store/store.h"
+
+static const char doc[] = "Explain what the time of a run is made of: its critical path by cause, "
+                          "stage and rank, what each parameter of the "
+                          "machine contributes, and what idealised machines would gain.\n\n"
+                          "Example: mimdsim why speedup-t3e --set n=128\n"
+                          "         mimdsim why mimdsim.db 3\n"
+                          "\vThe first point of SCENARIO is explained, or with a database the run "
+                          "RUN (column id of table run), which is made "
+                          "again. A run of a scenario is stored with its critical path (tables "
+                          "critical_path, sensitivity and ideal).\n\n"
+                          "The critical path is the chain of operations that determines when the "
+                          "last rank ends: its durations add up to the "
+                          "run's time. At levels loggp and link the path goes through the message "
+                          "that holds a resource; at the other levels "
+                          "that waiting is 'contention'. `count` is how often the path pays the "
+                          "parameter: latencies, bytes, operations. The "
+                          "last column tells by which factor the time behind a parameter may grow "
+                          "before the run takes 5 % longer; it is "
+                          "confirmed by simulation. 'On another path' means that other operations "
+                          "determine the time by then.\n\n"
+                          "--brief: the path and the contributions alone, from one run.";
+
+static const char run_sql[] = "SELECT config_text, rep FROM run WHERE id = CAST(?1 AS INTEGER)";
+
+/* The row of the run that was asked for. */
+struct found {
+    struct text config;
+    int rep;
+    bool there;
+};
+
+/* The first row, and there is only one. */
+static bool take_config(void *context, int ncolumn, const char *const *name,
+                        const char *const *value)
+{
+    struct found *f = context;
+    (void)ncolumn, (void)name;
+    if (value[0] == NULL || value[1] == NULL) return false;
+    text_add(&f->config, "%s", value[0]);
+    f->rep = atoi(value[1]);
+    f->there = true;
+    return false;
+}
+
+/* The settings of a stored run. */
+static bool from_database(const struct common *c, struct run_spec *run, struct arena *a,
+                          struct err *e)
+{
+    char why[256];
+    struct found f = {0};
+    if (c->narg < 2)
+        return err_set(e, ERR_USAGE, "which run of %s? Column id of table run tells", c->arg[0]);
+    const char *const param[] = {c->arg[1]};
+    struct store *s = arguments_database(c, "", e);
+    bool ok = s && arguments_run_number(c->arg[1], e) &&
+              store_select(s, run_sql, 1, param, take_config, &f, e);
+    if (ok && !f.there)
+        ok = err_set(e, ERR_NO_INPUT, "there is no run %s in %s", c->arg[1], c->arg[0]);
+    if (ok && !run_from_text(run, f.config.s, a, why, sizeof why))
+        ok = err_set(e, ERR_DATA, "run %s of %s cannot be made again: %s", c->arg[1], c->arg[0],
+                     why);
+    if (ok) run->rep = f.rep;
+    text_free(&f.config);
+    store_close(s);
+    return ok;
+}
+
+/* ---- rows ---- */
+
+/* Each table is emptied first, so that explaining a run again leaves no row of before. */
+static bool put_shares(struct store *s, int64_t run, const struct why *w, struct err *e)
+{
+    static const char *const name[] = {"run_id", "stage", "cause", "time_ps", "steps"};
+    bool ok = store_delete(s, "critical_path", "run_id", store_int(run), e);
+    for (int i = 0; ok && i < w->nshare; i++) {
+        const struct store_value v[] = {
+            store_int(run), store_text(w->run.stage_name[w->share[i].stage]),
+            store_text(path_cause_word(w->share[i].cause)), store_int(w->share[i].time_ps),
+            store_int(w->share[i].steps)};
+        ok = store_insert(s, "critical_path", 5, name, v, e);
+    }
+    return ok;
+}
+
+/* Factors that were not asked for, or not found, are NULL. */
+static bool put_parameters(struct store *s, int64_t run, const struct why *w, struct err *e)
+{
+    static const char *const name[] = {"run_id",           "key",      "rate", "time_ps", "count",
+                                       "factor_5_percent", "same_path"};
+    bool ok = store_delete(s, "sensitivity", "run_id", store_int(run), e);
+    for (int i = 0; ok && i < w->nparameter; i++) {
+        const struct why_parameter *p = &w->parameter[i];
+        const struct store_value v[] = {store_int(run),
+                                        store_text(p->key),
+                                        store_int(p->rate),
+                                        store_int(p->time_ps),
+                                        p->count > 0 ? store_real(p->count) : store_null(),
+                                        p->tolerance > 0 ? store_real(p->tolerance) : store_null(),
+                                        p->tolerance > 0 ? store_int(p->same_path) : store_null()};
+        ok = store_insert(s, "sensitivity", 7, name, v, e);
+    }
+    return ok;
+}
+
+/* What a level cannot run is NULL. */
+static bool put_limits(struct store *s, int64_t run, const struct why *w, struct err *e)
+{
+    static const char *const name[] = {"run_id", "machine", "what", "makespan_ps"};
+    bool ok = store_delete(s, "ideal", "run_id", store_int(run), e);
+    for (int i = 0; ok && i < w->nlimit; i++) {
+        const struct why_limit *l = &w->limit[i];
+        const struct store_value v[] = {store_int(run), store_text(l->name), store_text(l->what),
+                                        l->makespan_ps > 0 ? store_int(l->makespan_ps)
+                                                           : store_null()};
+        ok = store_insert(s, "ideal", 4, name, v, e);
+    }
+    return ok;
+}
+
+/* The run and what explains it, in one transaction. */
+static bool put_all(const struct common *c, const struct run_spec *spec, const struct why *w,
+                    struct err *e)
+{
+    struct store *s = arguments_store(c, c->database, e);
+    bool ok =
+        s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) && store_begin(s, e);
+    if (ok) {
+        const int64_t run = store_run_id(s, spec);
+        ok = put_shares(s, run, w, e) && put_parameters(s, run, w, e) && put_limits(s, run, w, e);
+        if (ok) ok = store_commit(s, e);
+        else store_rollback(s);
+    }
+    store_close(s);
+    return ok;
+}
+
+/* ---- the verb ---- */
+
+/* The study first: nothing is stored of a run that cannot be explained. */
+static bool explain(const struct common *c, const struct run_spec *spec, bool keep, bool brief,
+                    struct arena *a, struct err *e)
+{
+    struct why w;
+    if (!why_study(spec, brief ? 0 : WHY_TOLERANCES | WHY_LIMITS, c->jobs, c->quiet, a, &w, e))
+        return false;
+    if (keep && !put_all(c, spec, &w, e)) return false;
+    if (c->json) why_print_json(spec, &w, stdout);
+    else why_print(spec, &w, stdout);
+    return true;
+}
+
+int cmd_why(int argc, char **argv)
+{
+    struct common c;
+    /* One study needs three batches of runs; --brief only the first. */
+    const bool brief = take_flag(&argc, argv, "--brief");
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO\nDB RUN", doc, 1,
+                 2);
+    struct err e;
+    err_clear(&e);
+    struct arena *a = arena_create();
+    struct plan p = {0};
+    const struct plan_options o = common_plan(&c);
+    const bool database = c.narg > 1 || file_kind_of(c.arg[0], a) == FILE_DATABASE;
+    struct run_spec run;
+    /* A database names the run by number; a scenario is read as by every other verb. */
+    bool ok = database ? from_database(&c, &run, a, &e) : plan_read(&p, c.arg[0], &o, &e);
+    if (ok && !database) {
+        run = p.run[0];
+        if (p.nrun > 1 && !c.quiet) fprintf(stderr, "mimdsim: the first of %d points\n", p.nrun);
+    }
+    ok = ok && explain(&c, &run, !database, brief, a, &e);
+    plan_free(&p);
+    arena_destroy(a);
+    return ok ? 0 : common_fail(&c, &e);
+}

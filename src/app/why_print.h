@@ -1,0 +1,14 @@
+/* why_print.h - what mimdsim why answers: words and tables, or one JSON document. */
+#ifndef APP_WHY_PRINT_H
+#define APP_WHY_PRINT_H
+
+#include <stdio.h>
+
+#include "spec/run_spec.h"
+#include "study/why.h"
+
+/* why_print: for people. why_print_json: one document. */
+void why_print(const struct run_spec *spec, const struct why *w, FILE *out);
+void why_print_json(const struct run_spec *spec, const struct why *w, FILE *out);
+
+#endif

@@ -1,0 +1,131 @@
+/* path.c - the graph as one growing array, 32 bytes a node; see path.h. */
+#include "measure/path.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/size.h"
+
+/* `before` has a number of 32 bits: 128 GiB of nodes. */
+struct node {
+    int64_t time, count; /* of computing: the number of its work, -1: not counted */
+    uint32_t before;
+    int32_t rank, resource;
+    uint8_t cause, stage;
+};
+
+/* Doubling keeps the cost of a node constant; nodes are found by number, so they may move. */
+struct path_log {
+    struct node *node;
+    struct work *work;
+    int64_t n, capacity, nwork, work_capacity;
+};
+
+const char *path_cause_word(enum path_cause cause)
+{
+    static const char *const word[] = {
+#define X(constant, word, doc) word,
+        PATH_CAUSES_LIST(X)
+#undef X
+    };
+    return word[cause];
+}
+
+/* Doubled, so that adding a node costs a constant on average. */
+static void *grown(void *old, int64_t *capacity, size_t each)
+{
+    *capacity = *capacity > 0 ? 2 * *capacity : 1024;
+    void *p = realloc(old, size_product(*capacity, each));
+    CHECK(p != NULL);
+    return p;
+}
+
+struct path_log *path_log_create(void)
+{
+    struct path_log *p = calloc(1, sizeof *p);
+    CHECK(p != NULL);
+    p->node = grown(NULL, &p->capacity, sizeof *p->node);
+    p->node[p->n++] = (struct node){.cause = PATH_START, .resource = -1};
+    return p;
+}
+
+void path_log_destroy(struct path_log *p)
+{
+    if (p == NULL) return;
+    free(p->node);
+    free(p->work);
+    free(p);
+}
+
+uint32_t path_add(struct path_log *p, uint32_t before, int64_t time, enum path_cause cause,
+                  int rank, int stage, int resource, int64_t count)
+{
+    CHECK(before < p->n && p->node[before].time <= time);
+    /* What takes no time binds nobody. */
+    if (p->node[before].time == time) return before;
+    if (p->n == p->capacity) p->node = grown(p->node, &p->capacity, sizeof *p->node);
+    CHECK(p->n < UINT32_MAX);
+    /* Only now: growing may have moved the array. */
+    const struct node *b = &p->node[before];
+    const struct node made = {.time = time,
+                              .count = count,
+                              .before = before,
+                              .rank = rank >= 0 ? rank : b->rank,
+                              .resource = resource,
+                              .cause = (uint8_t)cause,
+                              .stage = stage >= 0 ? (uint8_t)stage : b->stage};
+    p->node[p->n] = made;
+    return (uint32_t)p->n++;
+}
+
+uint32_t path_add_work(struct path_log *p, uint32_t before, int64_t time, int rank, int stage,
+                       const struct work *w)
+{
+    const int64_t n = p->n;
+    const uint32_t made = path_add(p, before, time, PATH_COMPUTE, rank, stage, -1, p->nwork);
+    if (p->n == n) return made; /* it took no time */
+    /* Work lies apart: of the nodes only those of computing have any. */
+    if (p->nwork == p->work_capacity) p->work = grown(p->work, &p->work_capacity, sizeof *p->work);
+    p->work[p->nwork++] = *w;
+    return made;
+}
+
+int64_t path_time(const struct path_log *p, uint32_t node) { return p->node[node].time; }
+
+int64_t path_nodes(const struct path_log *p) { return p->n; }
+
+int64_t path_bytes(const struct path_log *p)
+{
+    return p->capacity * (int64_t)sizeof *p->node + p->work_capacity * (int64_t)sizeof *p->work;
+}
+
+/* Back along what binds, which may lead through other ranks. */
+uint32_t path_at(const struct path_log *p, uint32_t node, int64_t time)
+{
+    while (p->node[node].time > time) node = p->node[node].before;
+    return node;
+}
+
+struct path_step *path_trace(const struct path_log *p, uint32_t node, int64_t *n, struct arena *a)
+{
+    /* The chain is known from its end: count it, then fill the steps from the last to the first. */
+    int64_t count = 0;
+    for (uint32_t k = node; k != 0; k = p->node[k].before) count++;
+    struct path_step *step = TAKE(a, count > 0 ? count : 1, struct path_step);
+    *n = count;
+    for (uint32_t k = node; k != 0; k = p->node[k].before) {
+        const struct node *x = &p->node[k];
+        struct path_step *s = &step[--count];
+        const bool counted = x->cause == PATH_COMPUTE && x->count >= 0;
+        *s = (struct path_step){.begin_ps = p->node[x->before].time,
+                                .end_ps = x->time,
+                                .cause = (enum path_cause)x->cause,
+                                .rank = x->rank,
+                                .stage = x->stage,
+                                .resource = x->resource,
+                                .count = counted ? 0 : x->count};
+        if (counted) s->work = p->work[x->count];
+    }
+    return step;
+}

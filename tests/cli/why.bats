@@ -1,0 +1,66 @@
+# why.bats - mimdsim why: the critical path of a run in words, rows and a figure.
+load helper
+
+@test "why tells the path by cause and stage, what parameters stand for, and what idealised machines gain" {
+    works mimdsim why speedup-t3e --set n=16 --set level=loggp -o own.db --quiet
+    stdout_says 'dynamics on t3e-300, n = 16, P = 16:'
+    stdout_says 'is receive overhead, most of it in stage'
+    stdout_says 'The critical path follows'
+    stdout_says 'machine.software.recv.overhead'
+    stdout_says 'zero overhead'
+    stderr_is_empty
+    # The path is the run: its parts add up to the makespan, to the picosecond.
+    sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
+    sql_is own.db 'SELECT count(*) FROM ideal' 5
+    # Nothing idealised is slower, and what is paid 5 % more by the path alone lasts at least so long.
+    sql_is own.db 'SELECT count(*) FROM ideal i JOIN run r ON r.id = i.run_id WHERE i.makespan_ps > r.makespan_ps' 0
+    sql_is own.db "SELECT count(*) > 3 FROM sensitivity WHERE factor_5_percent > 1" 1
+    # A second time nothing is doubled.
+    works mimdsim why speedup-t3e --set n=16 --set level=loggp -o own.db --quiet
+    sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
+}
+
+@test "the factor that makes a run 5 % longer does so" {
+    works mimdsim why speedup-t3e --set n=16 -o own.db --quiet
+    factor=$(sql own.db "SELECT factor_5_percent FROM sensitivity WHERE key = 'machine.software.recv.overhead'")
+    overhead=$(sql own.db "SELECT value FROM setting WHERE key = 'machine.software.recv.overhead'")
+    # "7 us" times the factor
+    longer=$(awk -v o="${overhead% *}" -v f="$factor" 'BEGIN { printf "%.9g", o * f }')
+    works mimdsim run speedup-t3e --set n=16 --set machine.software.recv.overhead="$longer ${overhead#* }" -o own.db --quiet
+    sql_is own.db "SELECT abs(1.0 * max(makespan_ps) / min(makespan_ps) - 1.05) < 0.0005 FROM run" 1
+}
+
+@test "a stored run is explained as it was made, and answers are one JSON document" {
+    works mimdsim run speedup-t3e --set n=8,16 -o own.db --quiet
+    works mimdsim why own.db 2 --json
+    [ "$(sqlite3 :memory: "SELECT json_extract('$output', '\$.makespan_ps')")" = "$(sql own.db 'SELECT makespan_ps FROM run WHERE id = 2')" ]
+    works mimdsim why own.db 1 --brief
+    stdout_says 'n = 8'
+    ! grep -q 'zero latency' <<<"$output"
+    sql_is own.db 'SELECT count(*) FROM critical_path' 0
+}
+
+@test "the figure of a run draws its path" {
+    command -v gnuplot >/dev/null || skip "gnuplot is not installed"
+    works mimdsim why speedup-t3e --set n=16 -o own.db --quiet
+    works mimdsim plot own.db why
+    [ -s figures/why-1.png ] && [ -s figures/why-1.svg ]
+    grep -q 'receive overhead' figures/why-1.csv
+}
+
+@test "what cannot be explained is refused, and nothing is left behind" {
+    fails_with 66 mimdsim why nowhere
+    fails_with 64 mimdsim why
+    fails_with 65 mimdsim why speedup-t3e --set n=sixteen
+    fails_with 78 mimdsim why speedup-t3e --set level=packet --set machine.network.buffer=1
+    fails_with 70 mimdsim why deadlock --quiet
+    stderr_says 'wait'
+    nothing_left_behind
+    works mimdsim run speedup-t3e --set n=8 -o own.db --quiet
+    fails_with 64 mimdsim why own.db
+    fails_with 66 mimdsim why own.db 99
+    stderr_says 'there is no run 99'
+    fails_with 64 mimdsim why own.db one
+    sqlite3 own.db "UPDATE run SET config_text = 'nothing = 1'"
+    fails_with 65 mimdsim why own.db 1
+}

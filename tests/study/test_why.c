@@ -1,0 +1,265 @@
+/* test_why.c - the critical path: its steps are the run's time, its counts are derivatives, checked
+ * against runs whose parameters differ by a picosecond. MIMDSIM_WHY_SCENES sets the number of
+ * random scenes. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/random.h"
+#include "plan/plan.h"
+#include "run/catalogue.h"
+#include "run/run.h"
+#include "study/why.h"
+
+static struct plan read_plan(int nset, const char *const *set)
+{
+    struct plan p;
+    struct err e;
+    err_clear(&e);
+    const struct plan_options o = {.nset = nset, .set = set};
+    if (!plan_read(&p, "speedup-t3e", &o, &e)) fail_msg("%s", e.text);
+    return p;
+}
+
+/* The steps follow each other without a gap from 0 to the makespan. */
+static void assert_whole(const struct run_result *r)
+{
+    int64_t time = 0;
+    for (int64_t i = 0; i < r->npath; i++) {
+        assert_int_equal(r->path[i].begin_ps, time);
+        assert_true(r->path[i].end_ps > time);
+        assert_in_range(r->path[i].rank, 0, r->nrank - 1);
+        assert_in_range(r->path[i].stage, 0, r->nstage - 1);
+        time = r->path[i].end_ps;
+    }
+    assert_int_equal(time, r->makespan_ps);
+}
+
+static struct why study(const struct run_spec *spec, struct arena *a)
+{
+    struct why w;
+    struct err e;
+    err_clear(&e);
+    if (!why_study(spec, 0, 1, true, a, &w, &e)) fail_msg("%s", e.text);
+    assert_whole(&w.run);
+    return w;
+}
+
+static int64_t makespan(const struct run_spec *spec, struct arena *a)
+{
+    struct run_result r;
+    struct err e;
+    err_clear(&e);
+    if (!run_one(spec, a, &r, &e)) fail_msg("%s", e.text);
+    return r.makespan_ps;
+}
+
+static int64_t time_of(const struct why *w, enum path_cause cause)
+{
+    int64_t sum = 0;
+    for (int i = 0; i < w->nshare; i++)
+        if (w->share[i].cause == cause) sum += w->share[i].time_ps;
+    return sum;
+}
+
+/* ---- by hand ---- */
+
+/* Two ranks, one message there and back, an empty one: o_s + hops + end + o_r, twice. */
+static void a_pingpong_is_what_its_closed_form_says(void **state)
+{
+    (void)state;
+    static const char *const set[] = {"machine=ideal",
+                                      "kernel=pingpong",
+                                      "kernel.message=8 B",
+                                      "kernel.repeat=1",
+                                      "ranks=2",
+                                      "level=loggp",
+                                      "machine.topology.family=torus",
+                                      "machine.topology.dims=[2]",
+                                      "machine.network.flit=1 B",
+                                      "machine.network.packet=0 B",
+                                      "machine.network.header=0 B",
+                                      "machine.network.link.bandwidth=1000 MB/s",
+                                      "machine.network.hop_latency=100 ns",
+                                      "machine.network.end_latency=1 us",
+                                      "machine.software.send.overhead=3 us",
+                                      "machine.software.recv.overhead=2 us"};
+    struct plan p = read_plan(sizeof set / sizeof set[0], set);
+    struct arena *a = arena_create();
+    const struct why w = study(&p.run[0], a);
+    const int64_t messages = time_of(&w, PATH_SEND) / 3000000;
+    assert_true(messages >= 2 && messages % 2 == 0);
+    assert_int_equal(time_of(&w, PATH_SEND), messages * 3000000);
+    assert_int_equal(time_of(&w, PATH_RECV), messages * 2000000);
+    assert_int_equal(time_of(&w, PATH_END), messages * 1000000);
+    assert_int_equal(time_of(&w, PATH_HOP), messages * 2 * 100000);
+    assert_int_equal(time_of(&w, PATH_LINK_BYTES), messages * 7 * 1000);
+    assert_int_equal(w.messages, messages);
+    assert_int_equal(w.ranks, 2);
+    arena_destroy(a);
+    plan_free(&p);
+}
+
+/* ---- derivatives ---- */
+
+static const char *const machines[] = {"t3e-300",     "paragon",    "paragon-am",
+                                       "t3e-300-mpt", "meiko-cs-2", "ideal"};
+
+struct scene {
+    char machine[32], n[32], ranks[32], kernel[32], solver[40];
+    char seed[32];
+};
+
+static struct plan random_scene(struct random *r, const char *level)
+{
+    static const char *const kernels[] = {"inverse",   "forward", "dynamics",
+                                          "allreduce", "ring",    "alltoall"};
+    static const char *const solvers[] = {"pcr-symmetric", "cr", "partition"};
+    struct scene s;
+    char level_set[32];
+    const int ranks = 2 + (int)random_below(r, 15);
+    snprintf(s.machine, sizeof s.machine, "machine=%s", machines[random_below(r, 6)]);
+    snprintf(s.ranks, sizeof s.ranks, "ranks=%d", ranks);
+    snprintf(s.n, sizeof s.n, "n=%d", ranks + (int)random_below(r, 20));
+    snprintf(s.kernel, sizeof s.kernel, "kernel=%s", kernels[random_below(r, 6)]);
+    snprintf(s.solver, sizeof s.solver, "kernel.solver=%s", solvers[random_below(r, 3)]);
+    snprintf(s.seed, sizeof s.seed, "model.seed=%d", (int)random_below(r, 1000));
+    snprintf(level_set, sizeof level_set, "level=%s", level);
+    const char *const set[] = {s.machine, s.n, s.ranks, s.kernel, s.solver, s.seed, level_set};
+    return read_plan(7, set);
+}
+
+/* One picosecond more on a time that the machine's file gives. */
+static bool longer(struct run_spec *run, const char *key, double ps)
+{
+    struct machine_spec *m = &run->machine;
+    struct {
+        const char *key;
+        double *at;
+    } table[] = {{"machine.software.send.overhead", &m->software.send_overhead},
+                 {"machine.software.recv.overhead", &m->software.recv_overhead},
+                 {"machine.network.hop_latency", &m->network.hop_latency},
+                 {"machine.network.end_latency", &m->network.end_latency},
+                 {"machine.software.gap", &m->software.gap},
+                 {"machine.software.rendezvous.latency", &m->software.rendezvous_latency},
+                 {"machine.software.barrier.time", &m->software.barrier_time}};
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+        if (strcmp(table[i].key, key) == 0) return *table[i].at += ps * 1e-12, true;
+    return false;
+}
+
+/* Without contention the makespan is the longest of all paths, so it is convex in every time: a
+ * picosecond more costs at least the count, a picosecond less gains at most the count. Where no
+ * other path is as long, both are the count. */
+static void counts_are_derivatives_to_the_picosecond(void **state)
+{
+    (void)state;
+    const char *wanted = getenv("MIMDSIM_WHY_SCENES");
+    const int scenes = wanted ? atoi(wanted) : 60;
+    struct random r = random_make(7, 0, 0);
+    int asked = 0, equal = 0;
+    for (int k = 0; k < scenes; k++) {
+        struct plan p = random_scene(&r, "loggp");
+        struct arena *a = arena_create();
+        const struct why w = study(&p.run[0], a);
+        for (int i = 0; i < w.nparameter; i++) {
+            struct run_spec more = p.run[0], less = p.run[0];
+            const int64_t count = llround(w.parameter[i].count);
+            if (w.parameter[i].count == 0 || !longer(&more, w.parameter[i].key, 1)) continue;
+            longer(&less, w.parameter[i].key, -1);
+            const int64_t up = makespan(&more, a) - w.run.makespan_ps,
+                          down = w.run.makespan_ps - makespan(&less, a);
+            if (up < count || down > count)
+                fail_msg("scene %d, %s on %s, n = %d, P = %d: %s is paid %lld times, +1 ps costs "
+                         "%lld, -1 ps gains %lld",
+                         k, p.run[0].kernel.name, p.run[0].machine.name, p.run[0].model.nbody,
+                         p.run[0].nrank, w.parameter[i].key, (long long)count, (long long)up,
+                         (long long)down);
+            asked++;
+            equal += up == count && down == count;
+        }
+        arena_destroy(a);
+        plan_free(&p);
+    }
+    print_message("%d derivatives, %d equal on both sides\n", asked, equal);
+    assert_true(asked > 2 * scenes);
+    assert_true(equal > asked / 2);
+}
+
+/* Where messages share links the derivative keeps the order of contention: how near it is to a run
+ * again. */
+static void derivatives_with_contention_are_near(void **state)
+{
+    (void)state;
+    struct random r = random_make(8, 0, 0);
+    int asked = 0, near = 0;
+    for (int k = 0; k < 40; k++) {
+        struct plan p = random_scene(&r, "link");
+        struct arena *a = arena_create();
+        const struct why w = study(&p.run[0], a);
+        for (int i = 0; i < w.nparameter; i++) {
+            struct run_spec more = p.run[0];
+            const double count = w.parameter[i].count;
+            if (count < 1 || !longer(&more, w.parameter[i].key, 100)) continue;
+            const double up = (double)(makespan(&more, a) - w.run.makespan_ps) / 100;
+            asked++;
+            near += fabs(up - count) <= 0.05 * count;
+        }
+        arena_destroy(a);
+        plan_free(&p);
+    }
+    print_message("%d derivatives at level link, %d within 5 %%\n", asked, near);
+    assert_true(near > asked * 8 / 10);
+}
+
+/* Every level and every kind of software: the path is whole, and recording changes no digest
+ * (why_study CHECKs it). */
+static void the_path_is_whole_everywhere(void **state)
+{
+    (void)state;
+    static const char *const level[] = {"loggp", "link", "packet", "flit", "auto"};
+    static const char *const machine[] = {
+        "machine=t3e-300",  "machine=origin2000",     "machine=quad-ppro", "machine=quad-ppro-shm",
+        "machine=smp-node", "machine=infiniband-qdr", "machine=aries"};
+    static const char *const kernel[] = {"kernel=dynamics", "kernel=alltoall", "kernel=barrier"};
+    int whole = 0;
+    for (int m = 0; m < 7; m++)
+        for (int l = 0; l < 5; l++)
+            for (int k = 0; k < 3; k++) {
+                char word[32];
+                snprintf(word, sizeof word, "level=%s", level[l]);
+                const char *const set[] = {machine[m], word,  kernel[k],
+                                           "ranks=4",  "n=8", "kernel.message=20 kB"};
+                struct plan p = {0};
+                struct err e;
+                err_clear(&e);
+                const struct plan_options o = {.nset = 6, .set = set};
+                struct arena *a = arena_create();
+                if (!plan_read(&p, "speedup-t3e", &o, &e))
+                    print_message("%s: %s\n", machine[m], e.text);
+                else {
+                    struct why w;
+                    if (why_study(&p.run[0], 0, 1, true, a, &w, &e)) assert_whole(&w.run), whole++;
+                }
+                arena_destroy(a);
+                plan_free(&p);
+            }
+    assert_true(whole >= 60);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pingpong_is_what_its_closed_form_says),
+        cmocka_unit_test(counts_are_derivatives_to_the_picosecond),
+        cmocka_unit_test(derivatives_with_contention_are_near),
+        cmocka_unit_test(the_path_is_whole_everywhere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
