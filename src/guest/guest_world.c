@@ -193,6 +193,7 @@ bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct ar
     const struct machine_spec one = one_processor(&w->spec->machine);
     const struct record_spec nothing = {0};
     w->part = part;
+    w->alone = true;
     const struct world_load load = {.nrank = 1,
                                     .program = one_rank,
                                     .context = w,

@@ -24,6 +24,7 @@ enum guest_part { GUEST_RUN, GUEST_CHECK, GUEST_SERIAL /* and those that follow:
 struct guest_world {
     const struct run_spec *spec;        /* of the run it belongs to */
     struct loader_template *image;      /* owned */
+    bool alone;                       /* one processor without a network: it has one stage */
     int part;                           /* enum guest_part */
     enum program_cost cost;             /* how its computing is counted */
     struct node_cost node;              /* what counted operations cost on a processor */
