@@ -247,6 +247,21 @@ static void repeat(struct program_estimate *e, double times)
     e->flops *= times;
 }
 
+/* stepping: what the time steps themselves do to coordinates and rates (motion.c). */
+static double stepping(const struct kernel_spec *k, const struct model *m, double ranks)
+{
+    double drift = 0, slope = 0;
+    for (int i = 0; i < m->nbody; i++) {
+        const struct joint_cost *c = joint_cost_of(m->body[i].joint);
+        drift += (double)c->step.flop;
+        slope += (double)c->qdot.flop;
+    }
+    /* a kick is two flops a rate; Runge-Kutta weighs and adds, scales and adds, in four stages */
+    if (k->step == STEP_RK4) return k->steps * (4 * (slope + 4.0 * (m->nq + m->nu)) + drift + ranks);
+    if (k->step == STEP_KDK) return k->steps * (6.0 * m->nu + drift + ranks);
+    return k->steps * (2.0 * m->nu + drift);
+}
+
 void estimate_inverse(const struct run_spec *spec, const struct model *model,
                       const struct job_omit *omit, struct program_estimate *out)
 {
@@ -274,6 +289,7 @@ void estimate_forward(const struct run_spec *spec, const struct model *model,
     if (kernel_branches(spec, model)) {
         estimate_tree(spec, model, omit, false, true, out);
         repeat(out, evaluations(&spec->kernel));
+    out->flops += stepping(&spec->kernel, model, spec->nrank);
         return;
     }
     /* The paper's form needs all three scans for its bias, the direct one only the velocities (4.2,
@@ -307,6 +323,7 @@ void estimate_forward(const struct run_spec *spec, const struct model *model,
     out->rank_bytes =
         rank_memory(&o, spec->kernel.inner_refinements + spec->kernel.outer_refinements > 0);
     repeat(out, evaluations(&spec->kernel));
+    out->flops += stepping(&spec->kernel, model, spec->nrank);
 }
 
 void estimate_dynamics(const struct run_spec *spec, const struct model *model,

@@ -8,7 +8,7 @@
 
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
  * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
- * tenth. */
+ * tenth; trees: see estimate_tree. */
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct program_estimate *out);
 /* estimate_forward: see above. */
@@ -33,8 +33,9 @@ static inline bool kernel_branches(const struct run_spec *spec, const struct mod
     return !m->is_chain || m->nloop > 0 || ((spec->keep & KEEP_BRANCHES) && kernel_fits_trees(&spec->kernel));
 }
 
-/* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages and bytes
- * exact but for loops and refinements, flops roughly. */
+/* estimate_tree: of one inverse or forward dynamics (or both added up) on a tree, from its plan: messages, bytes and
+ * flops as they are counted, but for the least norm solution of loops; refinements count as often as asked for,
+ * although they may stop early. */
 void estimate_tree(const struct run_spec *spec, const struct model *model, const struct job_omit *omit, bool inverse,
                    bool forward, struct program_estimate *out);
 

@@ -180,6 +180,53 @@ static void contraction_takes_logarithmically_many_rounds(void **state)
     }
 }
 
+/* count: what a run sends and computes equals the estimate; for loops the flops but for the least norm solution. */
+static void count(const struct run_spec *spec, struct job_omit omit)
+{
+    struct arena *a = arena_create();
+    struct err err = {0};
+    const struct model *m = model_build(&spec->model, a, &err);
+    if (!m) fail_msg("%s", err.text);
+    const struct evaluation v = evaluate_omitting(spec, m, state_make(m, &spec->model, a), omit, a);
+    struct program_estimate e;
+    kernel_find(spec->kernel.name)->estimate(spec, m, &omit, &e);
+    double flops = 0;
+    for (int stage = 0; stage < MANY_RANKS_STAGES; stage++) flops += (double)v.counts.stage_work[stage].flop;
+    const double least = m->nloop > 0 ? 0.96 * flops : flops;
+    if (!(e.flops >= least && e.flops <= flops) || e.messages != (double)v.counts.messages ||
+        e.bytes != (double)v.counts.bytes)
+        fail_msg("%s, generator %d n %d P %d joint %d formulation %d steps %d: %.0f flops, %.0f messages, %.0f bytes; "
+                 "counted %.0f, %ld, %ld",
+                 spec->kernel.name, spec->model.generator, spec->model.nbody, spec->nrank, spec->model.joint,
+                 spec->kernel.formulation, spec->kernel.steps, e.flops, e.messages, e.bytes, flops,
+                 (long)v.counts.messages, (long)v.counts.bytes);
+    arena_destroy(a);
+}
+
+static void estimates_are_what_is_counted(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"inverse", "forward", "dynamics"};
+    for (int k = 0; k < 3 * 2 * 5 * (JOINT_MIXED + 1); k++) {
+        struct run_spec s = evaluation_spec(names[k % 3], 33, 1 + k % 11);
+        s.kernel.formulation = k / 3 % 2 ? FORMULATION_DIRECT : FORMULATION_PAPER;
+        s.model.generator = k / 6 % 5 < 4 ? trees[k / 6 % 5] : MODEL_RING;
+        s.model.joint = (enum model_joint)(k / 30);
+        const bool ring = s.model.generator == MODEL_RING;
+        /* nothing to close, and joints that rings cannot have */
+        if (ring && s.model.joint == JOINT_FIXED) continue;
+        if (k % 4 > 1) s.model.base = BASE_FLOATING; /* of a ring both sides of the loop have owners then */
+        s.model.external_force = k % 4 == 0;
+        s.kernel.outer_refinements = k % 5 == 0 && s.kernel.formulation == FORMULATION_PAPER && !ring;
+        s.kernel.steps = k % 7 == 0 && k % 3 > 0 ? 2 : 0;
+        s.kernel.step = k % 14 == 0 ? STEP_RK4 : STEP_SEMI_IMPLICIT;
+        s.kernel.step_size = 1e-4;
+        const bool rest = k % 3 == 1 && k % 13 == 0 && s.kernel.steps == 0;
+        if (rest) s.model.rate = 0;
+        count(&s, (struct job_omit){.velocity = rest, .load = rest && s.model.external_force == 0, .turn = true});
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -191,6 +238,7 @@ int main(void)
         cmocka_unit_test(loops_of_all_kinds),
         cmocka_unit_test(a_four_bar_has_three_redundant_constraints),
         cmocka_unit_test(pieces_are_connected_and_balanced),
+        cmocka_unit_test(estimates_are_what_is_counted),
         cmocka_unit_test(contraction_takes_logarithmically_many_rounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
