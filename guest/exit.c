@@ -76,7 +76,6 @@ WEAK int on_exit(void (*f)(int, void *), void *argument)
 /* leave_at_once: without any handler. */
 static _Noreturn void leave_at_once(int status)
 {
-    mimdsim_account();
     mimdsim_host->runtime->leave(mimdsim_host, status & 0xff);
     __builtin_unreachable();
 }
@@ -92,9 +91,22 @@ _Noreturn void mimdsim_exit(int status)
     leave_at_once(status);
 }
 
-WEAK _Noreturn void exit(int status) { mimdsim_exit(status); }
-WEAK _Noreturn void _exit(int status) { leave_at_once(status); }
-WEAK _Noreturn void _Exit(int status) { leave_at_once(status); }
+WEAK _Noreturn void exit(int status)
+{
+    guest_account(HERE);
+    mimdsim_count_anew();
+    mimdsim_exit(status);
+}
+WEAK _Noreturn void _exit(int status)
+{
+    guest_account(HERE);
+    leave_at_once(status);
+}
+WEAK _Noreturn void _Exit(int status)
+{
+    guest_account(HERE);
+    leave_at_once(status);
+}
 
 WEAK _Noreturn void quick_exit(int status)
 {

@@ -32,6 +32,11 @@ _Noreturn void guest_refuse(const void *place, const char *name, const char *why
  * swallows or shows. */
 int guest_writable(const char *path);
 
+/* guest_account: mimdsim_account in functions that libraries call, too: only when `place`, the
+ * caller, lies in the program itself. The register is a library's own while it runs (libgfortran, a
+ * shared libstdc++). */
+void guest_account(const void *place);
+
 /* What a program is told that reads standard input. */
 extern const char guest_no_input[];
 

@@ -1,4 +1,5 @@
 /* host.c - the pointer to the simulator, and the ways to give up. */
+#include <link.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -8,6 +9,26 @@
  * a file was made by `mimdsim cc`. */
 struct mimdsim_host *mimdsim_host;
 
+/* The program's own file, from its program headers; found at the first use. */
+static uintptr_t own_begin, own_end;
+
+static void find_own(void)
+{
+    const void *headers;
+    int count;
+    if (!mimdsim_host->runtime->module(mimdsim_host, 0, &own_begin, &headers, &count)) return;
+    const ElfW(Phdr) *p = headers;
+    for (int i = 0; i < count; i++)
+        if (p[i].p_type == PT_LOAD) own_end = own_begin + p[i].p_vaddr + p[i].p_memsz;
+}
+
+void guest_account(const void *place)
+{
+    const uintptr_t at = (uintptr_t)place;
+    if (own_end == 0) find_own();
+    if (at >= own_begin && at < own_end) mimdsim_account();
+}
+
 _Noreturn void guest_fail(const void *place, const char *format, ...)
 {
     char text[768];
@@ -15,7 +36,7 @@ _Noreturn void guest_fail(const void *place, const char *format, ...)
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    mimdsim_account();
+    guest_account(place);
     guest_flush();
     mimdsim_host->runtime->fail(mimdsim_host, place, text);
     __builtin_unreachable();

@@ -28,7 +28,7 @@ FILE *stderr WEAK;
 static FILE *standard[3];
 static char buffer[3][1024];
 
-/* These four are called by the C library: no accounting. */
+/* The three are called by the C library. */
 static ssize_t write_out(void *cookie, const char *data, size_t n)
 {
     (void)cookie;
@@ -75,7 +75,6 @@ void guest_flush(void)
 WEAK ssize_t write(int fd, const void *data, size_t n)
 {
     if (fd != 1 && fd != 2) return mimdsim_libc_write(fd, data, n);
-    mimdsim_account();
     fflush(standard[fd]); /* what was printed before comes before */
     mimdsim_host->runtime->output(mimdsim_host, fd, data, n);
     return (ssize_t)n;
@@ -119,17 +118,12 @@ WEAK int fclose(FILE *f)
 
 /* --- functions that mean stdout or stderr without naming it --- */
 
-WEAK int vprintf(const char *format, va_list list)
-{
-    mimdsim_account();
-    return vfprintf(stdout, format, list);
-}
+WEAK int vprintf(const char *format, va_list list) { return vfprintf(stdout, format, list); }
 
 WEAK int printf(const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    mimdsim_account();
     int n = vfprintf(stdout, format, list);
     va_end(list);
     return n;
@@ -147,7 +141,6 @@ WEAK int __printf_chk(int flag, const char *format, ...)
     va_list list;
     (void)flag;
     va_start(list, format);
-    mimdsim_account();
     int n = vfprintf(stdout, format, list);
     va_end(list);
     return n;
@@ -172,11 +165,7 @@ WEAK int dprintf(int fd, const char *format, ...)
     return n;
 }
 
-WEAK int puts(const char *text)
-{
-    mimdsim_account();
-    return fputs(text, stdout) < 0 ? EOF : fputc('\n', stdout);
-}
+WEAK int puts(const char *text) { return fputs(text, stdout) < 0 ? EOF : fputc('\n', stdout); }
 
 WEAK int putchar(int c) { return fputc(c, stdout); }
 WEAK int putchar_unlocked(int c) { return fputc(c, stdout); }

@@ -8,8 +8,11 @@
 struct dynamic {
     uint64_t value[DT_NUM];
     uint64_t gnu_hash, versym, verneed, verneednum, flags_1;
-    bool has_relr;
+    uint64_t relr, relr_size, relr_entry;
 };
+
+/* Relative relocations as bits (gABI, 2022), newer than some systems' elf.h. */
+enum { TAG_RELRSZ = 35, TAG_RELR = 36, TAG_RELRENT = 37 };
 
 static void take_value(struct elf_file *f, struct dynamic *d, const Elf64_Dyn *y)
 {
@@ -38,9 +41,15 @@ static void take_value(struct elf_file *f, struct dynamic *d, const Elf64_Dyn *y
     case DT_RUNPATH:
         d->value[DT_RPATH] = y->d_un.d_val;
         break; /* the newer word for the same list */
-    case 36:
-        d->has_relr = true;
-        break; /* DT_RELR */
+    case TAG_RELR:
+        d->relr = y->d_un.d_val;
+        break;
+    case TAG_RELRSZ:
+        d->relr_size = y->d_un.d_val;
+        break;
+    case TAG_RELRENT:
+        d->relr_entry = y->d_un.d_val;
+        break;
     default:
         break;
     }
@@ -160,13 +169,16 @@ static bool read_relocations(struct elf_file *f, const struct dynamic *d, struct
     const uint64_t bytes[2] = {d->value[DT_RELASZ], d->value[DT_PLTRELSZ]};
     if (d->value[DT_RELSZ])
         return elf_bad(f, e, "relocations without addends, which x86-64 does not have");
-    if (d->has_relr)
-        return elf_bad(f, e, "packed relocations (DT_RELR); link without -z pack-relative-relocs");
     if (d->value[DT_TEXTREL] || (d->value[DT_FLAGS] & DF_TEXTREL))
         return elf_bad(f, e, "its text needs relocations; compile all of it with -fPIC");
     if ((bytes[0] && d->value[DT_RELAENT] != sizeof(Elf64_Rela)) ||
         (bytes[1] && d->value[DT_PLTREL] != DT_RELA))
         return elf_bad(f, e, "relocations of another size");
+    if (d->relr_size) {
+        f->relr = (struct elf_table){elf_file_at(f, d->relr, d->relr_size, 8), d->relr_size / 8};
+        if (!f->relr.at || d->relr_entry != 8)
+            return elf_bad(f, e, "its packed relocations lie outside the file");
+    }
     for (int k = 0; k < 2; k++) {
         if (bytes[k] == 0) continue;
         f->rela[k] = (struct elf_table){elf_file_at(f, address[k], bytes[k], 8),

@@ -36,6 +36,7 @@ struct elf_file {
     const uint16_t *version;         /* (nsymbol) NULL: no versions */
     struct elf_table verneed;        /* .n: of files */
     struct elf_table rela[2];        /* Elf64_Rela: DT_RELA, DT_JMPREL */
+    struct elf_table relr;           /* uint64_t: DT_RELR */
     uint64_t init, fini;             /* addresses of functions, 0: none */
     uint64_t init_array, fini_array; /* addresses */
     size_t ninit, nfini;

@@ -14,8 +14,9 @@
 
 /* Libraries of the process. All of glibc's that hold no state of the program, and the loader of the
  * system. */
-static const char *const of_the_host[] = {"libc.so.6",  "libm.so.6",  "ld-linux-x86-64.so.2",
-                                          "libdl.so.2", "librt.so.1", "libpthread.so.0"};
+static const char *const of_the_host[] = {"libc.so.6",   "libm.so.6",  "ld-linux-x86-64.so.2",
+                                          "libdl.so.2",  "librt.so.1", "libpthread.so.0",
+                                          "libmvec.so.1"};
 
 /* Where the system keeps libraries, besides what the file and LD_LIBRARY_PATH name; Debian's and
  * Fedora's folders. */
@@ -23,7 +24,7 @@ static const char system_folders[] =
     "/lib/x86_64-linux-gnu:/usr/lib/x86_64-linux-gnu:/lib64:/usr/lib64:/usr/local/lib:"
     "/lib:/usr/lib";
 
-static bool belongs_to_host(const char *name)
+bool library_of_host(const char *name)
 {
     for (size_t i = 0; i < sizeof of_the_host / sizeof *of_the_host; i++)
         if (strcmp(name, of_the_host[i]) == 0) return true;
@@ -110,7 +111,7 @@ bool files_read(struct loader_template *t, const char *path, struct err *e)
     for (int i = 0; i < t->nfile; i++) {
         const struct elf_file *f = &t->file[i].elf;
         for (int k = 0; k < f->nneeded; k++) {
-            if (belongs_to_host(f->needed[k]) || file_named(t, f->needed[k]) >= 0) continue;
+            if (library_of_host(f->needed[k]) || file_named(t, f->needed[k]) >= 0) continue;
             if (!read_library(t, f, f->needed[k], e)) return false;
         }
     }

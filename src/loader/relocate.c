@@ -153,6 +153,30 @@ static bool relocate(struct loader_template *t, struct loader_file *f, const Elf
     }
 }
 
+/* Packed relative relocations: an even word is an address; an odd one has a bit for each of the 63
+ * words that follow the last address. The addend stands in the place itself. */
+static bool relocate_packed(struct loader_template *t, struct loader_file *f, struct err *e)
+{
+    const uint64_t *word = f->elf.relr.at;
+    uint64_t next = 0;
+    for (size_t n = 0; n < f->elf.relr.n; n++) {
+        const bool address = !(word[n] & 1);
+        uint64_t bits = address ? 1 : word[n] >> 1;
+        if (address) next = word[n];
+        for (uint64_t at = f->place + next; bits; bits >>= 1, at += 8) {
+            uint64_t value;
+            if (!(bits & 1)) continue;
+            if (!image_writable(f, at, 8))
+                return elf_bad(&f->elf, e, "a relocation lies outside the data");
+            memcpy(&value, t->bytes + at, sizeof value);
+            put(t, at, f->place + value);
+            add_relative(t, at);
+        }
+        next += address ? 8 : 8 * 63;
+    }
+    return true;
+}
+
 static int by_place(const void *a, const void *b)
 {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
@@ -164,6 +188,7 @@ bool relocate_all(struct loader_template *t, struct err *e)
     for (int i = 0; i < t->nfile; i++) {
         struct loader_file *f = &t->file[i];
         struct missing m = {.n = 0};
+        if (!relocate_packed(t, f, e)) return false;
         for (int k = 0; k < 2; k++) {
             const Elf64_Rela *r = f->elf.rela[k].at;
             for (size_t n = 0; n < f->elf.rela[k].n; n++)

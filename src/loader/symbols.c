@@ -53,14 +53,37 @@ static bool is_offered(const struct elf_file *f, size_t i)
     return !f->version || !(f->version[i] & 0x8000);
 }
 
+static bool open_one(struct loader_template *t, const char *name, struct err *e)
+{
+    void *handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (!handle || t->nhost == LOADER_HOST_LIBRARIES) {
+        if (handle) dlclose(handle);
+        return err_set(e, ERR_INTERNAL, "the host's library %s cannot be opened: %s", name,
+                       handle ? "too many of them" : dlerror());
+    }
+    t->host[t->nhost++] = handle;
+    return true;
+}
+
+/* The process's own libraries: libc and libm always, since any program may use them without saying
+ * so; the others as they are needed (libmvec: mathematics by vectors). Since glibc 2.34 some are
+ * empty, which does no harm. */
+static bool open_host(struct loader_template *t, struct err *e)
+{
+    if (!open_one(t, "libc.so.6", e) || !open_one(t, "libm.so.6", e)) return false;
+    for (int i = 0; i < t->nfile; i++) {
+        const struct elf_file *f = &t->file[i].elf;
+        for (int k = 0; k < f->nneeded; k++) {
+            if (strcmp(f->needed[k], "libmvec.so.1") != 0) continue;
+            if (!open_one(t, f->needed[k], e)) return false;
+        }
+    }
+    return true;
+}
+
 bool symbols_make(struct loader_template *t, struct err *e)
 {
-    /* glibc 2.34 and later have the others of the host's libraries inside libc. */
-    t->libc = dlopen("libc.so.6", RTLD_NOW | RTLD_LOCAL);
-    t->libm = dlopen("libm.so.6", RTLD_NOW | RTLD_LOCAL);
-    if (!t->libc || !t->libm)
-        return err_set(e, ERR_INTERNAL, "the host's C library cannot be opened: %s", dlerror());
-
+    if (!open_host(t, e)) return false;
     size_t n = 0;
     for (int i = 0; i < t->nfile; i++) n += t->file[i].elf.nsymbol;
     for (t->nslot = 64; t->nslot < 2 * n;) t->nslot *= 2;
@@ -82,8 +105,7 @@ void symbols_give_back(struct loader_template *t)
 {
     free(t->symbol);
     t->symbol = NULL;
-    if (t->libc) dlclose(t->libc);
-    if (t->libm) dlclose(t->libm);
+    while (t->nhost > 0) dlclose(t->host[--t->nhost]);
 }
 
 struct found symbols_defined(const struct loader_template *t, const char *name)
@@ -121,10 +143,9 @@ static void *host_symbol(const struct loader_template *t, const char *name, cons
         version = NULL;
     }
     if (is_allocator(name)) return dlsym(RTLD_DEFAULT, name);
-    if (version) at = dlvsym(t->libc, name, version);
-    if (!at && version) at = dlvsym(t->libm, name, version);
-    if (!at) at = dlsym(t->libc, name);
-    return at ? at : dlsym(t->libm, name);
+    for (int i = 0; i < t->nhost && !at && version; i++) at = dlvsym(t->host[i], name, version);
+    for (int i = 0; i < t->nhost && !at; i++) at = dlsym(t->host[i], name);
+    return at;
 }
 
 bool symbols_find(const struct loader_template *t, const struct loader_file *f, size_t i,

@@ -13,7 +13,7 @@
 #include "loader/elf_file.h"
 #include "loader/loader.h"
 
-enum { LOADER_FILES = 32, LOADER_PAGE = 4096 };
+enum { LOADER_FILES = 32, LOADER_HOST_LIBRARIES = 16, LOADER_PAGE = 4096 };
 
 /* One file of the program: the image itself, or a library that ranks have their own copy of. */
 struct loader_file {
@@ -48,7 +48,8 @@ struct loader_template {
     size_t nindirect, indirect_capacity;
     struct symbol_slot *symbol; /* (nslot) of all files, by hash */
     size_t nslot;
-    void *libc, *libm;     /* handles of dlopen */
+    void *host[LOADER_HOST_LIBRARIES]; /* (nhost) handles of dlopen: libc, libm, ... */
+    int nhost;
     int group;             /* ranks with one mapping together; 0: text mapped for each */
     bool relro;            /* constants are write-protected after relocation */
     char *memory_of_ranks; /* (nrank * stride) reserved; NULL before loader_reserve */
@@ -84,6 +85,9 @@ struct loader_frame {
  * loader_leave: make that call return `value` now; the stack between is forgotten. */
 int64_t loader_enter(void *function, const int64_t argument[6], struct loader_frame *frame);
 _Noreturn void loader_leave(struct loader_frame *frame, int64_t value);
+
+/* library_of_host: whether a library is the process's own, not a rank's. */
+bool library_of_host(const char *name);
 
 /* --- libraries.c: files_read: the program and what it needs, in t->file and t->order. */
 bool files_read(struct loader_template *t, const char *path, struct err *e);

@@ -32,6 +32,20 @@ static void globals_of_c(void **state)
                   "0: 3 10 0 5 3 4 a 1 guest\n1: 6 13 30 8 6 4 b 1 guest\n");
 }
 
+/* Relative relocations as bits, where the linker has them; vector mathematics of the host; a
+ * library of C++ per rank. */
+static void other_ways_of_linking(void **state)
+{
+    (void)state;
+    const char *output = "0: 3 10 0 5 3 4 a 1 guest\n1: 6 13 30 8 6 4 b 1 guest\n";
+    guests_expect(folder, "globals.c", "-Wl,-z,pack-relative-relocs", output);
+    guests_expect(folder, "globals.c", "-Wl,--hash-style=sysv -Wl,-z,now", output);
+    guests_expect(folder, "globals.c", "-Wl,--no-as-needed -lmvec", output);
+    guests_expect(folder, "statics.cc",
+                  "-shared-libgcc -Wl,--no-as-needed -Wl,-Bdynamic -l:libstdc++.so.6",
+                  "0: 1 2 3 4\n1: 3 4 5 6\n");
+}
+
 static void inline_and_template_statics_of_cpp(void **state)
 {
     (void)state;
@@ -77,6 +91,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(globals_of_c, make, remove_it),
+        cmocka_unit_test_setup_teardown(other_ways_of_linking, make, remove_it),
         cmocka_unit_test_setup_teardown(inline_and_template_statics_of_cpp, make, remove_it),
         cmocka_unit_test_setup_teardown(constructors_and_destructors_of_cpp, make, remove_it),
         cmocka_unit_test_setup_teardown(exceptions_of_cpp, make, remove_it),
