@@ -100,6 +100,8 @@ int main(int argc, char **argv)
     static const char probe[] =
         "extern char b[] __asm__(\"__start_mimdsim_blocks\"), e[] "
         "__asm__(\"__stop_mimdsim_blocks\");"
+        "void *memset(void *, int, unsigned long);"
+        "void *mimdsim_memset(void *a, int x, unsigned long n) { return memset(a, x, n); }"
         "char *table_begin(void) { return b; } char *table_end(void) { return e; }";
     const char *level = argc > 1 ? argv[1] : "-O2",
                *source = MIMDSIM_SRCDIR "/bench/blocks_kernels.c";

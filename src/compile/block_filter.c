@@ -234,6 +234,24 @@ static bool begins_block(struct filter *f, const struct asm_statement *s)
     return f->begins || f->block.number == 0;
 }
 
+/* Where the name of a called function begins that moves as many bytes as its caller says; NULL:
+ * another statement. Calls of these become calls of mimdsim_NAME (guest/memory.S), which counts the
+ * bytes and goes on to NAME. In the library itself they must not be replaced: it may keep something
+ * in register 15. */
+static const char *moved_name(const struct filter *f, const struct asm_statement *s)
+{
+    static const char *const moves[] = {"memcpy", "memmove", "memset", NULL};
+    if (s->kind != ASM_INSTRUCTION || f->in_asm || !f->now->code) return NULL;
+    if (!span_starts(s->word, "call") && !span_starts(s->word, "jmp")) return NULL;
+    const char *name = s->operands.s + (s->operands.n > 0 && s->operands.s[0] == '*');
+    const struct span rest = {name, (int)(s->operands.s + s->operands.n - name)};
+    for (int i = 0; moves[i] != NULL; i++) {
+        const int n = (int)strlen(moves[i]);
+        if (span_starts(rest, moves[i]) && (rest.n == n || name[n] == '@')) return name;
+    }
+    return NULL;
+}
+
 /* The statements of one line. It is copied in pieces, as a counter may come between a label and
  * what follows it. */
 static bool take_line(struct filter *f, const char *line, const char *end)
@@ -249,6 +267,12 @@ static bool take_line(struct filter *f, const char *line, const char *end)
             copied = s.begin;
             begin_block(f);
             text_add(f->out, "\t");
+        }
+        const char *moved = moved_name(f, &s);
+        if (moved != NULL) {
+            text_add_bytes(f->out, copied, (size_t)(moved - copied));
+            text_add(f->out, "mimdsim_");
+            copied = moved;
         }
         if ((s.kind == ASM_INSTRUCTION || s.kind == ASM_PREFIX) && f->now->code &&
             !take_instruction(f, &s))

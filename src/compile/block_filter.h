@@ -4,8 +4,10 @@
  * A block begins at every label that something refers to, and after every branch and call, and ends
  * before the next. At its beginning the filter writes the lea of loader/block_table.h, so that each
  * execution of the block is counted once, before anything else of it; what a call does not return
- * from is not counted. Nothing else of the text changes, and no instruction that is added touches a
- * flag, the stack or memory. */
+ * from is not counted. No instruction that is added touches a flag, the stack or memory.
+ *
+ * One thing is changed: memcpy, memmove and memset are called as mimdsim_memcpy and so on, which
+ * count their bytes (guest/memory.S). */
 #ifndef COMPILE_BLOCK_FILTER_H
 #define COMPILE_BLOCK_FILTER_H
 

@@ -95,6 +95,9 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     add_includes(d, &w);
     command_dependency_words(&d->command, i, object, &w);
     if (!s->assembly) words_add_all(&w, FORCED, forced);
+    /* One program sends whole numbers and reals by the same mpi_send, which Fortran's rules forbid.
+     */
+    if (!s->assembly && d->language == DRIVER_FORTRAN) words_add(&w, "-fallow-argument-mismatch");
     words_add(&w, s->assembly ? "-E" : "-S");
     words_add(&w, "-o");
     words_add(&w, "-");

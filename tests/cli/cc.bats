@@ -56,7 +56,7 @@ entries() {
 
 @test "every block of an image has an entry of the table" {
     works mimdsim cc -O2 -o prog one.c two.c -lm
-    [ "$(blocks prog)" -eq "$(entries prog)" ]
+    [ $(($(blocks prog) + 3)) -eq "$(entries prog)" ] # guest/memory.S has three rates
     [ "$(entries prog)" -ge 3 ]
     readelf -n prog | grep -q mimdsim
 }

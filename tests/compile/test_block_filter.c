@@ -34,6 +34,7 @@ static void filters_to(const char *in, const char *expected)
     text_free(&out);
 }
 
+/* clang-format off: the macros below are pieces of one text */
 #define ADD(n) "\t{disp32} leaq 0(%r15), %r15\n.Lmimdsim" n ":\n"
 #define TABLE(first)                                                                               \
     "\t.pushsection mimdsim_blocks,\"ao?\",@progbits,.Lmimdsim" first "\n\t.balign 4\n"
@@ -128,20 +129,37 @@ static void sequences_of_the_linker_and_first_instructions_stay_whole(void **sta
 static void nothing_is_inserted_into_asm_statements(void **state)
 {
     (void)state;
-    filters_to("f:\n#APP\n# 3 \"sum.c\" 1\n\t1: cpuid; jne 1b\n\t.pushsection "
-               ".x,\"ax\"\ng:\tret\n\t.popsection\n"
-               "# 0 \"\" 2\n#NO_APP\n\tincl\t%eax\n#APP\n# 4 \"sum.c\" 1\n\tnop\n# 0 \"\" "
-               "2\n#NO_APP\n\tret\n",
-               "f:\n" ADD("1") "#APP\n# 3 \"sum.c\" 1\n\t1: cpuid; jne 1b\n\t.pushsection "
-                               ".x,\"ax\"\ng:\tret\n\t.popsection\n"
-                               "# 0 \"\" 2\n#NO_APP\n" ADD(
-                                   "2") "\tincl\t%eax\n#APP\n# 4 \"sum.c\" 1\n\tnop\n# 0 \"\" "
-                                        "2\n#NO_APP\n\tret\n" TABLE("1") ENTRY("1", "2,0,0,0,0,0,0")
-                                            ENTRY("2", "3,0,0,0,0,0,0") END);
+    filters_to("f:\n#APP\n# 3 \"sum.c\" 1\n\t1: cpuid; jne 1b\n"
+               "\t.pushsection .x,\"ax\"\ng:\tret\n\t.popsection\n# 0 \"\" 2\n#NO_APP\n"
+               "\tincl\t%eax\n#APP\n# 4 \"sum.c\" 1\n\tnop\n# 0 \"\" 2\n#NO_APP\n\tret\n",
+               "f:\n"
+               ADD("1") "#APP\n# 3 \"sum.c\" 1\n\t1: cpuid; jne 1b\n"
+               "\t.pushsection .x,\"ax\"\ng:\tret\n\t.popsection\n# 0 \"\" 2\n#NO_APP\n"
+               ADD("2") "\tincl\t%eax\n"
+               "#APP\n# 4 \"sum.c\" 1\n\tnop\n# 0 \"\" 2\n#NO_APP\n\tret\n"
+               TABLE("1") ENTRY("1", "2,0,0,0,0,0,0") ENTRY("2", "3,0,0,0,0,0,0") END);
     /* at file scope: another section, data, functions */
     static const char outside[] =
         "\t.data\nx:\t.long 1\n#APP\n\t.text\ng:\tret\n\t.data\n#NO_APP\n\t.long 2\n";
     filters_to(outside, outside);
+}
+
+static void bytes_that_functions_move_are_counted_by_others(void **state)
+{
+    (void)state;
+    filters_to("f:\n\tcall\tmemcpy@PLT\n\tcall\t*memset@GOTPCREL(%rip)\n"
+               "\tcall\tmemcpyx\n\tjmp\tmemmove\n",
+               "f:\n"
+               ADD("1") "\tcall\tmimdsim_memcpy@PLT\n"
+               ADD("2") "\tcall\t*mimdsim_memset@GOTPCREL(%rip)\n"
+               ADD("3") "\tcall\tmemcpyx\n"
+               ADD("4") "\tjmp\tmimdsim_memmove\n"
+               TABLE("1")
+               ENTRY("1", "1,0,0,0,0,1,0")
+               ENTRY("2", "1,0,0,0,0,1,0")
+               ENTRY("3", "1,0,0,0,0,1,0")
+               ENTRY("4", "1,0,0,0,0,0,0")
+               END);
 }
 
 static void a_long_block_is_counted_in_pieces(void **state)
@@ -218,6 +236,7 @@ int main(void)
         cmocka_unit_test(each_section_has_its_piece_of_the_table),
         cmocka_unit_test(sequences_of_the_linker_and_first_instructions_stay_whole),
         cmocka_unit_test(nothing_is_inserted_into_asm_statements),
+        cmocka_unit_test(bytes_that_functions_move_are_counted_by_others),
         cmocka_unit_test(a_long_block_is_counted_in_pieces),
         cmocka_unit_test(filtering_twice_changes_nothing),
         cmocka_unit_test(what_uses_the_counter_is_refused),

@@ -38,6 +38,13 @@ __asm__(".text\n.globl step_through\nstep_through:\n"
         "\tpushf\n\tandl $~0x100, (%rsp)\n\tpopf\n"
         "\tmov %r15, (%rbx)\n\tpop %rbp\n\tpop %rbx\n\tpop %r15\n\tret\n");
 
+/* What counted code calls in place of these functions; in an image they come from guest/memory.S.
+ */
+void *mimdsim_memcpy(void *to, const void *from, size_t n);
+void *mimdsim_memcpy(void *to, const void *from, size_t n) { return memcpy(to, from, n); }
+void *mimdsim_memset(void *to, int byte, size_t n);
+void *mimdsim_memset(void *to, int byte, size_t n) { return memset(to, byte, n); }
+
 /* The image that is stepped through: its code, and how often each address of it was executed. */
 struct image {
     unsigned char *code, *end;
