@@ -1,15 +1,15 @@
 /* body.c - a body's constants in this precision: rounding of body_constants, external wrenches, springs. */
 #include "dynamics/body.h"
 
-#include <string.h>
-
 #include "dynamics/body_constants.h"
 
+/* One rounding a number: what quad precision holds is exact as far as double is concerned. */
 static void round_to(real *y, const quad *x, int n)
 {
     for (int i = 0; i < n; i++) y[i] = (real)x[i];
 }
 
+/* Inertia about both points: the bias force of a distant origin is computed about the centre of mass. */
 static void make_inertia(const struct model *m, int i, struct body *b)
 {
     struct body_constants c;
@@ -24,6 +24,7 @@ static void make_inertia(const struct model *m, int i, struct body *b)
     round_to(b->phi.c, c.phi_c, 6);
 }
 
+/* Frames, own axes, pitch, spring. */
 static void make_frames(const struct model *m, int i, struct body *b)
 {
     const struct body_def *def = &m->body[i];
@@ -36,52 +37,20 @@ static void make_frames(const struct model *m, int i, struct body *b)
     round_to(b->slide, c.slide, 9);
     round_to(&b->unit, &c.unit, 1);
     b->pitch = (real)def->pitch;
-    b->has_spring = def->stiffness != 0 || def->damping != 0;
-    b->stiffness = (real)def->stiffness;
-    b->rest = (real)def->rest;
-    b->damping = (real)def->damping;
+    body_springs(m, i, b);
 }
 
-/* Where body i hangs; these differ between otherwise equal bodies. */
-static void place_in_model(const struct model *m, int i, struct body *b)
-{
-    const struct body_def *def = &m->body[i];
-    b->parent = def->parent;
-    b->joint = def->joint;
-    b->d = joint_nu(def->joint);
-    b->nq = joint_nq(def->joint);
-    b->q_at = m->q_at[i];
-    b->u_at = m->u_at[i];
-}
-
-static bool same_numbers(const double *x, const double *y, int n) { return memcmp(x, y, (size_t)n * sizeof *x) == 0; }
-
-/* Whether the turning of two bodies' frames is the same. */
-static bool same_turn(const struct model *m, int i, int j)
-{
-    if (i == j) return true;
-    if (i < 0 || j < 0) return false;
-    const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return a->joint == b->joint && same_numbers(a->axis, b->axis, 3) && same_numbers(a->axis2, b->axis2, 3);
-}
-
-/* Whether bodies i and j have the same inertia, in frames turned alike. */
+/* Whether bodies i and j have the same inertia, in frames turned alike; whether all else is the same, too. */
 static bool same_inertia(const struct model *m, int i, int j)
 {
-    const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return same_turn(m, i, j) && same_numbers(&a->mass, &b->mass, 1) && same_numbers(a->com, b->com, 3) &&
-           same_numbers(a->inertia, b->inertia, 6);
+    return bodies_alike(m, i, j) && bodies_weigh_alike(m, i, j);
 }
-
-/* Whether all else is the same, too. */
 static bool same_frames(const struct model *m, int i, int j)
 {
-    const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return same_turn(m, i, j) && same_turn(m, a->parent, b->parent) &&
-           same_numbers(a->placement.quat, b->placement.quat, 4) && same_numbers(a->placement.p, b->placement.p, 3) &&
-           a->pitch == b->pitch && a->stiffness == b->stiffness && a->rest == b->rest && a->damping == b->damping;
+    return bodies_alike(m, i, j) && bodies_alike(m, m->body[i].parent, m->body[j].parent) && bodies_hang_alike(m, i, j);
 }
 
+/* Chains have thousands of equal links: the constants of a body are those of its predecessor where nothing differs. */
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     if (REAL_BITS == 64 && m->constants) return m->constants;
@@ -90,11 +59,12 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
         if (i > 0) b[i] = b[i - 1];
         if (i == 0 || !same_inertia(m, i - 1, i)) make_inertia(m, i, &b[i]);
         if (i == 0 || !same_frames(m, i - 1, i)) make_frames(m, i, &b[i]);
-        place_in_model(m, i, &b[i]);
+        body_seat(m, i, &b[i]);
     }
     return b;
 }
 
+/* Gravity is an acceleration of the base (physics 1.10). */
 void base_motion(const struct model *m, const struct state *s, real *a)
 {
     for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
@@ -103,6 +73,7 @@ void base_motion(const struct model *m, const struct state *s, real *a)
 void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    /* [U, s~; 0, U] and diag(Jc, m U): the inertia about the origin as a product */
     for (int i = 0; i < 6; i++) shift[7 * i] = 1;
     shift[4] = -b->s[2], shift[5] = b->s[1], shift[9] = b->s[2];
     shift[11] = -b->s[0], shift[15] = -b->s[1], shift[16] = b->s[0];
@@ -112,15 +83,12 @@ void body_inertia_factors(const struct body *b, real *shift, real *about)
 
 void body_load(const struct body *b, const double *fext, real *f)
 {
+    /* users give [force; moment], here the moment comes first */
     screw_zero(f);
     if (!fext) return;
     for (int i = 0; i < 3; i++) f[i] = (real)fext[3 + i], f[3 + i] = (real)fext[i];
+    /* and in user axes */
     if (!b->turned) return;
     mat3_mul_vec_transposed(f, b->user, f);
     mat3_mul_vec_transposed(f + 3, b->user, f + 3);
-}
-
-void body_spring(const struct body *b, const real *q, const real *u, real *tau)
-{
-    if (b->has_spring) tau[0] -= b->stiffness * (q[0] - b->rest) + b->damping * u[0];
 }

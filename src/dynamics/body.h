@@ -4,20 +4,12 @@
  * [angular; linear], accelerations are classical. The constants are made once, in quad precision, and rounded once.
  * Columns of H are ordered as u (a floating joint's H therefore is a permutation: linear first), so q, u, u', tau
  * pass unchanged between model order and here. H and its complement W are orthonormal.
- * Work: the functions do not count; joint_cost_of has what each does for a joint type. What is different for each type
- * stands in a file of its own (joint_motion.h). */
+ * What is different for each joint type stands in a file of its own (joint_motion.h). */
 #ifndef DYNAMICS_BODY_H
 #define DYNAMICS_BODY_H
 
-#include <stdbool.h>
-
-#include "base/arena.h"
-#include "base/work.h"
-#include "dynamics/subspace.h"
+#include "dynamics/body_calls.h"
 #include "linalg/inertia.h"
-#include "linalg/real.h"
-#include "linalg/spatial.h"
-#include "model/model.h"
 
 struct body {
     int parent;
@@ -36,55 +28,11 @@ struct body {
     real stiffness, rest, damping;
 };
 
-/* A body's configuration: its transform to the parent and its subspaces. */
-struct body_pose {
-    struct xform x;
-    struct subspace s;
-};
-
-/* What the functions below do for one body of a joint type, [flop] unless said. */
-struct joint_cost {
-    int place, place_trig, place_div; /* body_place */
-    int rate;                         /* body_rate */
-    int bias;                         /* body_bias */
-    int h, h_transposed;              /* subspace_h, subspace_h_transposed */
-    int w, w_transposed;              /* subspace_w, subspace_w_transposed */
-    int hh, hw, ww;                   /* subspace_project of a symmetric 6x6 on H,H / H,W / W,W */
-    struct work subspace;             /* body_subspace */
-    struct work qdot, step;           /* body_qdot, body_step */
-};
-
-/* bodies_make: the constants of m's bodies (nbody): in double the model's own, made by model_finish; otherwise made in
- * `a`. Bodies equal to their predecessor cost nothing. */
-const struct body *bodies_make(const struct model *m, struct arena *a);
-
-/* body_picks: no column of the joint's H and W is ever written: all of them are unit vectors for good. joint_pick: the
- * numbers of these unit vectors for a joint type, H's then W's (6); NULL: they are none. */
-bool body_picks(const struct body *b);
+/* joint_pick: the unit vectors that are H's and W's columns for a joint type (6); NULL: they are none. */
 const signed char *joint_pick(enum model_joint joint);
 
-/* base_motion: acceleration of the base minus gravity (6), [angular; linear]. */
-void base_motion(const struct model *m, const struct state *s, real *a);
-
-/* body_place: transform and subspaces of a body at coordinates q (nq). x = tree o joint(q). */
-void body_place(const struct body *b, const real *q, struct body_pose *pose);
-
-/* body_subspace: H and W alone, for a neighbour's joint; needs q only where columns move. */
-void body_subspace(const struct body *b, const real *q, struct subspace *s);
-
-/* body_rate: h = H u (6), the joint's relative velocity. */
-void body_rate(const struct body_pose *pose, const real *u, real *h);
-
-/* body_bias: b (6), acceleration of the joint at u' = 0 seen from the parent's: physics (1.9), with kappa.
- *
- *   v   in   (>= 3) the body's own angular velocity
- *   h   in   (6) H u from body_rate
- *   u   in   (d) */
-void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
-               real *bias);
-
 /* body_gyro: P (6), velocity-dependent force, from the body's own angular velocity w (3). BODY_GYRO_FLOP. */
-enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_SPRING_FLOP = 5, BODY_FORCE_FLOP = 42 };
+enum { BODY_GYRO_FLOP = 57, BODY_LOAD_FLOP = 30, BODY_FORCE_FLOP = 42 };
 static inline void body_gyro(const struct body *b, const real *w, real *f)
 {
     /* [w x Jc w + s x g; g], g = m w x (w x s): about the centre of mass, so a distant origin costs no digits. */
@@ -120,23 +68,7 @@ static inline void body_phi(const struct body *b, real *phi) { sym6_expand(phi, 
 /* body_inertia_factors: zeroed `shift`, `about` (6 x 6) become those whose product shift about shift^T is I. */
 void body_inertia_factors(const struct body *b, real *shift, real *about);
 
-/* body_load: the external wrench on body i in internal axes and order, from the user's [force; moment] in `fext`
- * (6); zero when fext is NULL. body_load_flops: what it executes with one. */
-void body_load(const struct body *b, const double *fext, real *f);
+/* body_load_flops: what body_load executes with a wrench. */
 static inline int body_load_flops(const struct body *b) { return b->turned ? BODY_LOAD_FLOP : 0; }
-
-/* body_spring: tau (d) += forces of the joint's spring and damper; nothing without has_spring. */
-void body_spring(const struct body *b, const real *q, const real *u, real *tau);
-
-/* body_step: coordinates after the time h at constant u, in place: rotations by the exponential map, displacements in
- * moving axes along those of mid-step. Symmetric in time, exact for one-degree joints; quaternions stay normalised. */
-void body_step(const struct body *b, real *q, const real *u, real h);
-
-/* body_qdot: qd (nq) = N(q) u, the derivative of the stored coordinates. */
-void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
-
-/* joint_cost_of: by type, never NULL; the same in every precision. body_cost: of a body. */
-const struct joint_cost *joint_cost_of(enum model_joint joint);
-static inline const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(b->joint); }
 
 #endif

@@ -16,14 +16,14 @@ static void rotation_of(const double *quat, quad *r)
 }
 
 /* x = the given direction made unit; powers of two first, so that no square overflows. */
-static void unit_of(const double *from, quad *x)
+void direction_unit(const double *from, quad *x)
 {
     for (int i = 0; i < 3; i++) x[i] = from[i];
     vec3_scale(x, 1 / vec3_norm(x), x);
 }
 
 /* t = the part of t orthogonal to the unit vector n, made unit. */
-static void orthonormalise(quad *t, const quad *n)
+void direction_orthonormalise(quad *t, const quad *n)
 {
     quad dot = vec3_dot(t, n);
     for (int i = 0; i < 3; i++) t[i] -= dot * n[i];
@@ -31,13 +31,13 @@ static void orthonormalise(quad *t, const quad *n)
 }
 
 /* Some unit vector orthogonal to n: exact for coordinate axes. */
-static void any_orthogonal(const quad *n, quad *t)
+void direction_any_orthogonal(const quad *n, quad *t)
 {
     int k = 0;
     for (int i = 1; i < 3; i++)
         if (fabsq(n[i]) < fabsq(n[k])) k = i;
     vec3_set(t, k == 0, k == 1, k == 2);
-    orthonormalise(t, n);
+    direction_orthonormalise(t, n);
 }
 
 /* Columns of a rotation from two of its columns, first (index i) and second (index (i + 1) % 3). */
@@ -57,12 +57,12 @@ static void own_axes(const struct body_def *b, quad *columns)
 {
     quad n[3], t[3];
     const bool directed = b->axis2[0] != 0 || b->axis2[1] != 0 || b->axis2[2] != 0;
-    unit_of(b->axis, n);
+    direction_unit(b->axis, n);
     if (joint_has(b->joint, JOINT_TWO_AXES) || (joint_has(b->joint, JOINT_NORMAL) && directed)) {
-        unit_of(b->axis2, t);
-        orthonormalise(t, n);
+        direction_unit(b->axis2, t);
+        direction_orthonormalise(t, n);
     } else {
-        any_orthogonal(n, t);
+        direction_any_orthogonal(n, t);
     }
     rotation_from(columns, joint_has(b->joint, JOINT_ALONG_X) ? 0 : 2, n, t);
 }

@@ -31,4 +31,10 @@ void body_constants_inertia(const struct model *m, int i, struct body_constants 
 /* frame_constants_make: frame f on body i (-1: the base) as (r, p) from the frame to the body's internal axes. */
 void frame_constants_make(const struct model *m, int i, const struct frame *f, quad *r, quad *p);
 
+/* direction_unit: x = the given direction made unit. direction_orthonormalise: t = the part of t orthogonal to the unit
+ * vector n, made unit. direction_any_orthogonal: t = some unit vector orthogonal to n, exact for coordinate axes. */
+void direction_unit(const double *from, quad *x);
+void direction_orthonormalise(quad *t, const quad *n);
+void direction_any_orthogonal(const quad *n, quad *t);
+
 #endif

@@ -15,6 +15,8 @@ static const struct joint_motion *const motion_of[JOINT_MIXED] = {
 /* Costs stand beside the text that executes them, in the type's own file. */
 const struct joint_cost *joint_cost_of(enum model_joint joint) { return &motion_of[joint]->cost; }
 
+const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(b->joint); }
+
 /* Whoever has no function for its columns has unit vectors. */
 bool body_picks(const struct body *b) { return !motion_of[b->joint]->subspace; }
 
@@ -39,13 +41,6 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
     pose->s.c = 6 - b->d;
     pose->s.pick = joint_pick(b->joint);
     motion_of[b->joint]->place(b, q, pose);
-}
-
-void body_rate(const struct body_pose *pose, const real *u, real *h)
-{
-    /* h = H u = [w_J; v_J] */
-    screw_zero(h);
-    subspace_h(&pose->s, u, h);
 }
 
 void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,

@@ -12,30 +12,6 @@
 /* Angles by which rounding of a file's numbers may tilt axes. */
 static quad tolerance_of(enum precision p) { return p == PRECISION_QUAD ? 1e-30Q : 1e-12Q; }
 
-static void unit(const double *from, quad *x)
-{
-    for (int i = 0; i < 3; i++) x[i] = from[i];
-    vec3_scale(x, 1 / vec3_norm(x), x);
-}
-
-/* x = the part of x orthogonal to the unit vector n, made unit. */
-static void orthonormalise(quad *x, const quad *n)
-{
-    const quad dot = vec3_dot(x, n);
-    for (int i = 0; i < 3; i++) x[i] -= dot * n[i];
-    vec3_scale(x, 1 / vec3_norm(x), x);
-}
-
-/* Some unit vector orthogonal to n: exact for coordinate axes. */
-static void any_orthogonal(const quad *n, quad *x)
-{
-    int k = 0;
-    for (int i = 1; i < 3; i++)
-        if (fabsq(n[i]) < fabsq(n[k])) k = i;
-    vec3_set(x, k == 0, k == 1, k == 2);
-    orthonormalise(x, n);
-}
-
 static void rotation_of(const struct frame *f, quad *r)
 {
     quad p[3];
@@ -46,7 +22,7 @@ static void rotation_of(const struct frame *f, quad *r)
 static void axis_in_base(const struct model *m, int i, quad *x)
 {
     quad r[9];
-    unit(m->body[i].axis, x);
+    direction_unit(m->body[i].axis, x);
     for (; i >= 0; i = m->body[i].parent) {
         rotation_of(&m->body[i].placement, r);
         mat3_mul_vec(x, r, x);
@@ -77,7 +53,7 @@ static void first_normal(const struct model *m, quad *n)
         if (first < 0) {
             first = i;
             axis_in_base(m, i, slide);
-            any_orthogonal(slide, n);
+            direction_any_orthogonal(slide, n);
             continue;
         }
         axis_in_base(m, i, other);
@@ -102,10 +78,10 @@ static bool settle(const struct body_def *b, quad tolerance, quad *n)
 {
     quad axis[3], tilt[3];
     if (joint_plane(b->joint) == PLANE_STAYS) return true;
-    unit(b->axis, axis);
+    direction_unit(b->axis, axis);
     if (slides(b->joint)) {
         if (!(fabsq(vec3_dot(axis, n)) <= tolerance)) return false;
-        orthonormalise(n, axis);
+        direction_orthonormalise(n, axis);
         return true;
     }
     vec3_cross(tilt, axis, n);
@@ -171,15 +147,15 @@ void planar_frame(const struct model *m, int i, const quad *normal, quad *rows)
 {
     quad *x = rows + 3, *y = rows + 6;
     vec3_copy(rows, normal);
-    any_orthogonal(normal, x);
+    direction_any_orthogonal(normal, x);
     if (i >= 0 && slides(m->body[i].joint)) {
-        unit(m->body[i].axis, x);
-        orthonormalise(x, normal);
+        direction_unit(m->body[i].axis, x);
+        direction_orthonormalise(x, normal);
     } else if (i >= 0 && joint_plane(m->body[i].joint) == PLANE_MOVES) {
         struct body_constants c;
         body_constants_place(m, i, &c);
         for (int k = 0; k < 3; k++) x[k] = c.user[3 * k];
-        orthonormalise(x, normal);
+        direction_orthonormalise(x, normal);
     }
     vec3_cross(y, normal, x);
 }

@@ -18,10 +18,7 @@ static void make_frames(const struct model *m, int i, const quad *normal, struct
     for (int k = 0; k < 9; k++) b->frame[k] = (real)own[k];
     for (int k = 0; k < 3; k++) along += def->axis[k] * own[k];
     b->flipped = (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) && along < 0;
-    b->has_spring = def->stiffness != 0 || def->damping != 0;
-    b->stiffness = (real)def->stiffness;
-    b->rest = (real)def->rest;
-    b->damping = (real)def->damping;
+    body_springs(m, i, b);
 }
 
 static void make_inertia(const struct model *m, int i, const quad *normal, struct body *b)
@@ -46,38 +43,18 @@ static void make_inertia(const struct model *m, int i, const quad *normal, struc
     b->jo = (real)jo;
 }
 
-static void place_in_model(const struct model *m, int i, struct body *b)
-{
-    b->parent = m->body[i].parent;
-    b->joint = m->body[i].joint;
-    b->plane = joint_plane(b->joint);
-    b->d = joint_nu(b->joint);
-    b->nq = joint_nq(b->joint);
-    b->q_at = m->q_at[i];
-    b->u_at = m->u_at[i];
-}
-
-static bool same_numbers(const double *x, const double *y, int n) { return memcmp(x, y, (size_t)n * sizeof *x) == 0; }
-
 /* Whether the planar frames of bodies i and j (-1: the base) lie alike in their own. */
 static bool same_frame(const struct model *m, int i, int j, const quad *normal)
 {
-    if (i == j) return true;
-    if (i < 0 || j < 0) return false;
-    const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return a->joint == b->joint && same_numbers(a->axis, b->axis, 3) && same_numbers(a->axis2, b->axis2, 3) &&
-           memcmp(normal + 3 * (i + 1), normal + 3 * (j + 1), 3 * sizeof *normal) == 0;
+    const quad *a = normal + 3 * (i + 1), *b = normal + 3 * (j + 1);
+    return bodies_alike(m, i, j) && memcmp(a, b, 3 * sizeof *normal) == 0;
 }
 
 /* Whether bodies i and j are the same in all but their places in the model. */
 static bool alike(const struct model *m, int i, int j, const quad *normal)
 {
-    const struct body_def *a = &m->body[i], *b = &m->body[j];
-    return same_frame(m, i, j, normal) && same_frame(m, a->parent, b->parent, normal) &&
-           same_numbers(&a->mass, &b->mass, 1) && same_numbers(a->com, b->com, 3) &&
-           same_numbers(a->inertia, b->inertia, 6) && same_numbers(a->placement.quat, b->placement.quat, 4) &&
-           same_numbers(a->placement.p, b->placement.p, 3) && a->stiffness == b->stiffness && a->rest == b->rest &&
-           a->damping == b->damping;
+    return same_frame(m, i, j, normal) && same_frame(m, m->body[i].parent, m->body[j].parent, normal) &&
+           bodies_weigh_alike(m, i, j) && bodies_hang_alike(m, i, j);
 }
 
 /* The scene's normals: whoever asked for the plane has seen to it that there is one. */
@@ -102,7 +79,8 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
             make_inertia(m, i, normal, &b[i]);
             make_frames(m, i, normal, &b[i]);
         }
-        place_in_model(m, i, &b[i]);
+        body_seat(m, i, &b[i]);
+        b[i].plane = joint_plane(b[i].joint);
     }
     arena_destroy(scratch);
     return b;
@@ -174,12 +152,6 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
     }
 }
 
-void body_rate(const struct body_pose *pose, const real *u, real *h)
-{
-    screw_zero(h);
-    subspace_h(&pose->s, u, h);
-}
-
 void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
                real *bias)
 {
@@ -203,11 +175,6 @@ void body_load(const struct body *b, const double *fext, real *f)
         const double *x = k == 0 ? fext + 3 : fext;
         f[k] = row[0] * (real)x[0] + row[1] * (real)x[1] + row[2] * (real)x[2];
     }
-}
-
-void body_spring(const struct body *b, const real *q, const real *u, real *tau)
-{
-    if (b->has_spring) tau[0] -= b->stiffness * (q[0] - b->rest) + b->damping * u[0];
 }
 
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
@@ -257,5 +224,7 @@ static const struct joint_cost given[PLANE_MOVES + 1] = {
 };
 
 const struct joint_cost *joint_cost_of(enum model_joint joint) { return &picked[joint_plane(joint)]; }
+
+bool body_picks(const struct body *b) { return !b->flipped; }
 
 const struct joint_cost *body_cost(const struct body *b) { return b->flipped ? &given[b->plane] : &picked[b->plane]; }

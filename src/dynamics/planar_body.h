@@ -2,18 +2,11 @@
  *
  * Every body has a planar frame at its own origin (planar_frame): the scene's normal, then x and y. A joint whose axis
  * points against the normal is flipped: its columns are given instead of picked, and q, u, u', tau pass unchanged
- * between model order and here all the same. Names and contracts are those of body.h. */
+ * between model order and here all the same. Names and contracts are those of body_calls.h and body.h. */
 #ifndef DYNAMICS_PLANAR_BODY_H
 #define DYNAMICS_PLANAR_BODY_H
 
-#include <stdbool.h>
-
-#include "base/arena.h"
-#include "base/work.h"
-#include "dynamics/subspace.h"
-#include "linalg/planar.h"
-#include "linalg/real.h"
-#include "model/model.h"
+#include "dynamics/body_calls.h"
 
 struct body {
     int parent;
@@ -30,47 +23,11 @@ struct body {
     real stiffness, rest, damping;
 };
 
-/* A body's configuration: its transform to the parent and its subspaces. */
-struct body_pose {
-    struct xform x;
-    struct subspace s;
-};
-
-/* What the functions below do for one body, [flop] unless said. */
-struct joint_cost {
-    int place, place_trig, place_div;
-    int rate;
-    int bias;
-    int h, h_transposed;
-    int w, w_transposed;
-    struct work subspace;
-    struct work qdot, step; /* body_qdot, body_step */
-};
-
-/* bodies_make: the constants of all bodies (nbody), in `a`; the scene must be planar, at least nearly. */
-const struct body *bodies_make(const struct model *m, struct arena *a);
-
-/* base_motion: acceleration of the base minus gravity (3). */
-void base_motion(const struct model *m, const struct state *s, real *a);
-
-/* body_picks: no column of the joint's H and W is ever written. */
-static inline bool body_picks(const struct body *b) { return !b->flipped; }
-
-/* body_place, body_subspace, body_rate: as in body.h. */
-void body_place(const struct body *b, const real *q, struct body_pose *pose);
-void body_subspace(const struct body *b, const real *q, struct subspace *s);
-void body_rate(const struct body_pose *pose, const real *u, real *h);
-
-/* body_bias: b (3) as in body.h: the centripetal acceleration of the origin, and 2 w x v_J + w_J x v_J of slides. */
-void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
-               real *bias);
-
 /* body_gyro: P (3) from the body's own velocity: the normal is a principal axis as far as work is concerned, so only
  * the centre of mass is pulled, and not about the origin. */
 enum {
     BODY_GYRO_FLOP = 3,
     BODY_LOAD_FLOP = 15,
-    BODY_SPRING_FLOP = 5,
     BODY_FORCE_FLOP = 11,
     BODY_ACCELERATE_FLOP = 11,
     BODY_PHI_FLOP = 7,
@@ -122,19 +79,11 @@ static inline void body_inertia_factors(const struct body *b, real *shift, real 
     about[4] = about[8] = b->m;
 }
 
-/* body_load, body_load_flops, body_spring, body_step, body_qdot: as in body.h; of the wrench the part in the plane. */
-void body_load(const struct body *b, const double *fext, real *f);
+/* body_load_flops: what body_load executes with a wrench. */
 static inline int body_load_flops(const struct body *b)
 {
     (void)b;
     return BODY_LOAD_FLOP;
 }
-void body_spring(const struct body *b, const real *q, const real *u, real *tau);
-void body_step(const struct body *b, real *q, const real *u, real h);
-void body_qdot(const struct body *b, const real *q, const real *u, real *qd);
-
-/* joint_cost_of: by type, with columns picked; never NULL. body_cost: of a body. */
-const struct joint_cost *joint_cost_of(enum model_joint joint);
-const struct joint_cost *body_cost(const struct body *b);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/carve.h"
 #include "kernel/kernel.h"
 #include "kernel/reduction.h"

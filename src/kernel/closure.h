@@ -11,7 +11,7 @@
 
 #include "base/work.h"
 #include "comm/comm.h"
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/carve.h"
 #include "linalg/real.h"
 #include "model/model.h"

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "base/work.h"
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "linalg/real.h"
 
 /* Symmetric matrices are packed (linalg/dense.h), columns of loads lie one behind the other, (SPACE) each. */

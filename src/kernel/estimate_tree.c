@@ -4,7 +4,7 @@
  * and each operation of it adds what its function executes (tree.c, contraction.c,
  * contraction_solve.c, compound.c). Only the eigenvalues of loops' least norm solution are left out,
  * whose rotations depend on the numbers. */
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/compound.h"
 #include "kernel/estimate.h"
 #include "kernel/implicit.h"

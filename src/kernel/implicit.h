@@ -6,7 +6,7 @@
 #ifndef KERNEL_IMPLICIT_H
 #define KERNEL_IMPLICIT_H
 
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/kernel.h"
 #include "model/model.h"
 

@@ -6,7 +6,7 @@
 #ifndef KERNEL_MOTION_H
 #define KERNEL_MOTION_H
 
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/carve.h"
 #include "kernel/kernel.h"
 

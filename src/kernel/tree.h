@@ -5,7 +5,7 @@
 #ifndef KERNEL_TREE_H
 #define KERNEL_TREE_H
 
-#include "kernel/algebra.h"
+#include "dynamics/algebra.h"
 #include "kernel/carve.h"
 #include "kernel/closure.h"
 #include "kernel/kernel.h"

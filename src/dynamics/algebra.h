@@ -2,8 +2,8 @@
  * planar_body.h and planar_loop.h.
  *
  * The programs are written once for both; sizes are SPACE, SQUARE, PACKED and XFORM_NUMBERS. */
-#ifndef KERNEL_ALGEBRA_H
-#define KERNEL_ALGEBRA_H
+#ifndef DYNAMICS_ALGEBRA_H
+#define DYNAMICS_ALGEBRA_H
 
 #include "linalg/space.h"
 
