@@ -1,5 +1,5 @@
-/* mpi_fortran.c - what of MPI differs in Fortran by more than its arguments' passing: indices count from one, constants
- * are variables, and older functions have addresses of four bytes. */
+/* mpi_fortran.c - what of MPI differs in Fortran by more than its arguments' passing: indices count
+ * from one, constants are variables, and older functions have addresses of four bytes. */
 #include "mpi_fortran.h"
 
 int mimdsim_mpi_bottom_, mimdsim_mpi_in_place_, mimdsim_mpi_status_ignore_[8],
@@ -108,7 +108,8 @@ void mpi_type_hvector_(int *count, int *length, int *stride, MPI_Fint *oldtype, 
                        MPI_Fint *ierror)
 {
     MPI_Datatype made = MPI_DATATYPE_NULL;
-    *ierror = MPI_Type_create_hvector(*count, *length, *stride, HANDLE(MPI_Datatype, oldtype), &made);
+    *ierror =
+        MPI_Type_create_hvector(*count, *length, *stride, HANDLE(MPI_Datatype, oldtype), &made);
     BACK(newtype, made);
 }
 
@@ -150,21 +151,22 @@ void mpi_dist_graph_create_adjacent_(MPI_Fint *old, int *nin, int *sources, int 
                                      int *reorder, MPI_Fint *graph, MPI_Fint *ierror)
 {
     MPI_Comm made = MPI_COMM_NULL;
-    *ierror = MPI_Dist_graph_create_adjacent(HANDLE(MPI_Comm, old), *nin, sources,
-                                             weights_of(in_weights), *nout, destinations,
-                                             weights_of(out_weights), HANDLE(MPI_Info, info),
-                                             *reorder, &made);
+    *ierror = MPI_Dist_graph_create_adjacent(
+        HANDLE(MPI_Comm, old), *nin, sources, weights_of(in_weights), *nout, destinations,
+        weights_of(out_weights), HANDLE(MPI_Info, info), *reorder, &made);
     BACK(graph, made);
 }
 
 void mpi_dist_graph_neighbors_(MPI_Fint *comm, int *nin, int *sources, int *in_weights, int *nout,
                                int *destinations, int *out_weights, MPI_Fint *ierror)
 {
-    *ierror = MPI_Dist_graph_neighbors(HANDLE(MPI_Comm, comm), *nin, sources, weights_of(in_weights),
-                                       *nout, destinations, weights_of(out_weights));
+    *ierror =
+        MPI_Dist_graph_neighbors(HANDLE(MPI_Comm, comm), *nin, sources, weights_of(in_weights),
+                                 *nout, destinations, weights_of(out_weights));
 }
 
-/* --- attributes: values are integers of an address's size; of the old functions, of four bytes --- */
+/* --- attributes: values are integers of an address's size; of the old functions, of four bytes ---
+ */
 
 /* Functions that a program names and that are never called. */
 void mpi_null_copy_fn_(void) {}

@@ -1,4 +1,5 @@
-/* mpi_fortran.h - how arguments of Fortran become C's: by reference, handles as integers, texts with hidden lengths. */
+/* mpi_fortran.h - how arguments of Fortran become C's: by reference, handles as integers, texts
+ * with hidden lengths. */
 #ifndef GUEST_MPI_FORTRAN_H
 #define GUEST_MPI_FORTRAN_H
 

@@ -275,14 +275,6 @@ struct mpi_functions {
     MPI_Comm comm);
     int (*pack_size)(struct mpi_rank *self, MPI_Count incount, MPI_Datatype datatype,
     MPI_Comm comm, MPI_Count *size);
-    int (*pack_external)(struct mpi_rank *self, const char *datarep, const void *inbuf,
-    MPI_Count incount, MPI_Datatype datatype, void *outbuf, MPI_Count outsize,
-    MPI_Count *position);
-    int (*unpack_external)(struct mpi_rank *self, const char datarep[], const void *inbuf,
-    MPI_Count insize, MPI_Count *position, void *outbuf, MPI_Count outcount,
-    MPI_Datatype datatype);
-    int (*pack_external_size)(struct mpi_rank *self, const char *datarep, MPI_Count incount,
-    MPI_Datatype datatype, MPI_Count *size);
     int (*get_address)(struct mpi_rank *self, const void *location, MPI_Aint *address);
     int (*alloc_mem)(struct mpi_rank *self, MPI_Aint size, MPI_Info info, void *baseptr);
     int (*free_mem)(struct mpi_rank *self, void *base);
@@ -578,9 +570,6 @@ int mpi_type_set_name(struct mpi_rank *self, MPI_Datatype datatype, const char *
 int mpi_pack(struct mpi_rank *self, const void *inbuf, MPI_Count incount, MPI_Datatype datatype, void *outbuf, MPI_Count outsize, MPI_Count *position, MPI_Comm comm);
 int mpi_unpack(struct mpi_rank *self, const void *inbuf, MPI_Count insize, MPI_Count *position, void *outbuf, MPI_Count outcount, MPI_Datatype datatype, MPI_Comm comm);
 int mpi_pack_size(struct mpi_rank *self, MPI_Count incount, MPI_Datatype datatype, MPI_Comm comm, MPI_Count *size);
-int mpi_pack_external(struct mpi_rank *self, const char *datarep, const void *inbuf, MPI_Count incount, MPI_Datatype datatype, void *outbuf, MPI_Count outsize, MPI_Count *position);
-int mpi_unpack_external(struct mpi_rank *self, const char datarep[], const void *inbuf, MPI_Count insize, MPI_Count *position, void *outbuf, MPI_Count outcount, MPI_Datatype datatype);
-int mpi_pack_external_size(struct mpi_rank *self, const char *datarep, MPI_Count incount, MPI_Datatype datatype, MPI_Count *size);
 int mpi_get_address(struct mpi_rank *self, const void *location, MPI_Aint *address);
 int mpi_alloc_mem(struct mpi_rank *self, MPI_Aint size, MPI_Info info, void *baseptr);
 int mpi_free_mem(struct mpi_rank *self, void *base);

@@ -16,6 +16,7 @@ BEGIN {
     reason["partitioned"] = "partitioned communication is for threads, and a rank is one thread"
     reason["tool"] = "the tools' interface: the simulator records more than it could tell"
     reason["window"] = "one-sided communication"
+    reason["external"] = "external32: all ranks of a machine write numbers the same way"
     reason["none"] = "not there"
     handles = "comm MPI_Comm group MPI_Group type MPI_Datatype op MPI_Op request MPI_Request info MPI_Info " \
               "errhandler MPI_Errhandler win MPI_Win file MPI_File message MPI_Message session MPI_Session"

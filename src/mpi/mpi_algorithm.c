@@ -14,26 +14,13 @@ void mpi_collective_call(struct mpi_rank *r, struct collective_call *k, bool irr
     mpi_give(r->world, k->scratch);
 }
 
-static void larger(void *into, const void *with, bool before, int64_t n, void *context,
-                   struct work *w)
+void mpi_collective_tell(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence, int *value)
 {
-    (void)before, (void)context, (void)w, (void)n;
-    if (*(const int *)with > *(int *)into) *(int *)into = *(const int *)with;
-}
-
-int mpi_collective_max(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence, int value)
-{
-    static const struct collective_op op = {
-        .combine = larger, .commutative = true, .idempotent = true};
-    int result = value;
-    struct collective_call call = {
-        .kind = COLLECTIVE_ALLREDUCE, .comm = &k->comm, .count = 1, .element = sizeof value};
+    struct collective_call call = {.kind = COLLECTIVE_BROADCAST, .comm = &k->comm, .count = 1};
+    call.element = sizeof *value;
     call.tag = mpi_collective_tag(sequence);
-    call.send = &value;
-    call.recv = &result;
-    call.op = &op;
+    call.recv = value;
     mpi_collective_call(r, &call, false);
-    return result;
 }
 
 void mpi_collective_allgather(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence,
@@ -48,9 +35,8 @@ void mpi_collective_allgather(struct mpi_rank *r, struct mpi_channel *k, unsigne
 }
 
 /* The machine's own barrier where it has one for all ranks. */
-void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c)
+void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence)
 {
-    unsigned sequence = c->sequence++;
     if (c->whole && r->world->setup->hardware_barrier) {
         comm_barrier(r->comm);
         return;

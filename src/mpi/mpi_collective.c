@@ -270,14 +270,13 @@ static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsign
     mpi_give(r->world, in);
 }
 
-void mpi_collective_run(struct mpi_rank *r, void *call)
+void mpi_collective_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
-    const struct mpi_collective *x = call;
+    const unsigned sequence = x->sequence;
     if (x->what == WHAT_BARRIER) {
-        mpi_collective_barrier(r, x->comm);
+        mpi_collective_barrier(r, x->comm, sequence);
         return;
     }
-    unsigned sequence = x->comm->sequence++;
     if (x->what == WHAT_BCAST) broadcast(r, x, sequence);
     else if (x->what == WHAT_GATHER) gather(r, x, sequence, false);
     else if (x->what == WHAT_ALLGATHER) gather(r, x, sequence, true);
@@ -289,4 +288,10 @@ void mpi_collective_run(struct mpi_rank *r, void *call)
     else if (x->what == WHAT_SCAN) reduce(r, x, sequence, COLLECTIVE_SCAN, false);
     else if (x->what == WHAT_EXSCAN) reduce(r, x, sequence, COLLECTIVE_SCAN, true);
     else reduce_scatter(r, x, sequence);
+}
+
+void mpi_collective_now(struct mpi_rank *r, struct mpi_collective *x)
+{
+    x->sequence = x->comm->sequence++;
+    mpi_collective_run(r, x);
 }

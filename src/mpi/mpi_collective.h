@@ -34,6 +34,7 @@ struct mpi_collective {
     const MPI_Datatype *send_types, *recv_types;                          /* of alltoallw */
     struct mpi_op *op;
     int root;
+    unsigned sequence; /* where its tags begin: taken when called, of persistent ones when made */
 };
 
 /* One message of an exchange without an algorithm: everybody sends and receives what it has to. */
@@ -48,8 +49,10 @@ struct mpi_part {
 void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin,
                   const struct mpi_part *in, int nout, const struct mpi_part *out);
 
-/* mpi_collective_run: a checked call to its end, on whichever stack. */
-void mpi_collective_run(struct mpi_rank *r, void *call);
+/* mpi_collective_run: a checked call to its end, on whichever stack. mpi_collective_now: the same
+ * with the next sequence of its communicator. */
+void mpi_collective_run(struct mpi_rank *r, const struct mpi_collective *x);
+void mpi_collective_now(struct mpi_rank *r, struct mpi_collective *x);
 
 /* mpi_neighbor_run, mpi_intercomm_run: those of topologies and of intercommunicators. */
 void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x);

@@ -24,7 +24,7 @@ static void run(struct mpi_rank *r, void *call)
     const struct mpi_collective *x = call;
     if (x->comm->remote) mpi_intercomm_run(r, x);
     else if (x->what >= WHAT_NEIGHBOR_ALLGATHER) mpi_neighbor_run(r, x);
-    else mpi_collective_run(r, call);
+    else mpi_collective_run(r, x);
 }
 
 static int count_error(struct mpi_rank *r, struct mpi_comm *c, int64_t n)
@@ -62,6 +62,7 @@ static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
         if (code == MPI_SUCCESS) code = check_counts(r, x->comm, x->recv_counts, peers);
         if (code != MPI_SUCCESS) return code;
     }
+    x->sequence = x->comm->sequence++;
     if (start.mode == MPI_BLOCKING) {
         run(r, x);
         return MPI_SUCCESS;

@@ -96,28 +96,26 @@ int mpi_comm_get_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info *info_used)
 
 /* --- making --- */
 
-int mpi_comm_made(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm)
+/* dup: with the context that its ranks have agreed on, for as long as it takes. */
+static int dup(struct mpi_rank *r, struct mpi_comm *c, int context, MPI_Comm *newcomm)
 {
-    (void)r;
-    *newcomm = mpi_handle(c);
-    return MPI_SUCCESS;
+    c->group->o.uses++;
+    struct mpi_comm *made = mpi_comm_make(r, c->group, context, c);
+    mpi_topology_copy(r, c, made);
+    int code = mpi_attributes_copy(r, KIND_COMM, c, made);
+    *newcomm = code == MPI_SUCCESS ? mpi_handle(made) : MPI_COMM_NULL;
+    if (code == MPI_SUCCESS) return code;
+    mpi_attributes_end(r, KIND_COMM, made);
+    mpi_comm_drop(r, made);
+    return code;
 }
 
 int mpi_comm_dup(struct mpi_rank *self, MPI_Comm comm, MPI_Comm *newcomm)
 {
-    struct mpi_comm *c = mpi_comm_of(self, comm), *made;
+    struct mpi_comm *c = mpi_comm_of(self, comm);
     if (!c) return self->code;
     if (c->remote) return mpi_intercomm_dup(self, c, newcomm);
-    int context = mpi_context_agree(self, &c->channel, c->sequence++);
-    c->group->o.uses++;
-    made = mpi_comm_make(self, c->group, context, c);
-    mpi_topology_copy(self, c, made);
-    int code = mpi_attributes_copy(self, KIND_COMM, c, made);
-    *newcomm = MPI_COMM_NULL;
-    if (code == MPI_SUCCESS) return mpi_comm_made(self, made, newcomm);
-    mpi_attributes_end(self, KIND_COMM, made);
-    mpi_comm_drop(self, made);
-    return code;
+    return dup(self, c, mpi_context_agree(self, &c->channel, c->sequence++), newcomm);
 }
 
 int mpi_comm_dup_with_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info info, MPI_Comm *newcomm)
@@ -126,12 +124,32 @@ int mpi_comm_dup_with_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info info, 
     return mpi_comm_dup(self, comm, newcomm);
 }
 
-/* The new communicator is made at once, which the standard allows: it may synchronize. */
+/* What a non-blocking duplication needs while it goes on. */
+struct idup {
+    struct mpi_comm *from;
+    MPI_Comm *to;
+    unsigned sequence;
+};
+
+static void run_idup(struct mpi_rank *r, void *argument)
+{
+    const struct idup *x = argument;
+    dup(r, x->from, mpi_context_agree(r, &x->from->channel, x->sequence), x->to);
+}
+
+/* The two sides of an intercommunicator meet at once, which is no error: a call may synchronize. */
 int mpi_comm_idup(struct mpi_rank *self, MPI_Comm comm, MPI_Comm *newcomm, MPI_Request *request)
 {
-    int code = mpi_comm_dup(self, comm, newcomm);
-    if (code == MPI_SUCCESS) *request = mpi_request_nothing(self);
-    return code;
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    if (!c) return self->code;
+    if (c->remote) {
+        int code = mpi_intercomm_dup(self, c, newcomm);
+        if (code == MPI_SUCCESS) *request = mpi_request_nothing(self);
+        return code;
+    }
+    const struct idup x = {c, newcomm, c->sequence++};
+    return mpi_request_task(self, c, run_idup, &x, sizeof x, -1,
+                            (struct mpi_start){MPI_NON_BLOCKING, request});
 }
 
 int mpi_comm_idup_with_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info info, MPI_Comm *newcomm,
@@ -148,16 +166,17 @@ int mpi_comm_create(struct mpi_rank *self, MPI_Comm comm, MPI_Group group, MPI_C
     struct mpi_comm *c = mpi_comm_of(self, comm);
     struct mpi_group *g = c ? mpi_group_of(self, group) : NULL;
     if (!g) return self->code;
-    if (c->remote) return mpi_error(self, c, MPI_ERR_COMM, "not supported on intercommunicators");
     for (int i = 0; i < g->size; i++)
         if (mpi_group_find(self, c->group, mpi_group_world(g, i)) == MPI_UNDEFINED)
             return mpi_error(self, c, MPI_ERR_GROUP,
                              "rank %d of the group is not in the communicator", i);
+    if (c->remote) return mpi_intercomm_part(self, c, g, newcomm);
     int context = mpi_context_agree(self, &c->channel, c->sequence++);
     *newcomm = MPI_COMM_NULL;
     if (g->rank == MPI_UNDEFINED) return MPI_SUCCESS;
     g->o.uses++;
-    return mpi_comm_made(self, mpi_comm_make(self, g, context, c), newcomm);
+    *newcomm = mpi_handle(mpi_comm_make(self, g, context, c));
+    return MPI_SUCCESS;
 }
 
 int mpi_comm_create_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group group, int tag,
@@ -173,7 +192,8 @@ int mpi_comm_create_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group group,
     k.base += (int64_t)(tag & 0x1ffffff) * COLLECTIVE_TAGS;
     int context = mpi_context_agree(self, &k, 0);
     g->o.uses++;
-    return mpi_comm_made(self, mpi_comm_make(self, g, context, c), newcomm);
+    *newcomm = mpi_handle(mpi_comm_make(self, g, context, c));
+    return MPI_SUCCESS;
 }
 
 int mpi_comm_split(struct mpi_rank *self, MPI_Comm comm, int color, int key, MPI_Comm *newcomm)
@@ -182,7 +202,7 @@ int mpi_comm_split(struct mpi_rank *self, MPI_Comm comm, int color, int key, MPI
     if (!c) return self->code;
     if (color < 0 && color != MPI_UNDEFINED)
         return mpi_error(self, c, MPI_ERR_ARG, "color %d is negative", color);
-    if (c->remote) return mpi_error(self, c, MPI_ERR_COMM, "not supported on intercommunicators");
+    if (c->remote) return mpi_intercomm_split(self, c, color, key, newcomm);
     struct mpi_comm *made = mpi_comm_split_of(self, c, color, key);
     *newcomm = made ? mpi_handle(made) : MPI_COMM_NULL;
     return MPI_SUCCESS;

@@ -1,27 +1,30 @@
 /* mpi_comm_split.c - new communicators out of the ranks of old ones.
  *
- * A context is agreed upon by those who will use it: one more than the largest that any of them has
- * used. So the same number may stand for communicators without a common rank, which no message can
- * confuse. */
+ * A context is given by the first rank of those who agree on it, and no rank gives one twice: its
+ * number in the world, and how many it has given. So it is unique in the run. */
 #include <stdlib.h>
 
 #include "mpi/mpi_internal.h"
 
-int mpi_context_new(struct mpi_rank *r, int agreed)
+int mpi_context_of(struct mpi_rank *r, int given, int rank)
 {
-    r->next_context = agreed + 1;
-    return agreed;
+    int64_t context = FIRST_CONTEXT + (int64_t)given * r->size + rank;
+    if (context >= LAST_CONTEXT) mpi_fail(r, "too many communicators were made");
+    return (int)context;
 }
+
+int mpi_context_give(struct mpi_rank *r) { return mpi_context_of(r, r->given++, r->rank); }
 
 int mpi_context_agree(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence)
 {
-    int largest = mpi_collective_max(r, k, sequence, r->next_context);
-    return mpi_context_new(r, largest);
+    int context = k->comm.rank == 0 ? mpi_context_give(r) : 0;
+    mpi_collective_tell(r, k, sequence, &context);
+    return context;
 }
 
 /* What each rank tells the others of a split. */
 struct choice {
-    int color, key, context, rank;
+    int color, key, given, rank;
 };
 
 static int by_key(const void *a, const void *b)
@@ -31,23 +34,23 @@ static int by_key(const void *a, const void *b)
     return x->rank - y->rank;
 }
 
-/* split: everybody's color and key are gathered by all, together with the largest context. */
+/* Everybody's color and key are gathered by all, with what each could give as a context. */
 struct mpi_comm *mpi_comm_split_of(struct mpi_rank *r, struct mpi_comm *c, int color, int key)
 {
-    struct choice own = {.color = color, .key = key, .context = r->next_context, .rank = c->rank};
+    struct choice own = {.color = color, .key = key, .given = r->given, .rank = c->rank};
     struct choice *all = mpi_take(r->world, c->size * (int64_t)sizeof *all);
-    int n = 0, largest = 0;
+    int n = 0;
     mpi_collective_allgather(r, &c->channel, c->sequence++, &own, all, sizeof own);
     for (int i = 0; i < c->size; i++) {
-        if (all[i].context > largest) largest = all[i].context;
         if (color != MPI_UNDEFINED && all[i].color == color) all[n++] = all[i];
     }
-    int context = mpi_context_new(r, largest);
     qsort(all, (size_t)n, sizeof *all, by_key);
     struct mpi_comm *made = NULL;
     if (n) {
         int *list = mpi_take(r->world, n * (int64_t)sizeof *list);
         for (int i = 0; i < n; i++) list[i] = mpi_group_world(c->group, all[i].rank);
+        int context = mpi_context_of(r, all[0].given, list[0]);
+        if (list[0] == r->rank) r->given++;
         made = mpi_comm_make(r, mpi_group_make(r, list, n), context, c);
         mpi_give(r->world, list);
     }

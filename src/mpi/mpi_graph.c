@@ -178,7 +178,7 @@ static struct edge *gather_edges(struct mpi_rank *r, struct mpi_comm *c, struct 
     x.recv = all;
     x.recv_counts = (struct mpi_counts){counts, 0};
     x.recv_places = (struct mpi_counts){places, 0};
-    mpi_collective_run(r, &x);
+    mpi_collective_now(r, &x);
     mpi_give(r->world, counts);
     qsort(all, (size_t)*total, sizeof *all, by_source);
     return all;

@@ -4,6 +4,8 @@
  * beneath for what it does among itself. Collective operations move data directly between the sides
  * where every rank's differ, and through the first rank of each side where one message tells all.
  */
+#include <stdlib.h>
+
 #include "mpi/mpi_collective.h"
 
 static struct mpi_part words(int peer, void *buffer, int64_t bytes)
@@ -30,7 +32,7 @@ static void tell(struct mpi_rank *r, struct mpi_comm *local, int root, void *dat
     struct mpi_collective x = {
         .what = WHAT_BCAST, .comm = local, .recv = data, .recv_count = bytes, .root = root};
     x.recv_type = mpi_type_basic(MPI_BYTE);
-    mpi_collective_run(r, &x);
+    mpi_collective_now(r, &x);
 }
 
 /* What a leader tells the other: its side's size, largest context and a number of the call's. */
@@ -38,27 +40,35 @@ struct side_word {
     int size, context, word;
 };
 
-/* meet: the other side's word on every rank; contexts of both sides in *context. */
+/* Contexts of an intercommunicator: one for both sides, one for the own side. */
+struct contexts {
+    int both, own;
+};
+
+/* meet: the other side's word on every rank, and contexts; the larger that a side gives is for
+ * both. */
 static struct side_word meet(struct mpi_rank *r, struct mpi_comm *local, int leader,
-                             struct mpi_comm *peers, int peer, int64_t tag, int word, int *context)
+                             struct mpi_comm *peers, int peer, int64_t tag, int word,
+                             struct contexts *context)
 {
-    int own = mpi_collective_max(r, &local->channel, local->sequence++, r->next_context);
-    struct side_word out = {local->size, own, word}, in = {0};
+    int given = mpi_context_agree(r, &local->channel, local->sequence++);
+    struct side_word out = {local->size, given, word}, in = {0};
+    context->own = mpi_context_agree(r, &local->channel, local->sequence++);
     if (local->rank == leader) swap(r, peers, peer, tag, &out, sizeof out, &in, sizeof in);
     tell(r, local, leader, &in, sizeof in);
-    *context = own > in.context ? own : in.context;
+    context->both = given > in.context ? given : in.context;
     return in;
 }
 
-static struct mpi_comm *make(struct mpi_rank *r, struct mpi_comm *local, struct mpi_group *remote,
-                             int context)
+/* make: takes over the caller's uses of both groups. */
+static struct mpi_comm *make(struct mpi_rank *r, struct mpi_group *local, struct mpi_group *remote,
+                             struct contexts context, struct mpi_comm *like)
 {
-    local->group->o.uses += 2;
-    struct mpi_comm *c = mpi_comm_make(r, local->group, context, local);
+    local->o.uses++;
+    struct mpi_comm *c = mpi_comm_make(r, local, context.both, like);
     c->remote = remote;
     c->whole = false;
-    c->local = mpi_comm_make(r, local->group, context + 1, local);
-    mpi_context_new(r, context + 1);
+    c->local = mpi_comm_make(r, local, context.own, like);
     return c;
 }
 
@@ -76,7 +86,8 @@ int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_l
     bool leads = local->rank == local_leader;
     if (leads) peers = mpi_comm_of(self, peer_comm);
     if (leads && !peers) return self->code;
-    int npeer = !leads ? 0 : peers->remote ? peers->remote->size : peers->size, context;
+    int npeer = !leads ? 0 : peers->remote ? peers->remote->size : peers->size;
+    struct contexts context;
     if (leads && (remote_leader < 0 || remote_leader >= npeer))
         return mpi_error(self, local, MPI_ERR_RANK, "remote leader %d of %d ranks", remote_leader,
                          npeer);
@@ -91,25 +102,99 @@ int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_l
     tell(self, local, local_leader, list, nfar);
     struct mpi_group *remote = mpi_group_make(self, list, far.size);
     mpi_give(self->world, own);
-    *newintercomm = mpi_handle(make(self, local, remote, context));
+    local->group->o.uses++;
+    *newintercomm = mpi_handle(make(self, local->group, remote, context, local));
     return MPI_SUCCESS;
 }
 
 int mpi_intercomm_dup(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm)
 {
-    int context;
+    struct contexts context;
     meet(r, c->local, 0, c, 0, 0, 0, &context);
     c->remote->o.uses++;
-    struct mpi_comm *made = make(r, c->local, c->remote, context);
+    c->group->o.uses++;
+    struct mpi_comm *made = make(r, c->group, c->remote, context, c);
     *newcomm = mpi_handle(made);
     return mpi_attributes_copy(r, KIND_COMM, c, made);
+}
+
+/* parts: an intercommunicator out of those ranks of both sides that go together; NULL where there
+ * is none on either side or the own rank is not among them. */
+static MPI_Comm parts(struct mpi_rank *r, struct mpi_comm *c, const int *near, int nnear,
+                      const int *far, int nfar, struct contexts context)
+{
+    if (nnear == 0 || nfar == 0) return MPI_COMM_NULL;
+    struct mpi_group *local = mpi_group_make(r, near, nnear);
+    if (local->rank == MPI_UNDEFINED) {
+        mpi_group_drop(r, local);
+        return MPI_COMM_NULL;
+    }
+    return mpi_handle(make(r, local, mpi_group_make(r, far, nfar), context, c));
+}
+
+int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group *g,
+                       MPI_Comm *newcomm)
+{
+    struct contexts context;
+    struct side_word other = meet(r, c->local, 0, c, 0, 0, g->size, &context);
+    int *near = mpi_take(r->world, (g->size + other.word + 1) * (int64_t)sizeof *near);
+    int *far = near + g->size;
+    for (int i = 0; i < g->size; i++) near[i] = mpi_group_world(g, i);
+    int64_t nnear = g->size * (int64_t)sizeof *near, nfar = other.word * (int64_t)sizeof *near;
+    if (c->local->rank == 0) swap(r, c, 0, 1, near, nnear, far, nfar);
+    tell(r, c->local, 0, far, nfar);
+    *newcomm = parts(r, c, near, g->size, far, other.word, context);
+    mpi_give(r->world, near);
+    return MPI_SUCCESS;
+}
+
+/* What a rank tells of itself in a split; ordered by key, then by place in the communicator. */
+struct choice {
+    int color, key, place, world;
+};
+
+static int by_key(const void *a, const void *b)
+{
+    const struct choice *x = a, *y = b;
+    if (x->key != y->key) return x->key < y->key ? -1 : 1;
+    return x->place - y->place;
+}
+
+static int chosen(struct choice *of, int n, int color, int *list)
+{
+    int m = 0;
+    qsort(of, (size_t)n, sizeof *of, by_key);
+    for (int i = 0; i < n; i++)
+        if (color != MPI_UNDEFINED && of[i].color == color) list[m++] = of[i].world;
+    return m;
+}
+
+int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int key,
+                        MPI_Comm *newcomm)
+{
+    struct contexts context;
+    int size = c->size, other = c->remote->size;
+    struct choice own = {color, key, c->rank, r->rank};
+    struct choice *near = mpi_take(r->world, (size + other) * (int64_t)sizeof *near);
+    struct choice *far = near + size;
+    int *list = mpi_take(r->world, (size + other) * (int64_t)sizeof *list);
+    meet(r, c->local, 0, c, 0, 0, 0, &context);
+    mpi_collective_allgather(r, &c->local->channel, c->local->sequence++, &own, near, sizeof own);
+    int64_t nnear = size * (int64_t)sizeof own, nfar = other * (int64_t)sizeof own;
+    if (c->local->rank == 0) swap(r, c, 0, 1, near, nnear, far, nfar);
+    tell(r, c->local, 0, far, nfar);
+    int n = chosen(near, size, color, list), m = chosen(far, other, color, list + n);
+    *newcomm = parts(r, c, list, n, list + n, m, context);
+    mpi_give(r->world, list);
+    mpi_give(r->world, near);
+    return MPI_SUCCESS;
 }
 
 /* The low side comes first; of equals the one whose first rank of the world is the smaller. */
 int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI_Comm *newintracomm)
 {
     struct mpi_comm *c = mpi_comm_of(self, intercomm);
-    int context;
+    struct contexts context;
     if (!c) return self->code;
     if (!c->remote)
         return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
@@ -122,8 +207,7 @@ int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI
         *list = mpi_take(self->world, (c->group->size + c->remote->size) * (int64_t)sizeof *list);
     for (int h = 0; h < 2; h++)
         for (int i = 0; i < half[h]->size; i++) list[n++] = mpi_group_world(half[h], i);
-    struct mpi_comm *made =
-        mpi_comm_make(self, mpi_group_make(self, list, n), mpi_context_new(self, context), c);
+    struct mpi_comm *made = mpi_comm_make(self, mpi_group_make(self, list, n), context.both, c);
     mpi_give(self->world, list);
     *newintracomm = mpi_handle(made);
     return MPI_SUCCESS;
@@ -151,55 +235,88 @@ int mpi_comm_remote_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group *group
 
 /* --- collective operations --- */
 
-static void barrier(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence)
+/* What one side does among itself for a call; tags apart from those of making communicators. */
+static void among_own(struct mpi_rank *r, const struct mpi_collective *x, enum mpi_what what,
+                      void *recv)
 {
-    char out = 0, in = 0;
-    mpi_collective_barrier(r, c->local);
-    struct mpi_part to = words(0, &out, 1), from = words(0, &in, 1);
-    if (c->rank == 0) mpi_exchange(r, c, sequence, 1, &from, 1, &to);
-    mpi_collective_barrier(r, c->local);
-}
-
-/* One message to the other side's first rank, which tells its own. */
-static void broadcast(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
-{
-    struct mpi_part part = {0, x->recv, x->recv_count, x->recv_type};
-    if (x->root == MPI_ROOT) mpi_exchange(r, x->comm, sequence, 0, NULL, 1, &part);
-    if (x->root < 0) return;
-    part.peer = x->root;
-    if (x->comm->rank == 0) mpi_exchange(r, x->comm, sequence, 1, &part, 0, NULL);
     struct mpi_collective local = *x;
+    local.what = what;
     local.comm = x->comm->local;
     local.root = 0;
+    local.recv = recv;
+    local.sequence = x->sequence + (1u << 24);
     mpi_collective_run(r, &local);
 }
 
+static void barrier(struct mpi_rank *r, const struct mpi_collective *x)
+{
+    char out = 0, in = 0;
+    struct mpi_part to = words(0, &out, 1), from = words(0, &in, 1);
+    among_own(r, x, WHAT_BARRIER, NULL);
+    if (x->comm->rank == 0) mpi_exchange(r, x->comm, x->sequence, 1, &from, 1, &to);
+    among_own(r, x, WHAT_BARRIER, NULL);
+}
+
+/* One message to the other side's first rank, which tells its own. */
+static void broadcast(struct mpi_rank *r, const struct mpi_collective *x)
+{
+    struct mpi_part part = {0, x->recv, x->recv_count, x->recv_type};
+    if (x->root == MPI_ROOT) mpi_exchange(r, x->comm, x->sequence, 0, NULL, 1, &part);
+    if (x->root < 0) return;
+    part.peer = x->root;
+    if (x->comm->rank == 0) mpi_exchange(r, x->comm, x->sequence, 1, &part, 0, NULL);
+    among_own(r, x, WHAT_BCAST, x->recv);
+}
+
 /* Each side's result goes to the other: to its root, or to its first rank and from there to all. */
-static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
+static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct mpi_comm *c = x->comm;
     bool all = x->what == WHAT_ALLREDUCE, contributes = all || x->root >= 0;
     int64_t bytes = x->recv_count * x->recv_type->extent;
     struct mpi_part in = {0, x->recv, x->recv_count, x->recv_type}, out = in;
     out.buffer = c->rank == 0 && contributes ? mpi_take_zero(r->world, bytes + 1) : NULL;
-    if (contributes) {
-        struct mpi_collective local = *x;
-        local.what = WHAT_REDUCE;
-        local.comm = c->local;
-        local.root = 0;
-        local.recv = out.buffer;
-        mpi_collective_run(r, &local);
-    }
+    if (contributes) among_own(r, x, WHAT_REDUCE, out.buffer);
     if (!all) out.peer = x->root;
     bool sends = out.buffer != NULL, takes = all ? c->rank == 0 : x->root == MPI_ROOT;
-    mpi_exchange(r, c, sequence, takes, &in, sends, &out);
+    mpi_exchange(r, c, x->sequence, takes, &in, sends, &out);
     mpi_give(r->world, out.buffer);
-    if (!all) return;
-    struct mpi_collective local = *x;
-    local.what = WHAT_BCAST;
-    local.comm = c->local;
-    local.root = 0;
-    mpi_collective_run(r, &local);
+    if (all) among_own(r, x, WHAT_BCAST, x->recv);
+}
+
+/* The whole vectors are reduced on either side and exchanged; each side deals out what it got. */
+static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
+{
+    struct mpi_comm *c = x->comm;
+    int64_t total = x->recv_count * c->size, place = 0;
+    int *places = mpi_take(r->world, (c->size + 1) * (int64_t)sizeof *places);
+    for (int i = 0; i < c->size && x->recv_counts.at; i++) {
+        places[i] = (int)place;
+        place += mpi_count_at(x->recv_counts, i);
+    }
+    if (x->recv_counts.at) total = place;
+    int64_t bytes = total * x->recv_type->extent + 1;
+    struct mpi_part out = {0, NULL, total, x->recv_type}, in = out;
+    struct mpi_collective part = *x;
+    if (c->rank == 0) out.buffer = mpi_take_zero(r->world, 2 * bytes);
+    in.buffer = c->rank == 0 ? (char *)out.buffer + bytes : NULL;
+    part.recv_count = total;
+    part.recv_counts = (struct mpi_counts){0};
+    among_own(r, &part, WHAT_REDUCE, out.buffer);
+    mpi_exchange(r, c, x->sequence, c->rank == 0, &in, c->rank == 0, &out);
+    part = *x;
+    part.send = in.buffer;
+    part.send_type = x->recv_type;
+    part.send_count = x->recv_count;
+    part.send_counts = x->recv_counts;
+    if (x->recv_counts.at) {
+        part.send_places = (struct mpi_counts){places, 0};
+        part.recv_count = mpi_count_at(x->recv_counts, c->rank);
+    }
+    part.recv_counts = (struct mpi_counts){0};
+    among_own(r, &part, WHAT_SCATTER, x->recv);
+    mpi_give(r->world, out.buffer);
+    mpi_give(r->world, places);
 }
 
 /* part_of: block i of a side of the call. */
@@ -219,7 +336,7 @@ static struct mpi_part part_of(struct mpi_rank *r, const struct mpi_collective *
 
 /* Every rank has something for every rank of the other side, or a root for all, or all for a root.
  */
-static void direct(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
+static void direct(struct mpi_rank *r, const struct mpi_collective *x)
 {
     int far = x->comm->remote->size, nin = 0, nout = 0;
     bool rooted = x->what == WHAT_GATHER || x->what == WHAT_SCATTER, root = x->root == MPI_ROOT;
@@ -239,30 +356,32 @@ static void direct(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
         if (blocks_in) out[nout++] = part;
         else in[nin++] = part;
     }
-    mpi_exchange(r, x->comm, sequence, nin, in, nout, out);
+    mpi_exchange(r, x->comm, x->sequence, nin, in, nout, out);
     mpi_give(r->world, in);
 }
 
 void mpi_intercomm_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
-    unsigned sequence = x->comm->sequence++;
     switch (x->what) {
     case WHAT_BARRIER:
-        barrier(r, x->comm, sequence);
+        barrier(r, x);
         break;
     case WHAT_BCAST:
-        broadcast(r, x, sequence);
+        broadcast(r, x);
         break;
     case WHAT_REDUCE:
     case WHAT_ALLREDUCE:
-        reduce(r, x, sequence);
+        reduce(r, x);
+        break;
+    case WHAT_REDUCE_SCATTER:
+        reduce_scatter(r, x);
         break;
     case WHAT_GATHER:
     case WHAT_SCATTER:
     case WHAT_ALLGATHER:
     case WHAT_ALLTOALL:
     case WHAT_ALLTOALLW:
-        direct(r, x, sequence);
+        direct(r, x);
         break;
     default:
         mpi_fail(r, "not supported on intercommunicators");

@@ -10,6 +10,10 @@
 
 enum { MEMORY_CLASSES = 17, TASK_STACK = 256 << 10, TAG_LAST = INT32_MAX };
 
+/* Contexts of the world and of ranks alone; the first that is given; the end of what tags have room
+ * for. */
+enum { WORLD_CONTEXT = 1, SELF_CONTEXT, FIRST_CONTEXT, LAST_CONTEXT = 1 << 29 };
+
 /* Planes of one communicator's tags: messages of the program, of collective operations, of windows,
  * of its making. */
 enum mpi_plane { PLANE_PROGRAM, PLANE_COLLECTIVE, PLANE_WINDOW, PLANE_MAKING };
@@ -77,7 +81,7 @@ struct mpi_rank {
     int last_code; /* of MPI_LASTUSEDCODE */
     int rank, size;
     int initialized, finalized, thread_level;
-    int next_context;
+    int given; /* contexts, to communicators whose first rank it is */
     struct mpi_comm *world_comm, *self_comm;
     void **object; /* (room) by number; free ones hold the next free number times two plus one */
     int room, nobject, free_object;

@@ -69,14 +69,13 @@ static void order_grid(int n, struct mpi_part *part)
 
 void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
-    unsigned sequence = x->comm->sequence++;
     struct neighbours n = neighbours_of(r, x->comm);
     struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in),
                     *out = in + n.nin;
     for (int i = 0; i < n.nin; i++) in[i] = in_part(r, x, n.in[i], i);
     for (int i = 0; i < n.nout; i++) out[i] = out_part(r, x, n.out[i], i);
     if (x->comm->topology->kind == MPI_CART) order_grid(n.nout, out);
-    mpi_exchange(r, x->comm, sequence, n.nin, in, n.nout, out);
+    mpi_exchange(r, x->comm, x->sequence, n.nin, in, n.nout, out);
     mpi_give(r->world, in);
     mpi_give(r->world, n.in);
 }

@@ -115,7 +115,7 @@ bool mpi_request_ready(const struct mpi_request *q)
 static int finish_general(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status)
 {
     void *const *f = q->argument;
-    MPI_Status own;
+    MPI_Status own = {.MPI_ERROR = MPI_SUCCESS};
     mpi_status_set(&own, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
     int code = (int)mpi_call_program(r, f[0], (intptr_t[6]){(intptr_t)f[3], (intptr_t)&own});
     if (status) *status = own;

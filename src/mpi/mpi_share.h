@@ -76,12 +76,16 @@ struct mpi_comm *mpi_comm_make(struct mpi_rank *r, struct mpi_group *g, int cont
                                struct mpi_comm *like);
 struct mpi_comm *mpi_comm_split_of(struct mpi_rank *r, struct mpi_comm *c, int color, int key);
 struct mpi_comm *mpi_comm_first(struct mpi_rank *r, struct mpi_comm *c, int n);
-int mpi_comm_made(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm);
 int mpi_context_agree(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence);
-int mpi_context_new(struct mpi_rank *r, int agreed);
+int mpi_context_give(struct mpi_rank *r);
+int mpi_context_of(struct mpi_rank *r, int given, int rank);
 int64_t mpi_tag(int context, enum mpi_plane plane, int64_t tag);
 void mpi_channel_make(struct mpi_channel *k, struct mpi_rank *r, struct mpi_group *g, int context,
                       enum mpi_plane plane);
+int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group *g,
+                       MPI_Comm *newcomm);
+int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int key,
+                        MPI_Comm *newcomm);
 int mpi_intercomm_dup(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm);
 void mpi_topology_copy(struct mpi_rank *r, const struct mpi_comm *from, struct mpi_comm *to);
 void mpi_topology_end(struct mpi_rank *r, struct mpi_comm *c);
@@ -98,10 +102,10 @@ int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_o
                        struct mpi_type *t, struct mpi_comm *c);
 
 /* --- mpi_collective.c --- */
-int mpi_collective_max(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence, int value);
+void mpi_collective_tell(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence, int *value);
 void mpi_collective_allgather(struct mpi_rank *r, struct mpi_channel *k, unsigned sequence,
                               const void *own, void *all, int64_t bytes);
-void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c);
+void mpi_collective_barrier(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence);
 
 /* --- mpi_attribute.c: object NULL: an error was reported before --- */
 int mpi_keyval_make(struct mpi_rank *r, void *copy, void *remove, int *keyval, void *extra);

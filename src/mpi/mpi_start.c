@@ -24,7 +24,6 @@ struct mpi_rank *mpi_rank_create(struct mpi_world *w, struct comm *c, void *host
     *r = (struct mpi_rank){
         .comm = c, .world = w, .host = host, .rank = comm_rank(c), .size = comm_size(c)};
     r->free_object = -1;
-    r->next_context = 3; /* after those of the world and of the rank alone */
     r->call = "before MPI_Init";
     c->keep_site = 1;
     return r;
@@ -79,8 +78,8 @@ int mpi_init_thread(struct mpi_rank *self, int *argc, char ***argv, int required
     if (self->initialized) mpi_fail(self, "called a second time");
     if (self->finalized) mpi_fail(self, "called after MPI_Finalize");
     self->initialized = 1;
-    self->world_comm = first_comm(self, 0, self->size, 1);
-    self->self_comm = first_comm(self, self->rank, 1, 2);
+    self->world_comm = first_comm(self, 0, self->size, WORLD_CONTEXT);
+    self->self_comm = first_comm(self, self->rank, 1, SELF_CONTEXT);
     /* a rank is one thread: more than serialized calls cannot happen */
     self->thread_level = required < MPI_THREAD_SERIALIZED ? required : MPI_THREAD_SERIALIZED;
     *provided = self->thread_level;
@@ -131,7 +130,7 @@ int mpi_finalize(struct mpi_rank *self)
                  self->pending, self->pending == 1 ? " was" : "s were");
         mpi_fail(self, text);
     }
-    mpi_collective_barrier(self, self->world_comm);
+    mpi_collective_barrier(self, self->world_comm, self->world_comm->sequence++);
     while (self->tasks) mpi_progress(self, 0, NULL, true);
     self->finalized = 1;
     return MPI_SUCCESS;
@@ -188,8 +187,14 @@ int mpi_pcontrol(struct mpi_rank *self, const int level)
     return MPI_SUCCESS;
 }
 
-/* Simulated time: the same clock for all ranks. */
-double mpi_wtime(struct mpi_rank *self) { return (double)comm_now_ps(self->comm) * 1e-12; }
+/* Simulated time: the same clock for all ranks. Looking at it takes 20 ns, so that a program that
+ * waits by looking goes on. */
+enum { LOOK = 20000 /* [ps] */ };
+double mpi_wtime(struct mpi_rank *self)
+{
+    comm_elapse(self->comm, LOOK);
+    return (double)comm_now_ps(self->comm) * 1e-12;
+}
 double mpi_wtick(struct mpi_rank *self)
 {
     (void)self;

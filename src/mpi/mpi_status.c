@@ -2,12 +2,12 @@
  * it was cancelled. */
 #include "mpi/mpi_internal.h"
 
+/* The error field belongs to calls that complete many requests: others leave it alone. */
 void mpi_status_set(MPI_Status *s, int source, int tag, int64_t bytes)
 {
     if (!s) return;
     s->MPI_SOURCE = source;
     s->MPI_TAG = tag;
-    s->MPI_ERROR = MPI_SUCCESS;
     memcpy(s->MPI_internal, &bytes, sizeof bytes);
     s->MPI_internal[2] = 0;
 }
@@ -53,7 +53,7 @@ int mpi_get_elements(struct mpi_rank *self, const MPI_Status *status, MPI_Dataty
     struct mpi_type *t = mpi_type_of(self, datatype);
     if (!t) return self->code;
     int64_t bytes = bytes_of(status);
-    *count = t->size ? elements(INT64_MAX / (t->basics + 1), t, &bytes) : 0;
+    *count = t->size ? elements(INT64_MAX / (t->basics ? t->basics : 1), t, &bytes) : 0;
     if (bytes > 0) *count = MPI_UNDEFINED;
     return MPI_SUCCESS;
 }
@@ -69,7 +69,8 @@ int mpi_status_set_elements(struct mpi_rank *self, MPI_Status *status, MPI_Datat
 {
     struct mpi_type *t = mpi_type_of(self, datatype);
     if (!t) return self->code;
-    int64_t bytes = t->basics ? count * t->size / t->basics : 0;
+    int64_t n = t->basics ? t->basics : 1;
+    int64_t bytes = count / n * t->size + count % n * t->size / n;
     memcpy(status->MPI_internal, &bytes, sizeof bytes);
     return MPI_SUCCESS;
 }

@@ -335,6 +335,7 @@ int mpi_type_dup(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Datatype *newt
     t->committed = of->committed;
     int code = mpi_attributes_copy(self, KIND_TYPE, of, t);
     if (code != MPI_SUCCESS) {
+        *newtype = MPI_DATATYPE_NULL;
         mpi_type_drop(self, t);
         return code;
     }

@@ -103,7 +103,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x208, short, CLASS_INT16, "MPI_SHORT"),
     BASIC(0x209, int, CLASS_INT32, "MPI_INT"),
     BASIC(0x20a, long, CLASS_INT64, "MPI_LONG"),
-    BASIC(0x20b, long long, CLASS_INT64, "MPI_LONG_LONG"),
+    BASIC(0x20b, long long, CLASS_INT64, "MPI_LONG_LONG_INT"),
     BASIC(0x20c, unsigned short, CLASS_UINT16, "MPI_UNSIGNED_SHORT"),
     BASIC(0x20d, unsigned, CLASS_UINT32, "MPI_UNSIGNED"),
     BASIC(0x20e, unsigned long, CLASS_UINT64, "MPI_UNSIGNED_LONG"),

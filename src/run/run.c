@@ -15,7 +15,6 @@
 #include "machine/node_cost.h"
 #include "run/launch.h"
 #include "run/omission.h"
-#include "schedule/schedule_program.h"
 
 /* --- what runs share ---------------------------------------------------------------------------------------------- */
 
@@ -57,8 +56,7 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
 const struct program_type *run_program(const struct run_spec *spec)
 {
     /* By kind, not by name: somebody's program may be called as a built-in one. */
-    if (!spec->kernel.own) return program_find(spec->kernel.name);
-    return spec->program.kind == PROGRAM_SCHEDULE ? &schedule_program : guest_program(spec->program.kind);
+    return spec->kernel.own ? guest_program(spec->program.kind) : program_find(spec->kernel.name);
 }
 
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,

@@ -260,8 +260,8 @@ static void time_is_simulated(void **state)
     (void)state;
     mpi_ok(2, clocks, times);
     assert_true(times[0] > 2.9e-6 && times[0] < 3.1e-6); /* o_s and a byte's share of 1000 */
-    assert_true(times[1] * 1e12 - (double)(trip(1000) + receipt(1000)) < 1 &&
-                times[1] * 1e12 - (double)(trip(1000) + receipt(1000)) > -1);
+    const double expected = (double)(trip(1000) + receipt(1000) + 20000); /* a look at the clock */
+    assert_true(times[1] * 1e12 - expected < 1 && times[1] * 1e12 - expected > -1);
 }
 
 int main(void)
