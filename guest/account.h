@@ -11,10 +11,14 @@
 #ifdef MIMDSIM_FIXED_R15
 register int64_t mimdsim_counted __asm__("r15");
 
+/* What functions counted that were called through their entries, by libraries or pointers (guest/host.c). */
+extern int64_t mimdsim_pending;
+
 static inline void mimdsim_account(void)
 {
-    int64_t ps = mimdsim_counted;
+    int64_t ps = mimdsim_counted + mimdsim_pending;
     mimdsim_counted = 0;
+    mimdsim_pending = 0;
     if (ps) mimdsim_host->runtime->elapse_ps(mimdsim_host, ps);
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "compile/entries.h"
 #include "compile/instruction.h"
 #include "compile/label_set.h"
 
@@ -29,6 +30,7 @@ struct filter {
     const struct block_source *source;
     struct arena *arena;
     struct label_set *referred;
+    struct entries *entries; /* NULL: functions are left as they are */
     struct text *out;
     struct text table; /* entries of blocks of the present section that are not yet written */
     struct err *e;
@@ -252,6 +254,31 @@ static const char *moved_name(const struct filter *f, const struct asm_statement
     return NULL;
 }
 
+/* Where a name begins that becomes mimdsim_body.NAME: the label of a function that has an entry, or
+ * a call of it that need not go through that; NULL: nothing of this kind. */
+static const char *body_name(const struct filter *f, const struct asm_statement *s)
+{
+    if (f->entries == NULL || f->in_asm) return NULL;
+    if (s->kind == ASM_LABEL) return entries_guarded(f->entries, s->word) ? s->word.s : NULL;
+    if (s->kind != ASM_INSTRUCTION ||
+        !(span_starts(s->word, "call") || span_starts(s->word, "jmp")))
+        return NULL;
+    int n = 0;
+    while (n < s->operands.n && s->operands.s[n] != '@') n++;
+    return entries_direct(f->entries, (struct span){s->operands.s, n}) ? s->operands.s : NULL;
+}
+
+/* At its end, .size f, .-f, a function gets its entry. */
+static bool ends_body(struct filter *f, const struct asm_statement *s)
+{
+    const struct span name = asm_operand(s->operands, 0);
+    if (f->entries == NULL || f->in_asm || s->kind != ASM_DIRECTIVE || !span_is(s->word, ".size"))
+        return false;
+    if (!f->now->code || !entries_guarded(f->entries, name)) return false;
+    entries_write(f->entries, name, f->out);
+    return true;
+}
+
 /* The statements of one line. It is copied in pieces, as a counter may come between a label and
  * what follows it. */
 static bool take_line(struct filter *f, const char *line, const char *end)
@@ -268,12 +295,13 @@ static bool take_line(struct filter *f, const char *line, const char *end)
             begin_block(f);
             text_add(f->out, "\t");
         }
-        const char *moved = moved_name(f, &s);
-        if (moved != NULL) {
-            text_add_bytes(f->out, copied, (size_t)(moved - copied));
-            text_add(f->out, "mimdsim_");
-            copied = moved;
+        const char *moved = moved_name(f, &s), *named = moved != NULL ? moved : body_name(f, &s);
+        if (named != NULL) {
+            text_add_bytes(f->out, copied, (size_t)(named - copied));
+            text_add(f->out, moved != NULL ? "mimdsim_" : "mimdsim_body.");
+            copied = named;
         }
+        if (ends_body(f, &s)) return true;
         if ((s.kind == ASM_INSTRUCTION || s.kind == ASM_PREFIX) && f->now->code &&
             !take_instruction(f, &s))
             return false;
@@ -386,6 +414,7 @@ bool block_filter(const struct text *in, const struct block_source *source, stru
     f.now = f.before = section_named(&f, (struct span){".text", 5});
     f.file = (struct span){source->name, (int)strlen(source->name)};
     find_referred(f.referred, in);
+    if (source->guarded) f.entries = entries_find(in, arena);
     bool fine = write_text(&f, in);
     if (fine && span_find(f.compiler, "clang") >= 0)
         fine = err_set_at(e, ERR_DATA, source->name, 0,

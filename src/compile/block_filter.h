@@ -7,7 +7,8 @@
  * from is not counted. No instruction that is added touches a flag, the stack or memory.
  *
  * One thing is changed: memcpy, memmove and memset are called as mimdsim_memcpy and so on, which
- * count their bytes (guest/memory.S). */
+ * count their bytes (guest/memory.S). With `guarded`, functions that libraries may call get an
+ * entry beside their code (entries.h). */
 #ifndef COMPILE_BLOCK_FILTER_H
 #define COMPILE_BLOCK_FILTER_H
 
@@ -26,6 +27,7 @@ struct block_source {
     const char *name;  /* of the source */
     const char *flags; /* that act on code */
     bool written;      /* assembly written by a person: numbers of lines are those of `name` */
+    bool guarded;      /* functions get entries that keep register 15 (entries.h) */
 };
 
 /* block_filter: `in`, assembly of gcc or of a person, to *out (appended).

@@ -29,7 +29,8 @@ struct driver {
 /* Behind the user's options, so that they win. Register 15 counts; what follows it keeps code in
  * assembly of one syntax, as position-independent as a shared image needs, without the interposing
  * of functions that nobody asked for. String instructions that repeat would hide how much they
- * move, so that these are calls. Frames larger than a page touch each page, so that they meet the
+ * move, so that these are calls. Unwind tables tell where
+ * arguments are. Frames larger than a page touch each page, so that they meet the
  * guard page of their stack. */
 static const char *const forced[] = {"-ffixed-r15",
                                      "-fPIC",
@@ -37,7 +38,8 @@ static const char *const forced[] = {"-ffixed-r15",
                                      "-fno-lto",
                                      "-masm=att",
                                      "-mstringop-strategy=libcall",
-                                     "-fstack-clash-protection"};
+                                     "-fstack-clash-protection",
+                                     "-fasynchronous-unwind-tables"};
 enum { FORCED = sizeof forced / sizeof forced[0] };
 
 static struct words new_words(struct driver *d)
@@ -112,7 +114,10 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
 static int filter(struct driver *d, const struct command_source *s, const struct text *in,
                   struct text *out)
 {
-    const struct block_source source = {s->path, d->command.flags, s->assembly};
+    /* libgfortran calls no procedure of the program, and many of these have arguments on the stack.
+     */
+    const bool guarded = !s->assembly && d->language != DRIVER_FORTRAN;
+    const struct block_source source = {s->path, d->command.flags, s->assembly, guarded};
     if (block_filter(in, &source, out, d->e)) return 0;
     /* clang would not come so far, as it has no -ffixed-r15; other compilers may. */
     return FAILED;

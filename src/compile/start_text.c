@@ -36,6 +36,6 @@ void start_text(struct text *out, const char *program, bool kernel)
                       "\tjmp main\n"
                       "\t.size mimdsim_main, .-mimdsim_main\n");
     static const char by[] = "mimdsim";
-    block_note(&(struct block_source){"start", "", true}, by, sizeof by - 1, out);
+    block_note(&(struct block_source){"start", "", true, false}, by, sizeof by - 1, out);
     text_add(out, "\t.section .note.GNU-stack,\"\",@progbits\n");
 }

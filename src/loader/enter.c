@@ -79,6 +79,11 @@ struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
     const int64_t value = loader_enter(function, argument, &frame);
     i->frame = frame.outer;
     if (outermost) i->outermost = NULL;
+    /* Functions that are called through their entries (`mimdsim cc`) leave their count in memory. */
+    if (i->pending) {
+        frame.count += *i->pending;
+        *i->pending = 0;
+    }
     if (frame.count && i->t->hooks->elapse_ps) i->t->hooks->elapse_ps(i->context, frame.count);
     return (struct loader_outcome){
         .exited = i->exited, .status = i->exited ? i->status : 0, .value = value};

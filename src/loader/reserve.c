@@ -146,6 +146,7 @@ struct loader_instance *loader_instantiate(struct loader_template *t, int rank, 
                                     .directory = t->directory};
     struct mimdsim_host **pointer = loader_symbol(i, "mimdsim_host");
     *pointer = &i->host;
+    i->pending = loader_symbol(i, "mimdsim_pending");
     i->data = (const char *)pointer;
     return i;
 }

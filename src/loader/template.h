@@ -63,6 +63,7 @@ struct loader_template {
 /* One rank. Cache lines of its own; the first is all that most calls touch. */
 struct loader_instance {
     _Alignas(64) struct mimdsim_host host;
+    int64_t *pending; /* the image's mimdsim_pending, NULL: it has none */
     struct loader_template *t;
     char *base; /* its piece of memory, NULL: not instantiated */
     void *context;

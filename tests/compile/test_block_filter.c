@@ -10,7 +10,7 @@
 
 #include "compile/block_filter.h"
 
-static const struct block_source source = {"sum.c", "-O2", false};
+static const struct block_source source = {"sum.c", "-O2", false, false};
 
 /* The filtered text, without the note at its end. */
 static void filtered(const char *in, struct text *out)
@@ -184,6 +184,47 @@ static void a_long_block_is_counted_in_pieces(void **state)
     text_free(&out);
 }
 
+/* A function in gcc's way, with n bytes of code that decide about its entry. */
+#define FUNCTION(binding, name, code) \
+    binding "\t.type\t" name ", @function\n" name ":\n.LFB0:\n\t.cfi_startproc\n" code \
+    "\tret\n\t.cfi_endproc\n\t.size\t" name ", .-" name "\n"
+
+static void functions_that_others_may_call_get_an_entry(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        bool guarded;
+    } cases[] = {
+        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbx\n\t.cfi_def_cfa_offset 16\n\tmovl 8(%rsp), %eax\n"), true},
+        {FUNCTION("\t.weak\tf\n", "f", ""), true},
+        {FUNCTION("", "f", ""), false},                                    /* static */
+        {FUNCTION("", "f", "") "\tleaq\tf(%rip), %rax\n", true},          /* and given away */
+        {FUNCTION("", "f", "") "\t.data\n\t.quad\tf\n", true},
+        {FUNCTION("", "f", "") "\tcall\tf\n", false},
+        {FUNCTION("\t.globl\tf\n", "f", "\tmovl 8(%rsp), %eax\n"), false}, /* arguments on the stack */
+        {FUNCTION("\t.globl\tf\n", "f", "\tleaq 8(%rsp), %r10\n"), false},
+        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
+                  "\t.cfi_def_cfa_register 6\n\tmovl\t-8(%rbp), %eax\n\tmovl\t40(%rsp), %eax\n"), true},
+        {FUNCTION("\t.globl\tf\n", "f", "\tpushq\t%rbp\n\t.cfi_def_cfa_offset 16\n\tmovq\t%rsp, %rbp\n"
+                  "\t.cfi_def_cfa_register 6\n\tmovl\t16(%rbp), %eax\n"), false},
+        {"\t.globl\tf\n\t.type\tf, @function\nf:\n\tret\n\t.size\tf, .-f\n", false}, /* no unwind table */
+    };
+    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct block_source guarded = {"sum.c", "", false, true};
+        struct text in = {0}, out = {0};
+        struct err e;
+        err_clear(&e);
+        text_add(&in, "%s", cases[i].text);
+        assert_true(block_filter(&in, &guarded, &out, &e));
+        const bool entry = strstr(out.s, "\nf:\n\t.cfi_startproc\n\tpushq %r15\n") != NULL;
+        const bool body = strstr(out.s, "mimdsim_body.f:\n.LFB0:\n") != NULL;
+        if (entry != cases[i].guarded || body != entry) fail_msg("case %u: %s", i, out.s);
+        text_free(&in);
+        text_free(&out);
+    }
+}
+
 static void filtering_twice_changes_nothing(void **state)
 {
     (void)state;
@@ -204,7 +245,7 @@ static void filtering_twice_changes_nothing(void **state)
 static void refuses(const char *in, bool written, const char *file, int line, const char *reason)
 {
     struct text text = {0}, out = {0};
-    const struct block_source from = {"sum.c", "", written};
+    const struct block_source from = {"sum.c", "", written, false};
     struct err e;
     err_clear(&e);
     text_add(&text, "%s", in);
@@ -238,6 +279,7 @@ int main(void)
         cmocka_unit_test(nothing_is_inserted_into_asm_statements),
         cmocka_unit_test(bytes_that_functions_move_are_counted_by_others),
         cmocka_unit_test(a_long_block_is_counted_in_pieces),
+        cmocka_unit_test(functions_that_others_may_call_get_an_entry),
         cmocka_unit_test(filtering_twice_changes_nothing),
         cmocka_unit_test(what_uses_the_counter_is_refused),
     };
