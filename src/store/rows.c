@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "measure/run_row.h"
+#include "measure/study_row.h"
 #include "store/schema.h"
 
 enum { MOST_SEGMENTS = 5 };
@@ -40,6 +41,18 @@ static const struct row_table row_table[] = {
 };
 enum { TABLES = sizeof row_table / sizeof *row_table };
 
+/* Tables that studies fill, by store_insert_row: their keys stand in schema.sql. */
+static const struct {
+    const char *name;
+    const struct column_table *columns;
+} study_table[] = {
+    {"ladder", &accuracy_rung_columns},
+    {"ladder_choice", &accuracy_choice_columns},
+    {"stability", &stability_columns},
+    {"omission", &saving_columns},
+};
+enum { STUDY_TABLES = sizeof study_table / sizeof *study_table };
+
 /* A statement without a table would be a mistake of ours. */
 static const struct row_table *table_of(enum statement which)
 {
@@ -71,6 +84,11 @@ static void add_columns(const char *name, size_t length, struct text *sql)
         const struct row_table *t = &row_table[i];
         if (strlen(t->name) != length || strncmp(t->name, name, length) != 0) continue;
         for (int k = 0; t->segment[k] != NULL; k++) columns_define(t->segment[k], sql);
+        return;
+    }
+    for (int i = 0; i < STUDY_TABLES; i++) {
+        if (strlen(study_table[i].name) != length || strncmp(study_table[i].name, name, length) != 0) continue;
+        columns_define(study_table[i].columns, sql);
         return;
     }
     /* our own mistake in schema.sql, which a message without the table's name would not find */

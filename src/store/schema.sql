@@ -171,51 +171,22 @@ CREATE TABLE sample_setting (
 -- Error against run time: one row per rung of a ladder (network, arithmetic, integration), failed ones too.
 CREATE TABLE ladder (
     scenario       TEXT NOT NULL,      -- that was climbed
-    ladder         TEXT NOT NULL,      -- network, arithmetic or integration
-    at             TEXT NOT NULL,      -- point of the scenario: "n=P=128"
-    family         TEXT NOT NULL,      -- SHA-256 of the settings without sizes, level and seeds: what it holds for
-    method         TEXT NOT NULL,      -- a curve
-    rung           TEXT NOT NULL,      -- a point on it: level, step size, tolerance
     ordinal        INTEGER NOT NULL,   -- order of the rungs
-    quantity       TEXT NOT NULL,      -- what was compared
-    reference      TEXT NOT NULL,      -- with what
-    relative_error REAL,               -- NULL: failed, or not finite
-    host_s         REAL,               -- time on this computer
-    machine_ps     INTEGER,            -- predicted time on the machine
-    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),  -- whether the error is small, tolerable, or there is none
-    text           TEXT NOT NULL DEFAULT '',  -- why it failed; processors used
+@ladder@
     PRIMARY KEY (scenario, ladder, family, at, method, rung, quantity)
 ) STRICT, WITHOUT ROWID;
 -- The cheapest rung of each ladder within a tolerance.
 CREATE TABLE ladder_choice (
     scenario       TEXT NOT NULL,      -- that was climbed
-    ladder         TEXT NOT NULL,      -- network, arithmetic or integration
-    at             TEXT NOT NULL,      -- point of the scenario
-    quantity       TEXT NOT NULL,      -- what was compared
-    tolerance      REAL NOT NULL,      -- largest error asked for
-    method         TEXT,               -- NULL: no rung is within the tolerance
-    rung           TEXT,               -- the cheapest within the tolerance
-    relative_error REAL,               -- of that rung
-    cost_ratio     REAL,               -- of the finest rung's cost to this one's
+@ladder_choice@
     PRIMARY KEY (scenario, ladder, at, quantity, tolerance)
 ) STRICT, WITHOUT ROWID;
 
 -- Stiff and extreme cases against algorithms.
 CREATE TABLE stability (
     suite          TEXT NOT NULL,      -- 'suite', or the scenario
-    subject        TEXT NOT NULL,      -- the case
-    algorithm      TEXT NOT NULL,      -- that was asked
-    precision      TEXT NOT NULL,      -- of its numbers
     ordinal        INTEGER NOT NULL,   -- order of the rows
-    status         TEXT NOT NULL CHECK (status IN ('ok', 'degraded', 'failed')),  -- in double precision ok to 1e-8, degraded to 1e-2; in single 1e-3 and 1e-1
-    relative_error REAL,               -- NULL: no number
-    residual       REAL,               -- of the equation of motion over the largest joint force; with loops of the constraints
-    condition      REAL,               -- of the case: change of the answer over that of the inputs
-    growth         REAL,               -- of the reduction: largest diagonal element over its last pivot
-    refinements    INTEGER,            -- corrections that were applied
-    energy_drift   REAL,               -- of motions, relative; of accelerations: power of the error
-    step_s         REAL,               -- largest stable step, of integrators
-    reason         TEXT NOT NULL,      -- why it is not ok, and what helps
+@stability@
     PRIMARY KEY (suite, subject, algorithm, precision)
 ) STRICT, WITHOUT ROWID;
 
@@ -229,17 +200,8 @@ CREATE TABLE run_omission (
 -- The omissions of a scenario, and what they save.
 CREATE TABLE omission (
     scenario         TEXT NOT NULL,    -- that was measured
-    what             TEXT NOT NULL,    -- was not computed
     ordinal          INTEGER NOT NULL,  -- order of the omissions
-    why              TEXT NOT NULL,    -- why no result needs it
-    class            TEXT NOT NULL CHECK (class IN ('exact', 'bounded')),  -- exact: the results are the same numbers; bounded: to within `bound`
-    bound            REAL,             -- relative, of bounded ones
-    at               TEXT NOT NULL,    -- point of the scenario that was measured: "n=P=128"
-    host_s           REAL,             -- of the run without it; NULL here and below: nothing brings it back
-    host_saved_s     REAL,             -- what leaving it out saves
-    host_noise_s     REAL,             -- savings below it cannot be told from nothing
-    machine_ps       INTEGER,          -- predicted time of the run without it
-    machine_saved_ps INTEGER,          -- what leaving it out saves of that
+@omission@
     PRIMARY KEY (scenario, what)
 ) STRICT, WITHOUT ROWID;
 

@@ -15,30 +15,8 @@
 
 #include "base/arena.h"
 #include "base/err.h"
-#include "measure/column.h"
+#include "measure/study_row.h"
 #include "spec/run_spec.h"
-
-enum rung_status { RUNG_OK, RUNG_DEGRADED, RUNG_FAILED };
-
-struct accuracy_rung {
-    char ladder[16], at[48];  /* "network", "n=P=128" */
-    char family[65];          /* runs alike but for their size: level_choice.h */
-    char method[48], rung[32];/* a curve, and a point on it */
-    char quantity[24], reference[40];
-    double error;             /* relative; NaN: failed */
-    double host_s;            /* NaN: not measured */
-    int64_t machine_ps;       /* predicted; -1: the machine file has no cost for it */
-    enum rung_status status;
-    char text[160];           /* why it failed; processors used */
-};
-
-/* The cheapest rung that is good enough. */
-struct accuracy_choice {
-    const char *ladder, *at, *quantity;
-    double tolerance;
-    const struct accuracy_rung *rung, *finest; /* rung NULL: none is within the tolerance */
-    double cost_ratio;                         /* cost of the finest over that of the rung */
-};
 
 enum { ACCURACY_MOST_CHOICES = 8 };
 
@@ -76,8 +54,5 @@ struct accuracy_choice accuracy_choose(const struct accuracy_report *r, const ch
 /* accuracy_print: all rungs as tables, then one line a ladder. accuracy_print_json: the same as one document. */
 void accuracy_print(FILE *out, const struct accuracy_report *r);
 void accuracy_print_json(FILE *out, const struct accuracy_report *r);
-
-/* The columns of the structs, as the database has them, and as they are printed. */
-extern const struct column_table accuracy_rung_columns, accuracy_choice_columns;
 
 #endif

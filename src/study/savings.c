@@ -208,44 +208,6 @@ void savings_print(FILE *out, const struct savings *all)
     }
 }
 
-#define SAVING(member) .offset = offsetof(struct saving, member)
-
-/* An omission that cannot be undone has no times. */
-static bool is_measured(const void *row) { return ((const struct saving *)row)->measured; }
-
-/* exact: no result changes; bounded: by at most `bound`, relative. */
-static void read_class(const struct column *c, const void *row, struct column_value *v)
-{
-    (void)c;
-    v->kind = VALUE_TEXT;
-    v->text = omission_class(&((const struct saving *)row)->omission);
-}
-
-/* Columns of one omission. Those of the class are not in the JSON of this list, where the list
- * of omissions has them. */
-static const struct column saving_column[] = {
-    {"at", COLUMN_CHARS, SAVING(at), .doc = "point of the scenario that was measured: \"n=P=128\""},
-    {"host_s", COLUMN_REAL, SAVING(host_s), .flags = COLUMN_NULL,
-     .doc = "of the run without it; NULL here and below: nothing brings it back"},
-    {"host_saved_s", COLUMN_REAL, SAVING(host_saved_s), .flags = COLUMN_NULL,
-     .doc = "what leaving it out saves"},
-    {"host_noise_s", COLUMN_REAL, SAVING(noise_s), .flags = COLUMN_NULL,
-     .doc = "savings below it cannot be told from nothing"},
-    {"machine_ps", COLUMN_INT64, SAVING(machine_ps), .known = is_measured, .flags = COLUMN_NULL,
-     .key = "machine_s", .json_scale = 1e-12, .doc = "predicted time of the run without it"},
-    {"machine_saved_ps", COLUMN_INT64, SAVING(machine_saved_ps), .known = is_measured,
-     .flags = COLUMN_NULL, .key = "machine_saved_s", .json_scale = 1e-12,
-     .doc = "what leaving it out saves of that"},
-    {"what", COLUMN_CHARS, SAVING(omission.what), .doc = "was left out"},
-    {"why", COLUMN_CHARS, SAVING(omission.why), .flags = COLUMN_NO_JSON,
-     .doc = "why no result needs it"},
-    {"class", COLUMN_STRING, .value = read_class, .flags = COLUMN_NO_JSON,
-     .doc = "exact or bounded"},
-    {"bound", COLUMN_REAL, SAVING(omission.bound), .absent = ABSENT_ZERO,
-     .flags = COLUMN_NULL | COLUMN_NO_JSON,
-     .doc = "largest relative change of a result, of bounded ones"},
-};
-static const struct column_table saving_columns = COLUMNS(saving_column);
 
 void savings_json(struct json *j, const struct savings *all)
 {

@@ -5,19 +5,10 @@
 #include <stdio.h>
 
 #include "base/json.h"
+#include "measure/study_row.h"
 #include "plan/plan.h"
 #include "run/run.h"
 #include "store/store.h"
-
-struct saving {
-    struct omission omission;
-    char at[48];              /* the point where it was measured: "n=P=128" */
-    bool measured;            /* false: nothing brings it back */
-    double host_s;            /* of the run without it, references included [s] */
-    double host_saved_s;      /* below noise_s in size: cannot be told from nothing */
-    double noise_s;           /* how far two such times differ by chance */
-    int64_t machine_ps, machine_saved_ps; /* predicted */
-};
 
 enum { MOST_SAVINGS = 2 * RUN_MAX_OMISSIONS };
 

@@ -103,46 +103,6 @@ bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, 
 
 /* --- printing --------------------------------------------------------------------------------- */
 
-static const char *const status_word[] = {"ok", "degraded", "failed"};
-static const char *const cause_word[] = {"", "rounding", "algorithm-fails"};
-
-#define ROW(member) .offset = offsetof(struct stability_row, member)
-/* A number that may be missing, nine places wide under `heading`. */
-#define NUMBER(name, heading, member, ...)                                                                             \
-    {name, COLUMN_REAL, ROW(member), .flags = COLUMN_NULL, .title = heading, .width = 9, .style = 'e', .digits = 1,    \
-     __VA_ARGS__}
-
-/* One row, as the database, JSON and the terminal have it. `cause` is not in the database:
- * `reason` says the same in words. */
-static const struct column stability_column[] = {
-    {"subject", COLUMN_CHARS, ROW(subject), .key = "case", .title = "case", .width = -27,
-     .doc = "the case"},
-    {"algorithm", COLUMN_CHARS, ROW(algorithm), .title = "algorithm", .before = " ", .width = -22,
-     .doc = "which was asked"},
-    {"precision", COLUMN_CHARS, ROW(precision), .title = "prec", .before = " ", .width = -7,
-     .doc = "of its numbers"},
-    {"status", COLUMN_WORD, ROW(status), WORDS(status_word), .title = "status", .before = " ",
-     .width = -9,
-     .doc = "in double precision ok to 1e-8, degraded to 1e-2; in single 1e-3 and 1e-1"},
-    NUMBER("relative_error", "error", error, .key = "error", .doc = "NULL: no number"),
-    NUMBER("residual", "residual", residual,
-           .doc = "of the equation of motion over the largest joint force; with loops of the "
-                  "constraints"),
-    NUMBER("condition", "cond", condition,
-           .doc = "of the case: change of the answer over that of the inputs"),
-    NUMBER("growth", "growth", growth,
-           .doc = "of the reduction: largest diagonal element over its last pivot"),
-    {"refinements", COLUMN_INT, ROW(refinements), .flags = COLUMN_NULL, .absent = ABSENT_NEGATIVE,
-     .title = "ref", .width = 4, .doc = "corrections that were applied, inner and outer"},
-    NUMBER("energy_drift", "energy", energy_drift,
-           .doc = "of motions, relative; of accelerations: power of the error"),
-    NUMBER("step_s", "step", step_s, .doc = "largest stable or mean step, of integrators"),
-    {"cause", COLUMN_WORD, ROW(cause), WORDS(cause_word), .flags = COLUMN_NO_SQL,
-     .doc = "why it is not ok"},
-    {"reason", COLUMN_CHARS, ROW(reason), .title = "", .before = "  ",
-     .doc = "the same in words, and what helps"},
-};
-const struct column_table stability_columns = COLUMNS(stability_column);
 
 /* A line per row, then the counts. A failure of the algorithm is a finding, not an error of the
  * program. */

@@ -240,7 +240,8 @@ scenario() {
 @test "a figure of the ladders draws no exact answer at a decade, and one scenario alone when asked" {
     scenario
     works mimdsim accuracy small.yaml --quiet
-    sqlite3 mimdsim.db "INSERT INTO ladder SELECT 'other', ladder, at, family, method, rung, ordinal, quantity, reference,
+    sqlite3 mimdsim.db "INSERT INTO ladder (scenario, ladder, at, family, method, rung, ordinal, quantity, reference,
+                            relative_error, host_s, machine_ps, status, text) SELECT 'other', ladder, at, family, method, rung, ordinal, quantity, reference,
                             relative_error, host_s, machine_ps, status, text FROM ladder"
     works mimdsim plot mimdsim.db accuracy --dir both
     stdout_says both/accuracy-other.png
