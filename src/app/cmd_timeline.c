@@ -130,7 +130,12 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
     /* What was cut is said: a trace that ends early would be misread. */
-    if (ok && left_out > 0)
+    if (ok && format == TRACE_GOAL && left_out > 0)
+        fprintf(stderr,
+                "mimdsim: %s: %lld waits in barriers of the machine are written as computing times: "
+                "the language GOAL has no barriers\n",
+                path, (long long)left_out);
+    else if (ok && left_out > 0)
         fprintf(stderr, "mimdsim: %s: the last %lld of %lld spans are omitted, because viewers "
                         "fail on more than %d\n",
                 path, (long long)left_out, (long long)t->result.nspan, TRACE_MAX_SPANS);
@@ -162,7 +167,7 @@ static bool show(struct shown *t)
 {
     /* text goes to standard output and has no ending */
     static const char *const ending[] = {
-        [TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv"};
+        [TRACE_CHROME] = "json", [TRACE_PAJE] = "paje", [TRACE_CSV] = "csv", [TRACE_GOAL] = "goal"};
     const char *word = t->common->format;
     enum trace_format format;
     if (!word && t->common->json) return write_trace(t, TRACE_CHROME, NULL);
@@ -172,7 +177,7 @@ static bool show(struct shown *t)
     if (strcmp(word, "picture") == 0) return draw_picture(t);
     if (!trace_format_find(word, &format))
         return err_set(t->e, ERR_USAGE,
-                       "--format: '%s' is none of picture, text, chrome, paje, csv", word);
+                       "--format: '%s' is none of picture, text, chrome, paje, csv, goal", word);
     return write_trace(t, format, format == TRACE_TEXT ? NULL : ending[format]);
 }
 

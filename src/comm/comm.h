@@ -18,7 +18,8 @@ static inline int comm_rank(const struct comm *c) { return c->rank; }
 static inline int comm_size(const struct comm *c) { return c->size; }
 
 /* comm_isend: start sending `bytes` bytes of `data` to `dst` with `tag` (>= 0). The data are copied before return;
- * r completes when the sender's software is done with the message. r may be NULL for an eager, forgotten send. */
+ * r completes when the sender's software is done with the message. r may be NULL for an eager, forgotten send. data
+ * NULL: the message has a size and no content; it takes its time and leaves the receiver's buffer as it was. */
 #define comm_isend(c, dst, tag, data, bytes, r)                                                                        \
     (COMM_HERE(c), (c)->type->isend((c), (dst), (tag), (data), (bytes), (r)))
 

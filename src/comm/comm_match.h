@@ -64,6 +64,14 @@ static inline int comm_test_here(struct comm *c, struct comm_request *r)
 #define comm_receive_into(c, r, buffer, capacity)                                                  \
     (COMM_HERE(c), (c)->type->receive_into((c), (r), (buffer), (capacity)))
 
+/* comm_watch: r joins the requests that comm_next_complete looks after; it stays in place, and
+ * nobody else waits for it. For programs with many requests under way, since neither call goes
+ * through all. comm_next_complete: the watched request that is complete first, if it is so by
+ * `time_ps`: finished as by comm_wait, and not watched any more. NULL: none, and the clock is at
+ * least at `time_ps`; with INT64_MAX: nothing is watched. It costs no poll. */
+#define comm_watch(c, r) (COMM_HERE(c), (c)->type->watch((c), (r)))
+#define comm_next_complete(c, time_ps) (COMM_HERE(c), (c)->type->next_complete((c), (time_ps)))
+
 /* comm_cancel: take back a receive; 1 when no message had arrived for it by now, and r is inactive
  * then; 0 when one had: r is as before, to be waited for. Sends are never taken back. */
 #define comm_cancel(c, r) (COMM_HERE(c), (c)->type->cancel((c), (r)))

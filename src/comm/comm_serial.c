@@ -75,6 +75,12 @@ static int no_cancel(struct comm *c, struct comm_request *r)
     return 0;
 }
 
+static struct comm_request *nothing_complete(struct comm *c, int64_t time_ps)
+{
+    (void)c, (void)time_ps;
+    return NULL;
+}
+
 static void no_time(struct comm *c, int64_t ps)
 {
     (void)c;
@@ -111,6 +117,8 @@ static const struct comm_type serial_type = {
     .probe = no_probe,
     .receive_into = no_receive_into,
     .cancel = no_cancel,
+    .watch = no_wait,
+    .next_complete = nothing_complete,
 };
 
 struct comm_serial comm_serial_make(void)

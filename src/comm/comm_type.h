@@ -23,7 +23,8 @@ struct comm_request {
     int truncated;          /* receive: the message was longer than its room; the rest is lost */
     int64_t mask, capacity; /* receive: bits of the tag that count; room in buffer [B] */
     int64_t posted_ps;      /* receive: when it was posted */
-    int kind, open;         /* of the implementation */
+    uint16_t kind, open;    /* of the implementation */
+    uint32_t watch;         /* number under which it is watched, 0: it is not */
     uint32_t path;          /* of the implementation: what made a send complete, for critical paths */
 };
 
@@ -60,6 +61,8 @@ struct comm_type {
                  struct comm_envelope *out, struct comm_request *take);
     void (*receive_into)(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
     int (*cancel)(struct comm *c, struct comm_request *r);
+    void (*watch)(struct comm *c, struct comm_request *r);
+    struct comm_request *(*next_complete)(struct comm *c, int64_t time_ps);
 };
 
 /* Every implementation's struct begins with this. */

@@ -188,6 +188,20 @@ bool program_file_collect(struct scenario *s, struct node *root, const struct pl
     return replaced || add_tree(&x, root);
 }
 
+/* One that is made for a number of ranks runs on these, where nobody says otherwise. */
+void program_file_ranks(const struct scenario *s, struct node *root, struct arena *a)
+{
+    const int nrank = s->nprogram > 0 ? s->program[0].sheet->nrank : 0;
+    struct node *ranks = document_find(root, "ranks");
+    char text[16];
+    if (nrank == 0 || ranks == NULL) return;
+    snprintf(text, sizeof text, "%d", nrank);
+    ranks->kind = NODE_TEXT;
+    ranks->text = arena_text(a, text);
+    ranks->child = NULL;
+    ranks->count = 0;
+}
+
 void program_file_entitle(struct scenario *s, struct arena *a)
 {
     char *stem = arena_text(a, s->stem);

@@ -19,8 +19,10 @@ bool program_file_is(const char *name);
  * 1 to 16 ranks. NULL with ERR_DATA. */
 struct node *program_file_scenario(const char *name, struct arena *a, struct err *e);
 
-/* program_file_entitle: name and question of such a scenario, from its program. */
+/* program_file_entitle: name and question of such a scenario, from its program.
+ * program_file_ranks: its ranks, where the program is made for a number of them. */
 void program_file_entitle(struct scenario *s, struct arena *a);
+void program_file_ranks(const struct scenario *s, struct node *root, struct arena *a);
 
 /* program_file_collect: fill s->program with all programs that `root` and --set name; s->path and
  * dir are known. False with ERR_NO_INPUT, ERR_DATA (not a program, errors in its source, outside

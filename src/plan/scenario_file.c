@@ -404,7 +404,7 @@ bool scenario_file_tree(struct scenario *s, struct node *root, const char *path,
     /* What programs declare are keys, too. */
     if (!program_file_collect(s, root, o, a, e)) return false;
     program_file_rename(s, root, a);
-    if (s->typed) program_file_entitle(s, a);
+    if (s->typed) program_file_entitle(s, a), program_file_ranks(s, root, a);
     for (const struct node *n = root->child; n != NULL; n = n->next)
         if (!read_top(&t, n)) return false;
     return check_axes(s, e) && read_options(s, o, a, e);

@@ -33,4 +33,7 @@ void trace_paje(const struct timeline *t, FILE *out);
 void trace_csv(const struct timeline *t, FILE *out);
 void trace_text(const struct timeline *t, FILE *out);
 
+/* trace_goal: returns how many barriers of the machine it wrote as computing times. */
+int64_t trace_goal(const struct timeline *t, FILE *out);
+
 #endif

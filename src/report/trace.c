@@ -15,8 +15,8 @@
 /* In the order of enum trace_format. */
 bool trace_format_find(const char *name, enum trace_format *format)
 {
-    static const char *const names[] = {"chrome", "paje", "csv", "text"};
-    for (int i = 0; i < 4; i++)
+    static const char *const names[] = {"chrome", "paje", "csv", "text", "goal"};
+    for (int i = 0; i < 5; i++)
         if (strcmp(name, names[i]) == 0) {
             *format = (enum trace_format)i;
             return true;
@@ -100,13 +100,17 @@ bool trace_write(const struct run_result *r, enum trace_format format,
     if (r->span == NULL || r->nspan == 0)
         return err_set(e, ERR_NO_INPUT,
                        "this run has no timeline; record it with `record: {spans: true}`");
-    *left_out = pick(&t, o->max_spans > 0 ? o->max_spans : TRACE_MAX_SPANS);
+    /* Viewers fail on long traces; a schedule without its end would be another one. */
+    const bool whole = format == TRACE_GOAL;
+    if (whole) t.begin_ps = 0, t.first_rank = 0, t.last_rank = r->nrank - 1, t.end_ps = INT64_MAX;
+    *left_out = pick(&t, whole ? r->nspan : o->max_spans > 0 ? o->max_spans : TRACE_MAX_SPANS);
     bool ok = t.nspan > 0 || err_set(e, ERR_CONFIG,
                                      "nothing was recorded on ranks %d to %d "
                                      "between %.6f and %.6f us",
                                      t.first_rank, t.last_rank, (double)t.begin_ps * 1e-6,
                                      (double)t.end_ps * 1e-6);
-    if (ok) write[format](&t, out);
+    if (ok && format == TRACE_GOAL) *left_out = trace_goal(&t, out);
+    else if (ok) write[format](&t, out);
     free(t.span);
     /* A full disk shows up when the buffer is flushed. */
     if (ok && (fflush(out) != 0 || ferror(out))) ok = err_set(e, ERR_IO,

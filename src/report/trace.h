@@ -19,7 +19,8 @@ enum trace_format {
     TRACE_CHROME, /* Chrome trace events (JSON): Perfetto, chrome://tracing */
     TRACE_PAJE,   /* Paje: ViTE, pj_dump */
     TRACE_CSV,    /* one row per span, RFC 4180 */
-    TRACE_TEXT    /* bars of letters for a terminal */
+    TRACE_TEXT,   /* bars of letters for a terminal */
+    TRACE_GOAL    /* a schedule that repeats the run: all of it, whatever the options; left_out: barriers */
 };
 
 enum { TRACE_MAX_SPANS = 200000, TRACE_COLUMNS = 100, TRACE_TEXT_RANKS = 64 };
@@ -38,7 +39,8 @@ bool trace_format_find(const char *name, enum trace_format *format);
 /* trace_write: the spans of `r` to `out`.
  *
  *   left_out  out  spans inside window and ranks that the limit left out, the latest ones; for people, the caller says
- *                  so and names the option that raises the limit. TRACE_TEXT shows at most TRACE_TEXT_RANKS ranks.
+ *                  so and names the option that raises the limit. Of TRACE_GOAL: barriers of the machine, which are
+ *                  written as computing times. TRACE_TEXT shows at most TRACE_TEXT_RANKS ranks.
  *
  *   Returns false with ERR_NO_INPUT when the run has no recorded spans, ERR_CONFIG when none lies in the window,
  *   ERR_IO when writing fails. */

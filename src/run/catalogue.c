@@ -1,9 +1,12 @@
 /* catalogue.c - names and titles of the kernels. */
 #include "run/catalogue.h"
 
+#include <string.h>
+
 #include "base/check.h"
 #include "guest/guest_program.h"
 #include "kernel/programs.h"
+#include "schedule/schedule_program.h"
 #include "sim/fiber.h"
 
 /* Names by way of this room, since app does not see kernels. */
@@ -22,6 +25,8 @@ struct catalogue catalogue_of_kernels(void)
 const struct program_sheet *run_sheet(const char *image, const char *path, const char *hash,
                                       struct arena *a, struct err *e)
 {
+    const char *dot = strrchr(path, '.');
+    if (dot != NULL && strcmp(dot, ".goal") == 0) return schedule_sheet(image, a, e);
     return guest_sheet(image, path, hash, a, e);
 }
 

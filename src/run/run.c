@@ -15,6 +15,7 @@
 #include "machine/node_cost.h"
 #include "run/launch.h"
 #include "run/omission.h"
+#include "schedule/schedule_program.h"
 
 /* --- what runs share ---------------------------------------------------------------------------------------------- */
 
@@ -56,7 +57,8 @@ static struct program_cache *cache_of(struct run_cache *c, const struct program_
 const struct program_type *run_program(const struct run_spec *spec)
 {
     /* By kind, not by name: somebody's program may be called as a built-in one. */
-    return spec->kernel.own ? guest_program(spec->program.kind) : program_find(spec->kernel.name);
+    if (!spec->kernel.own) return program_find(spec->kernel.name);
+    return spec->program.kind == PROGRAM_SCHEDULE ? &schedule_program : guest_program(spec->program.kind);
 }
 
 bool run_open(const struct run_spec *spec, const struct run_order *order, struct run_cache *cache, struct arena *a,

@@ -42,8 +42,8 @@ static const struct field fields[] = {
      AT(file),
      .capacity = 256,
      .fallback = "",
-     .doc = "a program of your own instead of a built-in one: source (.c, .cc, .f90), or what "
-            "`mimdsim cc` made of it"},
+     .doc = "a program of your own instead of a built-in one: source (.c, .cc, .f90), what "
+            "`mimdsim cc` made of it, or a schedule (.goal)"},
     /* Divided into words as a shell does, without its variables. */
     {.key = "arguments",
      .kind = FIELD_TEXT,

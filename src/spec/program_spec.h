@@ -60,6 +60,7 @@ struct program_sheet {
     const char *image; /* the file to be loaded */
     char hash[65];     /* as in program_spec */
     int nparameter;
+    int nrank;         /* ranks that it is made for, 0: any number */
     const struct field *parameter; /* (nparameter) of kinds INT64, REAL, BOOL, CHOICE; offset 0 */
 };
 

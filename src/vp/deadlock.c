@@ -40,9 +40,12 @@ static int describe(const struct vp *v, char *s, int size)
         return snprintf(s, size, "rank %d in %s waits in a barrier (%s:%d) that %d of %d ranks have entered",
                         v->comm.rank, stage, vp_base_name(v->comm.file), v->comm.line, v->world->barrier_count,
                         v->world->nrank);
-    case WAITING_ANY:
-        return snprintf(s, size, "rank %d in %s waits for any of several requests (%s:%d)", v->comm.rank, stage,
-                        vp_base_name(v->comm.file), v->comm.line);
+    case WAITING_ANY: /* for a receive that nothing has come for, if there is one */
+        r = v->posted;
+        if (r) describe_receive(r, receive, sizeof receive);
+        return snprintf(s, size, "rank %d in %s %s%s (%s:%d)", v->comm.rank, stage,
+                        r ? "waits for any of several requests, first it " : "waits for any of several requests",
+                        r ? receive : "", vp_base_name(r ? r->file : v->comm.file), r ? r->line : v->comm.line);
     default:
         return snprintf(s, size, "rank %d in %s waits for the kernel server", v->comm.rank, stage);
     }

@@ -31,6 +31,12 @@ struct unmatched {
     struct matching *owner;
 };
 
+/* A watched request, and when it is complete. */
+struct watched {
+    sim_ps time;
+    struct comm_request *request;
+};
+
 /* What matching knows at one rank. */
 struct matching {
     struct source **table; /* (capacity, a power of two) by hashed rank; NULL: free */
@@ -43,7 +49,12 @@ struct matching {
     sim_ps until, least;         /* when it will; the earliest that a poll may end */
     sim_ps synced;               /* the last clock for which all arrivals were known */
     sim_ps poll_began, poll_end; /* a series of polls without success: start, end of the last one */
-    sim_ps poll_step;            /* how long the last one took */
+    struct watched
+        *heap; /* (heap_capacity) the nheap that are, or will be, complete; first on top */
+    int nheap, heap_capacity;
+    int nunknown;     /* watched, and not known when it is complete */
+    uint32_t nwatch;  /* watched so far */
+    sim_ps poll_step; /* how long the last one took */
 };
 
 /* matching_create: of one rank, from the run's scratch. */
@@ -84,6 +95,12 @@ int vp_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
 void vp_receive_into(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity);
 int vp_cancel(struct comm *c, struct comm_request *r);
 
+/* vp_watch, vp_next_complete: likewise (watch.c). request_completion: when an active request is
+ * complete, SIM_NEVER: not known yet. */
+void vp_watch(struct comm *c, struct comm_request *r);
+struct comm_request *vp_next_complete(struct comm *c, int64_t time_ps);
+sim_ps request_completion(const struct comm_request *r);
+
 /* --- timer.c --- */
 
 /* timer_set: v, about to block as WAITING_ANY or WAITING_POLL, goes on at `time`, not before now.
@@ -92,6 +109,12 @@ void timer_set(struct vp *v, sim_ps time);
 
 /* timer_catch_up: stop until all that has happened by v's clock is known. */
 void timer_catch_up(struct vp *v);
+
+/* watched_known: the watched request r is complete at `time`, or will be. */
+void watched_known(struct vp *v, struct comm_request *r, sim_ps time);
+
+/* watched_pop: the one that is complete first leaves the heap, which is not empty. */
+struct comm_request *watched_pop(struct matching *k);
 
 /* poll_notify: at `time`, now or later, something comes for v, which may be looking out for it. */
 void poll_notify(struct vp *v, sim_ps time);

@@ -48,6 +48,7 @@ struct message {
     uint16_t size_class;
     uint16_t kind;
     uint16_t synchronous; /* its sender waits until it is taken, whatever its size */
+    uint16_t hollow;      /* it has a size and no content */
     char data[];
 };
 
@@ -61,7 +62,7 @@ static inline uint64_t message_key(const struct message *m)
 
 /* --- mailbox.c --- */
 
-/* message_take: a message with room for `bytes` bytes, zeroed head; message_give: back to the pool. */
+/* message_take: a message with room for `bytes` bytes, all zero but for its size; message_give: back to the pool. */
 struct message *message_take(struct world *w, int64_t bytes);
 void message_give(struct world *w, struct message *m);
 

@@ -58,7 +58,7 @@ static void need_time(struct vp *v, const char *what)
 /* ---- requests ---- */
 
 /* When an active request is complete; SIM_NEVER: not known yet. */
-static sim_ps completion(const struct comm_request *r)
+sim_ps request_completion(const struct comm_request *r)
 {
     switch (r->active) {
     case REQUEST_MATCHED:
@@ -82,7 +82,7 @@ static struct candidates survey(int n, struct comm_request *const *r)
     struct candidates s = {0, 0, -1, SIM_NEVER};
     for (int i = 0; i < n; i++) {
         if (!r[i] || r[i]->active == REQUEST_DONE) continue;
-        const sim_ps time = completion(r[i]);
+        const sim_ps time = request_completion(r[i]);
         s.active++;
         s.unknown += time == SIM_NEVER;
         if (time < s.time) s.best = i, s.time = time;
@@ -144,6 +144,44 @@ int vp_cancel(struct comm *c, struct comm_request *r)
     r->active = REQUEST_DONE;
     r->detail = NULL;
     return 1;
+}
+
+/* ---- many requests ---- */
+
+void vp_watch(struct comm *c, struct comm_request *r)
+{
+    struct vp *v = (struct vp *)c;
+    struct matching *k = v->matching;
+    need_time(v, "a watched request");
+    r->watch = ++k->nwatch;
+    const sim_ps time = r->active == REQUEST_DONE ? v->clock : request_completion(r);
+    if (time == SIM_NEVER) k->nunknown++;
+    else watched_known(v, r, time);
+}
+
+struct comm_request *vp_next_complete(struct comm *c, int64_t time)
+{
+    struct vp *v = (struct vp *)c;
+    struct matching *k = v->matching;
+    need_time(v, "a watched request");
+    for (;;) {
+        /* the first one known is the first one when the events have come as far */
+        const sim_ps first = k->nheap > 0 ? k->heap[0].time : SIM_NEVER;
+        sim_ps goal = first < time ? first : time;
+        if (k->nunknown == 0 || goal <= k->synced) break;
+        if (goal < v->clock) goal = v->clock; /* the events do not go back */
+        k->timer++;
+        if (goal != SIM_NEVER) timer_set(v, goal);
+        vp_block(v, WAITING_ANY, NULL);
+    }
+    if (k->nheap > 0 && k->heap[0].time <= time) {
+        struct comm_request *r = watched_pop(k);
+        r->watch = 0;
+        c->type->wait(c, r);
+        return r;
+    }
+    if (time != INT64_MAX) wait_of(v, time);
+    return NULL;
 }
 
 /* ---- probes ---- */

@@ -1,6 +1,9 @@
-/* timer.c - a rank that looks around stops until the events have come to its clock. Of several timers
- * set one after the other the last counts; what comes while one runs may end the look early. */
+/* timer.c - a rank that looks around stops until the events have come to its clock. Of several
+ * timers set one after the other the last counts; what comes while one runs may end the look early.
+ */
 #include "vp/matching.h"
+
+#include <string.h>
 
 static void ring(void *subject, uint64_t argument, sim_ps now)
 {
@@ -43,8 +46,52 @@ void timer_catch_up(struct vp *v)
     vp_block(v, WAITING_POLL, NULL);
 }
 
-void vp_notify(struct vp *v, const struct comm_request *r, sim_ps time)
+/* ---- watched requests whose completion is known: a heap by time, then by the order of watching
+ * ---- */
+
+static bool sooner(const struct watched *a, const struct watched *b)
 {
+    return a->time != b->time ? a->time < b->time : a->request->watch < b->request->watch;
+}
+
+void watched_known(struct vp *v, struct comm_request *r, sim_ps time)
+{
+    struct matching *k = v->matching;
+    if (k->nheap == k->heap_capacity) {
+        const int capacity = k->heap_capacity ? 2 * k->heap_capacity : 16;
+        struct watched *grown = TAKE(v->world->scratch, capacity, struct watched);
+        if (k->nheap) memcpy(grown, k->heap, (size_t)k->nheap * sizeof *grown);
+        k->heap = grown;
+        k->heap_capacity = capacity;
+    }
+    const struct watched new = {time, r};
+    int at = k->nheap++;
+    for (; at > 0 && sooner(&new, &k->heap[(at - 1) / 2]); at = (at - 1) / 2)
+        k->heap[at] = k->heap[(at - 1) / 2];
+    k->heap[at] = new;
+}
+
+struct comm_request *watched_pop(struct matching *k)
+{
+    struct comm_request *first = k->heap[0].request;
+    const struct watched last = k->heap[--k->nheap];
+    int at = 0;
+    for (int child = 1; child < k->nheap; child = 2 * at + 1) {
+        if (child + 1 < k->nheap && sooner(&k->heap[child + 1], &k->heap[child])) child++;
+        if (!sooner(&k->heap[child], &last)) break;
+        k->heap[at] = k->heap[child];
+        at = child;
+    }
+    k->heap[at] = last;
+    return first;
+}
+
+void vp_notify(struct vp *v, struct comm_request *r, sim_ps time)
+{
+    if (r->watch) {
+        v->matching->nunknown--;
+        watched_known(v, r, time);
+    }
     if (v->waiting == r) vp_wake(v->world, v);
     else if (v->matching) poll_notify(v, time);
 }

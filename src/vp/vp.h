@@ -104,7 +104,7 @@ struct world {
 void vp_wake(struct world *w, struct vp *v);
 
 /* vp_notify: r of v becomes complete at `time`, now or later: wake v if it waits for that. */
-void vp_notify(struct vp *v, const struct comm_request *r, sim_ps time);
+void vp_notify(struct vp *v, struct comm_request *r, sim_ps time);
 
 /* vp_block: leave the fiber until somebody wakes `v`. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r);

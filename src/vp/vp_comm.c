@@ -54,8 +54,10 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     if (tag < 0 || bytes < 0)
         vp_misuse(v, "a message of %lld bytes with tag %lld to rank %d", (long long)bytes, (long long)tag, dst);
     CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
-    struct message *m = message_take(w, bytes);
-    if (bytes) memcpy(m->data, data, (size_t)bytes);
+    struct message *m = message_take(w, data ? bytes : 0);
+    if (data && bytes) memcpy(m->data, data, (size_t)bytes);
+    m->hollow = !data;
+    m->bytes = bytes;
     m->from = v;
     m->to = &w->vp[dst];
     m->tag = tag;
@@ -148,7 +150,7 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     if (v->world->record->spans) vp_span(v, SPAN_WAIT, begin, v->clock, r->peer, m->bytes, -1);
     charge_receive(v, m);
     const int64_t kept = m->bytes < r->capacity ? m->bytes : r->capacity;
-    if (kept) memcpy(r->buffer, m->data, (size_t)kept);
+    if (kept && !m->hollow) memcpy(r->buffer, m->data, (size_t)kept);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.id);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.arrival);
     message_give(v->world, m);
@@ -295,4 +297,6 @@ const struct comm_type vp_comm_type = {
     .probe = vp_probe,
     .receive_into = vp_receive_into,
     .cancel = vp_cancel,
+    .watch = vp_watch,
+    .next_complete = vp_next_complete,
 };

@@ -62,7 +62,7 @@ END
 64 # --jobs: 'two' is not a number from 1 to 256 # run speedup-t3e --jobs two
 64 # requires an argument # run speedup-t3e --jobs
 64 # an argument is missing # query some.db
-64 # --format: 'svg' is none of picture, text, chrome, paje, csv # timeline fig8 --format svg
+64 # --format: 'svg' is none of picture, text, chrome, paje, csv, goal # timeline fig8 --format svg
 64 # expected key=value # run speedup-t3e --set n
 64 # --compare needs two machines, not 1 # machines --compare t3e-300
 64 # there is no level 'lnik'; did you mean 'link'? # netcheck x.json --level lnik

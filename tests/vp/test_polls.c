@@ -141,11 +141,64 @@ static void receives_are_taken_back_until_their_message_is_there(void **state)
     }
 }
 
+/* ---- many requests ---- */
+
+/* Ranks 3, 2, 1 send in this order, rank 1 a hollow message; the receive from 4 gets nothing. */
+static void watch_many(struct comm *c, void *context)
+{
+    (void)context;
+    char data[4][8] = {"", "", "", ""};
+    struct comm_request r[5];
+    if (comm_rank(c) > 0) {
+        comm_elapse(c, (4 - comm_rank(c)) * 10 * US);
+        if (comm_rank(c) < 4) comm_send(c, 0, 1, comm_rank(c) == 1 ? NULL : "abcdefg", 8);
+        return;
+    }
+    assert_null(comm_next_complete(c, INT64_MAX));
+    assert_null(comm_next_complete(c, 5 * US));
+    assert_int_equal(comm_now_ps(c), 5 * US);
+    for (int i = 1; i < 5; i++) {
+        comm_irecv_matching(c, i, 1, COMM_WHOLE_TAG, data[i - 1], 8, &r[i]);
+        if (i < 4) comm_watch(c, &r[i]);
+    }
+    assert_null(comm_next_complete(c, 11 * US));
+    assert_int_equal(comm_now_ps(c), 11 * US);
+    assert_ptr_equal(comm_next_complete(c, INT64_MAX), &r[3]);
+    assert_int_equal(comm_now_ps(c), 10 * US + trip(8) + receipt(8));
+    comm_elapse(c, 100 * US);
+    /* both are there: in the order of arrival, and none by a time at which none was */
+    assert_null(comm_next_complete(c, 20 * US));
+    assert_ptr_equal(comm_next_complete(c, 21 * US + trip(8)), &r[2]);
+    assert_ptr_equal(comm_next_complete(c, comm_now_ps(c)), &r[1]);
+    assert_null(comm_next_complete(c, INT64_MAX));
+    assert_string_equal(data[2], "abcdefg");
+    assert_string_equal(data[0], "");
+    assert_true(comm_cancel(c, &r[4]));
+}
+
+static void watched_requests_come_in_the_order_of_completion(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct machine_spec m = crossbar(5);
+        m.network.level = k & 1 ? LEVEL_LINK : LEVEL_LOGGP;
+        m.software.eager_bytes = -1;
+        int order[] = {4, 3, 2, 1, 0};
+        struct world_load load = {
+            .nrank = 5, .program = watch_many, .timed = true, .foreign = true};
+        if (k & 2) load.order = order;
+        struct outcome o = run_load(&m, load);
+        expect_ok(&o);
+        arena_destroy(o.arena);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_see_what_has_arrived_and_nothing_else),
         cmocka_unit_test(receives_are_taken_back_until_their_message_is_there),
+        cmocka_unit_test(watched_requests_come_in_the_order_of_completion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
