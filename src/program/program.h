@@ -39,7 +39,7 @@ struct rank_program {
 
     /* run: the program of one rank. */
     void (*run)(struct comm *c, const void *job, void *workspace);
-    bool timed, foreign, leftovers; /* as in world_load; false for built-in programs */
+    bool timed, no_synchronous, foreign, leftovers; /* as in world_load; false for built-in programs */
     int64_t stack_bytes;            /* of each rank, 0: as for built-in programs */
 };
 

@@ -42,6 +42,7 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m, const
                                     .largest_message = largest, .output = r->output, .noutput = PROGRAM_OUTPUTS,
                                     .heartbeat = r->heartbeat, .stack_bytes = r->rank->stack_bytes,
                                     .timed = r->rank->timed, .foreign = r->rank->foreign,
+                                    .no_synchronous = r->rank->no_synchronous,
                                     .leftovers = r->rank->leftovers};
     return world_run(m, &load, record, seed, a, out, e);
 }

@@ -71,6 +71,7 @@ static const struct rank_program rank_program = {
     .largest_message = no_promise,
     .run = schedule_rank,
     .timed = true,
+    .no_synchronous = true,
     .foreign = true,
 };
 

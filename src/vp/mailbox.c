@@ -91,7 +91,7 @@ void mailbox_post(struct vp *v, struct comm_request *r)
         if (!fits(m, r)) continue;
         *p = m->next;
         if (!m->next) v->unexpected_end = p;
-        message_bind(v, r, m, later(m->net.arrival, v->clock));
+        message_bind(v, r, m, later(m->net.arrival, r->posted_ps));
         return;
     }
     r->active = REQUEST_POSTED;
@@ -107,7 +107,7 @@ void mailbox_deliver(struct vp *v, struct message *m)
         if (!fits(m, r)) continue;
         *p = r->detail;
         if (!r->detail) v->posted_end = p;
-        message_bind(v, r, m, later(m->net.arrival, v->clock));
+        message_bind(v, r, m, later(m->net.arrival, r->posted_ps));
         return;
     }
     m->next = NULL;

@@ -100,7 +100,7 @@ static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const voi
 static void post(struct vp *v, struct comm_request *r)
 {
     if (v->matching) matching_post(v, r);
-    else mailbox_post(v, r);
+    else r->posted_ps = v->clock, mailbox_post(v, r);
 }
 
 static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)

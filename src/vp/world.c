@@ -259,7 +259,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .software = software_cost_make(&m->software),
         .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
-        .eager_only = !load->timed && all_eager(&m->software, load->largest_message),
+        .eager_only = (!load->timed || load->no_synchronous) && all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
     out->nrank = load->nrank;

@@ -28,6 +28,7 @@ struct world_load {
     struct run_heartbeat *heartbeat;       /* where to tell how far the run is, NULL: nowhere */
     int64_t stack_bytes;           /* of each rank, 0: what built-in programs need */
     bool timed;     /* the program may use wildcards, tests, cancel, probes and synchronous sends (comm_match.h) */
+    bool no_synchronous; /* none of its sends is synchronous: as largest_message, a promise that saves events */
     bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
     bool leftovers; /* of a foreign program: messages that nobody has received at its end are no failure */
     const int *order; /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */

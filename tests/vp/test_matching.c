@@ -257,6 +257,45 @@ static void hand_shakes_begin_when_a_receive_takes_the_message(void **state)
     }
 }
 
+/* A receive posted at once, behind which its rank computes for 50 us: the request is answered when
+ * it comes. */
+static void answered_meanwhile(struct comm *c, void *context)
+{
+    int64_t *sent = context;
+    char data[1000] = {0};
+    struct comm_request r = {0};
+    if (comm_rank(c) == 0) {
+        comm_isend(c, 1, 5, data, 1000, &r);
+        comm_wait(c, &r);
+        *sent = comm_now_ps(c);
+        return;
+    }
+    comm_irecv(c, 0, 5, data, 1000, &r);
+    comm_elapse(c, 50 * US);
+    comm_wait(c, &r);
+    assert_int_equal(comm_now_ps(c), 50 * US + receipt(1000));
+}
+
+static void hand_shakes_need_no_waiting_receiver(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        struct machine_spec m = crossbar(2);
+        int64_t sent = 0;
+        int order[] = {1, 0};
+        m.network.level = k & 1 ? LEVEL_LINK : LEVEL_LOGGP;
+        m.software.eager_bytes = 100;
+        struct outcome o = run_load(&m, (struct world_load){.nrank = 2,
+                                                            .program = answered_meanwhile,
+                                                            .context = &sent,
+                                                            .timed = k & 2,
+                                                            .order = k & 4 ? order : NULL});
+        expect_ok(&o);
+        assert_int_equal(sent, 3400000 + 400000);
+        arena_destroy(o.arena);
+    }
+}
+
 /* ---- what programs do wrong ---- */
 
 enum wrong {
@@ -398,6 +437,7 @@ int main(void)
         cmocka_unit_test(an_earlier_receive_has_the_first_claim),
         cmocka_unit_test(a_given_source_behind_any_gets_what_is_left),
         cmocka_unit_test(hand_shakes_begin_when_a_receive_takes_the_message),
+        cmocka_unit_test(hand_shakes_need_no_waiting_receiver),
         cmocka_unit_test(mistakes_end_the_run_with_rank_time_and_place),
         cmocka_unit_test(waiting_for_anybody_in_vain_is_explained),
         cmocka_unit_test(longer_messages_are_cut),

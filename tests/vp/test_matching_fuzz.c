@@ -37,6 +37,7 @@ struct fuzz {
     int nrank;
     bool given;    /* the sources are those of the notes */
     bool by_tests; /* wait by testing */
+    bool promised; /* that no send is synchronous: what is sent is known at once */
     struct rank_note *rank;
 };
 
@@ -153,8 +154,12 @@ static void fuzz_rank(struct comm *c, void *context)
 static struct outcome go_fuzz(const struct machine_spec *m, struct fuzz *f, bool timed,
                               const int *order)
 {
-    struct world_load load = {
-        .nrank = f->nrank, .program = fuzz_rank, .context = f, .timed = timed, .order = order};
+    struct world_load load = {.nrank = f->nrank,
+                              .program = fuzz_rank,
+                              .context = f,
+                              .timed = timed,
+                              .order = order,
+                              .no_synchronous = f->promised};
     for (int i = 0; i < f->nrank; i++) {
         f->rank[i].sum = 0;
         memset(f->rank[i].nmessage, 0, sizeof f->rank[i].nmessage);
@@ -256,15 +261,18 @@ static void try_program(uint64_t seed, int nrank, enum network_level level, int6
     struct outcome other = go_fuzz(&m, &f, true, order);
     expect_equal(&f, "other order of ranks", &wild, &other, true);
     arena_destroy(other.arena);
+    f.promised = true;
+    other = go_fuzz(&m, &f, true, order);
+    expect_equal(&f, "promised", &wild, &other, false);
+    arena_destroy(other.arena);
+    f.promised = seed % 2;
     f.given = true;
     other = go_fuzz(&m, &f, true, NULL);
     expect_equal(&f, "sources given", &wild, &other, false);
     arena_destroy(other.arena);
-    if (eager < 0) { /* without time, hand-shakes are answered when their receiver waits */
-        other = go_fuzz(&m, &f, false, NULL);
-        expect_equal(&f, "without time", &wild, &other, false);
-        arena_destroy(other.arena);
-    }
+    other = go_fuzz(&m, &f, false, NULL);
+    expect_equal(&f, "without time", &wild, &other, false);
+    arena_destroy(other.arena);
     f.given = false;
     f.by_tests = true;
     other = go_fuzz(&m, &f, true, NULL);
