@@ -108,6 +108,39 @@ static void calls_return_or_exit_and_begin_anew(void **state)
     loader_close(t);
 }
 
+static void add_up(void *context, int64_t ps) { *(int64_t *)context += ps; }
+
+static struct loader_instance *counting;
+static void count_twice(void)
+{
+    call(counting, "count", 100);
+    call(counting, "count", 23);
+}
+
+/* The host's register is as before, and what the program added to its own goes to the clock. */
+static void counts_in_register_15_are_handed_over(void **state)
+{
+    (void)state;
+    static const struct loader_hooks hooks = {.elapse_ps = add_up};
+    struct loader_template *t = open_it();
+    struct err e;
+    int64_t sum = 0, after = 0;
+    err_clear(&e);
+    assert_true(loader_reserve(t, 1, &hooks, &e));
+    counting = loader_instantiate(t, 0, &sum, &e);
+    assert_non_null(counting);
+    /* On a stack aligned for the call, below what the compiler may keep under the stack pointer. */
+    __asm__ volatile("mov %%rsp, %%rbx\n sub $256, %%rsp\n and $-16, %%rsp\n mov $4711, %%r15\n"
+                     "call *%1\n mov %%rbx, %%rsp\n mov %%r15, %0"
+                     : "=r"(after)
+                     : "r"(count_twice)
+                     : "rax", "rbx", "rcx", "rdx", "rsi", "rdi", "r8", "r9", "r10", "r11", "r15",
+                       "memory", "cc");
+    assert_int_equal(after, 4711);
+    assert_int_equal(sum, 123);
+    loader_close(t);
+}
+
 /* More ranks than the system has mappings for: groups of them share one. */
 static void ranks_that_share_a_mapping_keep_their_data_apart(void **state)
 {
@@ -155,6 +188,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(sections_and_constants_are_found_and_patched, make,
                                         remove_it),
         cmocka_unit_test_setup_teardown(calls_return_or_exit_and_begin_anew, make, remove_it),
+        cmocka_unit_test_setup_teardown(counts_in_register_15_are_handed_over, make, remove_it),
         cmocka_unit_test_setup_teardown(ranks_that_share_a_mapping_keep_their_data_apart, make,
                                         remove_it),
         cmocka_unit_test_setup_teardown(what_is_no_program_is_refused_with_what_is_wrong, make,
