@@ -43,6 +43,7 @@ static const char *verb_of(const char *path)
 /* Run argv with standard output into *out (NULL: into ours). Returns the exit status, -1: none. */
 static int run_process(const char *const *argv, struct text *out)
 {
+    /* Standard error stays ours: the compiler's messages belong to the user. */
     int ends[2] = {-1, -1}, status = -1;
     if (out != NULL && pipe(ends) != 0) return -1;
     /* What is in our buffers would be written twice. */
@@ -68,6 +69,8 @@ static int run_process(const char *const *argv, struct text *out)
 }
 
 /* The running program, whatever it was called as. */
+/* This program itself: a verb of its own is called as a process, so that what people get from
+ * `mimdsim cc` and what `mimdsim run my.c` makes are the same. */
 static const char *own_path(struct arena *a)
 {
     char path[4096];
@@ -78,7 +81,8 @@ static const char *own_path(struct arena *a)
 
 /* --- what identifies a source ----------------------------------------------------------------- */
 
-/* The content of one file into the digest's text. */
+/* By content and not by name or date: a copy elsewhere is the same program. The content of one file
+ * into the digest's text. */
 static bool add_file(struct text *all, const char *path, struct err *e)
 {
     struct text file = {0};

@@ -7,6 +7,7 @@
     X(cmd_run, "run", "run a scenario, store every run, print the table")                                              \
     X(cmd_plan, "plan", "list the runs of a scenario, for engines that hand out work")                                 \
     X(cmd_merge, "merge", "join the databases of several hosts or shards")                                             \
+    X(cmd_mpirun, "mpirun", "run a program on virtual processors, as mpirun does")                                     \
     X(cmd_paper, "paper", "reproduce the paper: runs, figures, claims, report")                                        \
     X(cmd_claims, "claims", "judge the claims of the paper by a database")                                             \
     X(cmd_plot, "plot", "draw a figure from a database")                                                               \

@@ -245,5 +245,12 @@ static const struct program_type kernel_type = {
 
 const struct program_type *guest_program(enum program_kind kind)
 {
-    return kind == PROGRAM_KERNEL ? &kernel_type : NULL;
+    switch (kind) {
+    case PROGRAM_KERNEL:
+        return &kernel_type;
+    case PROGRAM_MPI:
+        return &guest_mpi_type;
+    default:
+        return NULL;
+    }
 }

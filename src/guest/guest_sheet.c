@@ -227,7 +227,7 @@ static bool read_image(struct program_sheet *s, struct loader_template *t, const
     if (i == NULL) return false;
     const struct mimdsim_program *p = guest_declared(i);
     if (p != NULL) s->kind = PROGRAM_KERNEL;
-    else if (loader_symbol(i, "main") != NULL || loader_symbol(i, "MAIN__") != NULL)
+    else if (loader_symbol(i, "main") != NULL || loader_symbol(i, "mimdsim_main") != NULL)
         s->kind = PROGRAM_MPI;
     else
         return refuse(e, path, "the program has neither PROGRAM(...) (mimdsim/program.h) nor main");

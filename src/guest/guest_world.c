@@ -132,25 +132,30 @@ static void refuse_exit(struct guest_rank *g, int status)
     g->comm->type->end_run(g->comm, text);
 }
 
-void guest_rank_run(struct comm *c, const void *job, void *workspace)
+void guest_rank_begin(struct guest_rank *g, struct comm *c, struct guest_world *w)
 {
-    struct guest_rank *g = workspace;
-    struct guest_world *w = *(struct guest_world *const *)job;
     struct err e;
-    char name[] = "program";
-    char *argv[] = {name, NULL};
     err_clear(&e);
     g->comm = c;
     g->world = w;
     g->instance = loader_instantiate(w->image, comm_rank(c), g, &e);
     if (g->instance == NULL) c->type->end_run(c, e.text);
-    /* Its parameters are written before anything of it runs, constructors included. */
-    g->declared = guest_declared(g->instance);
-    guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
     struct mimdsim_host *host = loader_host(g->instance);
     host->comm = w->calls;
     host->comm_rank = (struct comm *)g;
     g->host_s = host_seconds();
+}
+
+void guest_rank_run(struct comm *c, const void *job, void *workspace)
+{
+    struct guest_rank *g = workspace;
+    struct guest_world *w = *(struct guest_world *const *)job;
+    char name[] = "program";
+    char *argv[] = {name, NULL};
+    guest_rank_begin(g, c, w);
+    /* Its parameters are written before anything of it runs, constructors included. */
+    g->declared = guest_declared(g->instance);
+    guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
     struct loader_outcome end = loader_start(g->instance, 1, argv);
     const int64_t argument[4] = {(int64_t)(intptr_t)g};
     if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);

@@ -13,6 +13,7 @@
 #include "loader/loader.h"
 #include "machine/node_cost.h"
 #include "measure/run_result.h"
+#include "program/program.h"
 #include "spec/run_spec.h"
 
 enum { GUEST_STACK_BYTES = 8 << 20 };
@@ -24,7 +25,8 @@ enum guest_part { GUEST_RUN, GUEST_CHECK, GUEST_SERIAL /* and those that follow:
 struct guest_world {
     const struct run_spec *spec;        /* of the run it belongs to */
     struct loader_template *image;      /* owned */
-    bool alone;                       /* one processor without a network: it has one stage */
+    bool alone;                         /* one processor without a network: it has one stage */
+    void *owner;                        /* whoever made it, for its own use */
     int part;                           /* enum guest_part */
     enum program_cost cost;             /* how its computing is counted */
     struct node_cost node;              /* what counted operations cost on a processor */
@@ -52,6 +54,9 @@ struct guest_rank {
     double host_s;             /* cost by host time: when the rank last went on */
 };
 
+/* guest_mpi_type: programs with main. */
+extern const struct program_type guest_mpi_type;
+
 /* guest_calls: the functions behind mimdsim/program.h. */
 extern const struct comm_functions guest_calls;
 
@@ -72,6 +77,10 @@ bool guest_parameter_field(const struct mimdsim_parameter *p, struct field *f, s
 bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank,
                       struct err *e);
 void guest_world_close(struct guest_world *w);
+
+/* guest_rank_begin: a rank's copy of the image, of which nothing has run, with the calls of
+ * program.h. */
+void guest_rank_begin(struct guest_rank *g, struct comm *c, struct guest_world *w);
 
 /* guest_rank_run: the text of one rank (rank_program.run): job is its world, workspace a
  * guest_rank. */

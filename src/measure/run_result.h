@@ -101,6 +101,7 @@ struct run_result {
     int64_t switches;          /* of fibers */
     uint64_t digest;           /* of all matched messages and clocks: same input, same digest */
 
+    int exit_status;           /* of a person's own program: the first of a rank that is not 0 */
     int64_t nsaid;
     char *said;                /* (nsaid, with the NUL) lines that ranks of a person's own program wrote, in
                                   that order: "RANK STREAM TEXT"; in the run's arena, NULL: nothing */

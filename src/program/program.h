@@ -60,6 +60,7 @@ struct program_run {
     double metre, kilogram, second;  /* its units in SI; 0: it has none */
     struct comm_output output[PROGRAM_OUTPUTS]; /* made by prepare */
     const struct text *said; /* lines of the result, see run_result.said; NULL: none */
+    int exit_status;         /* of a person's program: the first that is not 0 */
 };
 
 /* What a run will cost, known before it runs (mimdsim explain). */
@@ -127,8 +128,7 @@ struct program_type {
     int (*unused)(const struct program_run *r, const char **out);
 };
 
-/* program_want: output number `output` gathers n numbers, zero before the run, from `a`. program_output: them; NULL
- * where the output is not wanted. */
+/* program_want: output number `output` gathers n numbers, zero before, from `a`. program_output: them, or NULL. */
 void program_want(struct program_run *r, int output, int64_t n, struct arena *a);
 double *program_output(const struct program_run *r, int output);
 

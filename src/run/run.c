@@ -193,6 +193,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
         verify(&r, scratch, out);
     }
     if (ok && r.said) take_lines(r.said, a, out);
+    out->exit_status = r.exit_status;
     check_note_set(NULL, NULL);
     run_close(&r);
     arena_destroy(scratch);

@@ -48,7 +48,7 @@ static const struct field fields[] = {
     {.key = "arguments",
      .kind = FIELD_TEXT,
      AT(arguments),
-     .capacity = 256,
+     .capacity = 512,
      .fallback = "",
      .idle = idle_unless_arguments,
      .doc = "arguments of a program with main, as in a shell"},

@@ -38,7 +38,7 @@ enum program_output {
 
 struct program_spec {
     char file[256];      /* as it was asked for; "": a built-in program */
-    char arguments[256]; /* of an MPI program, divided as a shell divides words */
+    char arguments[512]; /* of an MPI program, divided as a shell divides words */
     enum program_cost cost;
     double factor; /* computing time is multiplied by it */
     /* What the plan found; no settings. */
