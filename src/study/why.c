@@ -141,10 +141,13 @@ static void no_overhead(struct machine_spec *m)
     }
 }
 
-/* A bandwidth of 0 is read as unlimited. */
+/* So fast that a flit takes the least time there is, 1 ps. Levels with flits refuse the rate 0, which
+ * means unlimited elsewhere; ports without a bandwidth of their own have the link's. */
 static void no_bytes(struct machine_spec *m)
 {
-    m->network.link_bandwidth = m->network.injection_bandwidth = m->network.ejection_bandwidth = 0;
+    m->network.link_bandwidth = 1e18;
+    m->network.buffer_flits = 1 << 24; /* a latency is many such flits, which a buffer has to hold */
+    m->network.injection_bandwidth = m->network.ejection_bandwidth = 0;
     memset(m->topology.dim_bandwidth, 0, sizeof m->topology.dim_bandwidth);
     m->software.gap_per_byte = 0;
     for (int i = 0; i < m->software.nsegment; i++) m->software.segment[i].gap_per_byte = 0;
@@ -152,7 +155,7 @@ static void no_bytes(struct machine_spec *m)
 
 static void no_computing(struct machine_spec *m)
 {
-    m->node.flop_rate = 0; /* node_cost.c: no cost */
+    m->node.flop_rate = m->node.clock = 0; /* node_cost.c: no cost, neither of operations nor of instructions */
     m->node.div_cycles = m->node.sqrt_cycles = m->node.trig_cycles = m->node.call_time = 0;
     m->node.copy_bandwidth = 0;
 }

@@ -64,3 +64,13 @@ load helper
     sqlite3 own.db "UPDATE run SET config_text = 'nothing = 1'"
     fails_with 65 mimdsim why own.db 1
 }
+
+@test "a program of one's own is explained, and infinitely fast nodes take its computing away" {
+    command -v gcc >/dev/null || skip "gcc is not installed"
+    works mimdsim why "$MIMDSIM_SRCDIR/examples/stencil.yaml" --set ranks=4 --set n=64 -o own.db --quiet
+    stdout_says 'stencil on t3e-300, n = 64, P = 4'
+    sql_is own.db 'SELECT (SELECT sum(time_ps) FROM critical_path) = makespan_ps FROM run' 1
+    sql_is own.db "SELECT i.makespan_ps < r.makespan_ps - (SELECT sum(time_ps) FROM critical_path WHERE cause = 'computing') / 2
+        FROM ideal i, run r WHERE i.machine LIKE 'infinitely fast%'" 1
+    sql_is own.db 'SELECT count(makespan_ps) FROM ideal' 5
+}
