@@ -77,14 +77,16 @@ static void patch(void *so)
     if (!block_costs_patch(&t, image_at, base, &cost, 1, &e)) err_print(&e), exit(1);
 }
 
-static void measure(void *plain, void *counted, const char *name, double *sum, double *sum_ratio)
+static void measure(void *plain, void *counted, const char *name, int64_t *pending, double *sum,
+                    double *sum_ratio)
 {
     double shortest[2] = {1e30, 1e30};
     int64_t ps = 0;
     void (*f[2])(void) = {(void (*)(void))dlsym(plain, name), (void (*)(void))dlsym(counted, name)};
     for (int r = 0; r < 2 * ROUNDS; r++) {
         const double begin = host_processor_seconds();
-        if (r % 2) ps = call_counted(f[1]);
+        *pending = 0; /* where the kernel's entry leaves what it counted */
+        if (r % 2) ps = call_counted(f[1]) + *pending;
         else f[0]();
         const double took = host_processor_seconds() - begin;
         if (took < shortest[r % 2]) shortest[r % 2] = took;
@@ -100,6 +102,7 @@ int main(int argc, char **argv)
     static const char probe[] =
         "extern char b[] __asm__(\"__start_mimdsim_blocks\"), e[] "
         "__asm__(\"__stop_mimdsim_blocks\");"
+        "long mimdsim_pending;"
         "void *memset(void *, int, unsigned long);"
         "void *mimdsim_memset(void *a, int x, unsigned long n) { return memset(a, x, n); }"
         "char *table_begin(void) { return b; } char *table_end(void) { return e; }";
@@ -121,9 +124,10 @@ int main(int argc, char **argv)
     call_counted((void (*)(void))dlsym(plain, "fill"));
     call_counted((void (*)(void))dlsym(counted, "fill"));
     double n = 0, sum = 0;
+    int64_t *pending = dlsym(counted, "mimdsim_pending");
     printf("%s: shortest of %d, processor time\n%-16s %10s %10s %8s %12s %10s\n", level, ROUNDS,
            "kernel", "plain/ms", "counted/ms", "ratio", "predicted/ms", "pred/plain");
-    for (int k = 0; k < KERNELS; k++) measure(plain, counted, kernels[k], &n, &sum);
+    for (int k = 0; k < KERNELS; k++) measure(plain, counted, kernels[k], pending, &n, &sum);
     printf("mean ratio %.3f\n", sum / n);
     shell("rm -r %s%s%s", dir, "", "");
     return 0;
