@@ -26,6 +26,7 @@ static bool list_pictures(const struct common *c, struct store *s, const char *n
     if (!report_drawings_find(s, plan_data_dir(), name, &d, e)) return false;
     for (int i = 0; i < d.n; i++) {
         struct text t = {0};
+        /* The name of the drawing and not of the figure: accuracy-SCENARIO is one of several. */
         text_add(&t, "%s/%s.png", c->directory, d.as[i]);
         if (c->json) json_text(j, t.s);
         else puts(t.s);
@@ -41,6 +42,7 @@ static bool print_pictures(const struct common *c, struct store *s, struct err *
     struct json j = json_make(stdout);
     bool ok = true;
     if (c->json) json_array(&j);
+    /* The first argument is the database. */
     for (int i = 1; ok && i < c->narg; i++) ok = list_pictures(c, s, c->arg[i], &j, e);
     if (c->json) {
         json_end(&j);

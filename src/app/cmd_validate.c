@@ -47,7 +47,8 @@ static void print_row(const struct published *p, const struct outcome *o)
     else snprintf(published, sizeof published, "%.6g", p->value / p->scale);
     printf("%-6s %-17s %-13s %8s %20s ", p->id, p->machine, probe_name(p->quantity), p->at_text,
            published);
-    /* A machine that lacks the quantity has no value and no error. */
+    /* A machine that lacks the quantity has no value and no error. Otherwise both figures are
+     * printed in the unit of the file, to be compared with the source by eye. */
     if (o->measured) printf("%11.5g %-7s %+7.1f %%", o->value / p->scale, p->unit, 100 * o->error);
     else printf("%11s %-7s %9s", "-", p->unit, "");
     printf(" %-3s %-5s %s%s%s\n", p->evidence, published_use_name(p->use), o->verdict,
@@ -60,6 +61,7 @@ static void print_levels(const struct published *p, const struct outcome *o)
 {
     if (!o->contended) return;
     printf("%6s at level", "");
+    /* The levels in the order of their cost; a level that was not run prints a dash. */
     for (int i = 0; i < LEVELS; i++) {
         printf("%s %s ", i ? "," : "", validation_level_name(i));
         if (isnan(o->level[i])) printf("-");
@@ -236,6 +238,8 @@ static void print_group(const char *name, const struct validation_group *g)
            100 * VALIDATION_UNEXPLAINED, g->unnamed);
 }
 
+/* Counts first, then errors. Estimates (class E) are in neither group: agreement with them only
+ * shows that the machine file is implemented as written. */
 static void print_summary(const struct validation_summary *s)
 {
     printf("\n%d points: %d fail, %d explained, %d not testable; %d estimates (class E) are in no "
@@ -254,6 +258,8 @@ static void print_table(const struct common *c, const struct table *t, const str
     if (!c->json)
         printf("%-6s %-17s %-13s %8s %20s %11s %-7s %9s %-3s %-5s %s\n", "id", "machine",
                "quantity", "at", "published", "simulated", "unit", "error", "ev.", "cal.",
+               /* As a table each figure is one line, and a second one where ranks meet on the
+                * wires. */
                "verdict, cause");
     for (int i = 0; i < t->n && !c->json; i++) {
         print_row(t->row[i], &t->outcome[i]);
@@ -263,6 +269,7 @@ static void print_table(const struct common *c, const struct table *t, const str
         contention_print(row, nrow);
         print_summary(s);
         return;
+    /* As a document: contention, points and summary are three keys of one object, sorted. */
     }
     json_object(&j);
     contention_json(row, nrow, &j);
@@ -287,6 +294,8 @@ static bool go_through(const struct common *c, const struct published *p, int n,
     for (int i = 0; i < n; i++) {
         /* Rows of other machines leave no gap in the table. */
         struct outcome *o = &t->outcome[t->n];
+        /* The name was checked before, so a row is skipped only because it belongs to another
+         * machine. */
         if (strcmp(name, "all") != 0 && strcmp(name, p[i].machine) != 0) continue;
         if (!validation_measure(&p[i], o, a, e) || !keep(s, &p[i], o, e)) return false;
         t->row[t->n++] = &p[i];
@@ -315,6 +324,8 @@ static bool validate_machines(const struct common *c, struct arena *a, int *fail
     struct table t = {0};
     int n;
     struct text path = {0};
+    /* The file belongs to the data directory, not to the working directory: figures and machine
+     * files are of one version. */
     text_add(&path, "%s/machines/published.csv", plan_data_dir());
     bool ok = published_read(path.s, a, &p, &n, e) && known_machine(c->arg[0], p, n, a, e);
     text_free(&path);
@@ -379,9 +390,11 @@ static bool validate_network(const struct common *c, struct arena *a, struct err
     const char *path[64];
     int n = 0;
     for (int i = 1; i < c->narg; i++) path[n++] = c->arg[i];
+    /* `network` alone is one argument: then the files that come with the program are taken. */
     for (size_t i = 0; c->narg == 1 && i < sizeof file / sizeof *file; i++) {
         struct text t = {0};
         text_add(&t, "%s/tests/data/net/%s.json", plan_data_dir(), file[i]);
+        /* The name must outlive the loop: netcheck reads the file later and keeps the pointer. */
         char *kept = arena_take(a, t.length + 1);
         memcpy(kept, t.s, t.length + 1);
         text_free(&t);

@@ -66,9 +66,11 @@ struct request {
  * linear system. */
 static void set_tolerance(struct request *r, const char *arg, struct argp_state *state)
 {
+    /* A missing Y keeps the ratio of the defaults, 1e-12 and 1e-10. */
     char *end;
     double x = strtod(arg, &end), y = 100 * x;
     if (*end == ',') y = strtod(end + 1, &end);
+    /* The whole word must be used up, so that "1e-9x" is refused; NAN fails both comparisons. */
     if (*end || end == arg || !(x > 0) || !(y > 0))
         argp_error(state, "--tolerance: '%s' is not a positive number", arg);
     r->options.tolerance_inverse = x;
@@ -157,6 +159,7 @@ static int verify_all(const struct request *r, struct verify_report *report, str
     for (int i = 0; i < r->nfile; i++) {
         struct err e;
         err_clear(&e);
+        /* The report has a row for every file, or numbers of the summary would not add up. */
         if (!verify_file(r->file[i], &r->options, a, &report[i], &e)) {
             /* err_print and the text: *e lives only in this loop. */
             const char *text = arena_text(a, e.text);

@@ -48,6 +48,7 @@ static bool take_config(void *context, int ncolumn, const char *const *name,
 {
     struct found *f = context;
     (void)ncolumn, (void)name;
+    /* A row of an older database may lack its settings: then it counts as not found. */
     if (value[0] == NULL || value[1] == NULL) return false;
     text_add(&f->config, "%s", value[0]);
     f->rep = atoi(value[1]);
@@ -69,9 +70,12 @@ static bool from_database(const struct common *c, struct run_spec *run, struct a
               store_select(s, run_sql, 1, param, take_config, &f, e);
     if (ok && !f.there)
         ok = err_set(e, ERR_NO_INPUT, "there is no run %s in %s", c->arg[1], c->arg[0]);
+    /* The settings are text, and keys may have changed since: what cannot be read is refused
+     * with its reason, not guessed. */
     if (ok && !run_from_text(run, f.config.s, a, why, sizeof why))
         ok = err_set(e, ERR_DATA, "run %s of %s cannot be made again: %s", c->arg[1], c->arg[0],
                      why);
+    /* The repetition is no setting, but the seed of its random numbers depends on it. */
     if (ok) run->rep = f.rep;
     text_free(&f.config);
     store_close(s);
@@ -135,6 +139,7 @@ static bool put_all(const struct common *c, const struct run_spec *spec, const s
                     struct err *e)
 {
     struct store *s = arguments_store(c, c->database, e);
+    /* A run that is stored already keeps its row; only its explanation is replaced. */
     bool ok =
         s && (store_has(s, spec) || store_put(s, spec, NULL, &w->run, e)) && store_begin(s, e);
     if (ok) {
@@ -179,6 +184,7 @@ int cmd_why(int argc, char **argv)
     /* A database names the run by number; a scenario is read as by every other verb. */
     bool ok = database ? from_database(&c, &run, a, &e) : plan_read(&p, c.arg[0], &o, &e);
     if (ok && !database) {
+        /* A scenario is a set of points; one of them is explained, and the reader is told which. */
         run = p.run[0];
         if (p.nrun > 1 && !c.quiet) fprintf(stderr, "mimdsim: the first of %d points\n", p.nrun);
     }

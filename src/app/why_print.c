@@ -33,7 +33,7 @@ static const char *duration(double ps, char *buffer, size_t size)
 
 /* ---- words ---- */
 
-/* Causes over all stages, the longest first. */
+/* Time and steps of one cause, summed over the stages: steps tell how often, times how long. */
 /* Steps tell how often, times how long. */
 struct sum {
     int64_t time_ps, steps;
@@ -48,7 +48,8 @@ static int longer(const void *a, const void *b)
     return (int)x->cause - (int)y->cause;
 }
 
-/* All stages together, without the causes that the path does not have; returns how many. */
+/* Causes over all stages, the longest first, without those that the path does not have; returns
+ * how many. Shares are by stage and cause, so one cause may have several. */
 static int sums_of(const struct why *w, struct sum *of)
 {
     for (int c = 0; c < PATH_CAUSES; c++) of[c] = (struct sum){.cause = (enum path_cause)c};
@@ -73,6 +74,7 @@ static void print_sentences(const struct run_spec *spec, const struct why *w, FI
             duration((double)w->run.makespan_ps, time, sizeof time));
     /* Three causes say most of it; the table has the others. */
     for (int i = 0; i < n && i < 3; i++) {
+        /* Shares come longest first, so the first one of a cause is its largest part. */
         const struct why_share *most = NULL;
         for (int k = 0; k < w->nshare && !most; k++)
             if (w->share[k].cause == sum[i].cause) most = &w->share[k];
@@ -109,6 +111,8 @@ static void print_causes(const struct why *w, FILE *out)
                 100 * share_of(w, w->share[i].time_ps));
     fprintf(out, "\nRanks with the most of it:");
     for (int i = 0; i < w->nrank; i++)
+        /* Several ranks carry parts of the path; their shares are of the whole makespan, as
+         * everywhere in this table. */
         fprintf(out, "%s %d (%.1f %%)", i ? "," : "", w->rank[i].rank,
                 100 * share_of(w, w->rank[i].time_ps));
     fprintf(out, "\n");
@@ -127,8 +131,11 @@ static void print_parameters(const struct why *w, FILE *out)
         const struct why_parameter *p = &w->parameter[i];
         if (p->count > 0) snprintf(count, sizeof count, "%.6g", p->count);
         else snprintf(count, sizeof count, "-");
+        /* A tolerance of 0 was not asked for (--brief), or no factor up to 1000 makes the run
+         * 5 % longer. */
         if (p->tolerance <= 0) snprintf(change, sizeof change, "-");
         else
+            /* A rate is made worse by dividing it, a duration by multiplying. */
             snprintf(change, sizeof change, "%s %.4g%s", p->rate ? "divided by" : "times",
                      p->tolerance, p->same_path ? "" : ", on another path");
         fprintf(out, "%36s  %12s  %5.1f %%  %10s  %s\n", p->key,
@@ -150,6 +157,7 @@ static void print_limits(const struct why *w, FILE *out)
         else
             fprintf(out, "%22s  %12s  %7.2fx  %s\n", l->name,
                     duration((double)l->makespan_ps, time, sizeof time),
+                    /* The largest gain that any improvement of this kind can give. */
                     (double)w->run.makespan_ps / (double)l->makespan_ps, l->what);
     }
 }

@@ -64,6 +64,8 @@ static const struct row_table *table_of(enum statement which)
 
 void rows_insert(enum statement which, struct text *sql)
 {
+    /* Keys first, then what the statement fills in itself, then the columns: rows_bind counts on
+     * it. */
     const struct row_table *t = table_of(which);
     int ncolumn = 0;
     text_add(sql, "INSERT INTO %s (%s%s", t->name, t->keys, t->made);
@@ -83,6 +85,7 @@ static void add_columns(const char *name, size_t length, struct text *sql)
     for (int i = 0; i < TABLES; i++) {
         const struct row_table *t = &row_table[i];
         if (strlen(t->name) != length || strncmp(t->name, name, length) != 0) continue;
+        /* A row of several structs has their columns one after the other. */
         for (int k = 0; t->segment[k] != NULL; k++) columns_define(t->segment[k], sql);
         return;
     }
@@ -104,6 +107,7 @@ void rows_schema(struct text *sql)
     const char *rest = schema_text(), *at;
     while ((at = strchr(rest, '@')) != NULL) {
         const char *end = strchr(at + 1, '@');
+        /* A mark is a whole line; an @ anywhere else in schema.sql stops the program here. */
         CHECK(end != NULL && end[1] == '\n');
         text_add_bytes(sql, rest, (size_t)(at - rest));
         add_columns(at + 1, (size_t)(end - at - 1), sql);

@@ -33,7 +33,8 @@ struct store_value store_text(const char *v)
     return v ? (struct store_value){.kind = STORE_TEXT, .text = v} : store_null();
 }
 
-/* SQLITE_STATIC: the caller's text lives until the step. */
+/* The value keeps its type, so that one column may hold numbers and NULL. SQLITE_STATIC: the
+ * caller's text lives until the step. */
 static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
 {
     switch (v->kind) {
@@ -94,6 +95,8 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         err_set(e, ERR_IO,
                 "database %s is opened for reading only: a statement that changes it is not run",
                 s->path);
+        /* The statement is finalized on every way out: an open one would keep the database
+         * locked. */
         sqlite3_finalize(q);
         return NULL;
     }
@@ -139,6 +142,7 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
     if (q == NULL) return false;
     int ncolumn = sqlite3_column_count(q), code = SQLITE_DONE;
     const char *name[MAX_COLUMNS], *value[MAX_COLUMNS];
+    /* The same limit and order as in store_query. */
     bool ok = ncolumn <= MAX_COLUMNS ||
               err_set(e, ERR_DATA, "more than %d columns in a query", MAX_COLUMNS);
     for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
@@ -147,6 +151,7 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
         for (int i = 0; i < ncolumn; i++) value[i] = (const char *)sqlite3_column_text(q, i);
         more = row(context, ncolumn, name, value);
     }
+    /* As in store_query: a row function that stops the query makes no error. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
     sqlite3_finalize(q);
     return ok;
@@ -157,6 +162,8 @@ static bool run_once(struct store *s, const char *sql, int nvalue, const struct 
                      struct err *e)
 {
     sqlite3_stmt *q = NULL;
+    /* Rows are inserted only through a connection that was opened for writing: else it is our
+     * mistake, not the user's. */
     CHECK(s->writable);
     if (sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK) return store_failed(s, e);
     for (int i = 0; i < nvalue; i++) bind_value(q, i + 1, &value[i]);
@@ -191,6 +198,8 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
     const char *all[MAX_INSERT];
     struct store_value cell[MAX_INSERT];
     struct column_value read[MAX_INSERT]; /* which the texts may lie in */
+    /* The keys and the columns of a table are both known when the program is written: too many
+     * is a mistake of ours. */
     CHECK(n + t->n <= MAX_INSERT);
     for (int i = 0; i < n; i++) {
         all[i] = name[i];
