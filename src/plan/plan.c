@@ -51,6 +51,8 @@ static bool is_number(const struct setting *s)
 {
     if (s->field == NULL) return s->kind == SETTING_N_OVER_P;
     enum field_kind kind = s->field->kind;
+    /* With a unit the text is printed as it was written, "64 KiB": as a number it would lose the
+     * unit. */
     bool plain =
         kind == FIELD_REAL || kind == FIELD_INT || kind == FIELD_INT64 || kind == FIELD_SEED;
     return plain && s->field->unit == UNIT_NONE;
@@ -61,6 +63,7 @@ static void add_swept(struct plan *p, const struct setting_list *list)
 {
     for (int i = 0; i < list->n; i++) {
         int k = 0;
+        /* Linear search: a scenario varies a few keys only. */
         while (k < p->nswept && strcmp(p->swept[k].key, list->at[i].key) != 0) k++;
         if (k == p->nswept)
             p->swept[p->nswept++] = (struct plan_swept){list->at[i].key, is_number(&list->at[i])};
@@ -83,6 +86,7 @@ static void list_swept(struct plan *p, const struct scenario *s)
 static bool fill(struct plan *p, struct scenario *s, const struct plan_options *o,
                  struct err *e)
 {
+    /* Values of parameters are checked before the expansion, which takes them as right. */
     if (!all_kernels_exist(s, o, e) || !program_file_check(s, p->arena, e)) return false;
     text_copy(p->name, sizeof p->name, s->stem);
     p->question = s->question;
@@ -101,6 +105,7 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
     *p = (struct plan){.arena = arena_create()};
     if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
     /* Perhaps it is a file of another kind: then that is told instead. */
+    /* The plan is emptied first, so that a caller may free it whatever happened. */
     plan_free(p);
     file_kind_refuse(name, FILE_SCENARIO, e);
     return false;
@@ -128,6 +133,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
         plan_free(&p);
         return made;
     }
+    /* Settings of --set are not applied: the file alone is checked. */
     struct node *root = document_read_settings(path, p.arena, e);
     bool fine = root != NULL;
     if (fine && file_kind_of_tree(root) == FILE_MACHINE) {
@@ -150,6 +156,7 @@ bool plan_check_file(const char *path, const struct plan_options *o, struct err 
 /* --set of a machine alone: keys begin with "machine." */
 static bool set_machine(struct machine_file *m, const char *set, struct arena *a, struct err *e)
 {
+    /* No equals sign, or no key before it. */
     const char *equals = strchr(set, '='), *full;
     struct setting s;
     struct run_spec run;
@@ -189,6 +196,7 @@ static struct origin origin_make(const char *key, const char *value, const struc
 static int list_origins(const struct machine_file *m, struct origin *list, struct arena *a)
 {
     int n = 0;
+    /* One origin for each field of the table, whether the file gives it or it is a default. */
     for (int i = 0; i < machine_table.nfield; i++) {
         struct text t = {0};
         field_print(&machine_table.field[i], &m->spec, &t);
@@ -215,6 +223,7 @@ bool plan_machine(struct machine_spec *m, const char *name, const struct plan_op
         file_kind_refuse(name, FILE_MACHINE, e);
         return false;
     }
+    /* In the order of the command line: the last setting of a key counts. */
     for (int i = 0; o != NULL && i < o->nset; i++)
         if (!set_machine(&file, o->set[i], a, e)) return false;
     *m = file.spec;
@@ -246,6 +255,7 @@ bool plan_list(const char *what, struct arena *a, const char ***stem, const char
 {
     *stem = data_dir_names(what, a, n);
     *title = TAKE(a, *n + 1, const char *);
+    /* None at all means that the data directory is wrong, not that the list is empty. */
     if (*n == 0) return err_set(e, ERR_NO_INPUT, "no %s in %s/%s", what, plan_data_dir(), what);
     for (int i = 0; i < *n; i++) (*title)[i] = title_of(what, (*stem)[i], a);
     return true;

@@ -65,7 +65,7 @@ struct node *program_file_scenario(const char *name, struct arena *a, struct err
     return root;
 }
 
-/* What is being collected; `typed` names come from the command line. */
+/* What is being collected, and what is needed to open it. */
 struct collection {
     struct scenario *scenario; /* whose programs are opened */
     const struct plan_options *options; /* who opens programs, and whether any may be */
@@ -77,6 +77,7 @@ struct collection {
 static bool lies_in(const char *path, const char *dir)
 {
     char file[PATH_MAX], folder[PATH_MAX];
+    /* Both are resolved, or a link inside the folder could lead out of it. */
     if (realpath(path, file) == NULL || realpath(dir[0] != '\0' ? dir : ".", folder) == NULL)
         return false;
     const size_t n = strlen(folder);
@@ -111,6 +112,7 @@ static bool add_program(struct collection *x, const char *name, bool typed, int 
 {
     struct scenario *s = x->scenario;
     const char *file = typed ? "--set" : s->path, *path = path_of(x, name, typed);
+    /* The name is the key, not the file: settings refer to the name. */
     for (int i = 0; i < s->nprogram; i++)
         if (strcmp(s->program[i].name, name) == 0) return true;
     if (s->nprogram == SCENARIO_MAX_PROGRAMS)
@@ -171,14 +173,16 @@ bool program_file_collect(struct scenario *s, struct node *root, const struct pl
 {
     static const struct plan_options none;
     struct collection x = {s, o != NULL ? o : &none, a, e};
-    /* a --set program= takes the place of the file's */
     bool replaced = false;
     /* The command line takes the place of what the file says, which is then not looked at. */
     for (int i = 0; o != NULL && i < o->nset; i++) {
+        /* Only the program itself counts here: its parameters are settings like others, read
+         * later. */
         const char *names = set_names(o->set[i]);
         if (names == NULL) continue;
         replaced = true;
         char *list = arena_text(a, names), *rest = list;
+        /* A list may stand in brackets, as in a scenario. */
         if (list[0] == '[') list[strcspn(list, "]")] = '\0', rest++;
         for (char *name; (name = strsep(&rest, ",")) != NULL;) {
             name += strspn(name, " ");
@@ -215,6 +219,7 @@ void program_file_entitle(struct scenario *s, struct arena *a)
 /* Whether some program of the scenario has a parameter of this name. */
 static bool is_declared(const struct scenario *s, const char *name)
 {
+    /* Programs share the names of parameters: any of them will do. */
     for (int i = 0; i < s->nprogram; i++)
         if (program_sheet_find(s->program[i].sheet, name) != NULL) return true;
     return false;
@@ -262,6 +267,8 @@ bool program_file_unknown(const struct scenario *s, const char *key, const char 
 {
     const char *name[SCENARIO_MAX_PROGRAMS * 8];
     int n = 0, most = (int)(sizeof name / sizeof *name);
+    /* The nearest name is looked for among all programs, since the misspelt one may belong to
+     * any. */
     for (int i = 0; i < s->nprogram; i++)
         for (int j = 0; j < s->program[i].sheet->nparameter && n < most; j++)
             name[n++] = s->program[i].sheet->parameter[j].key;
@@ -379,6 +386,7 @@ bool program_file_choose(const struct scenario *s, struct run_spec *run,
     const struct program_sheet *sheet = sheet_of(s, run);
     const struct setting *file = last_of(list, n, "program.file"),
                          *kernel = last_of(list, n, "kernel.name");
+    /* A built-in kernel is all there is. */
     if (run->program.file[0] == '\0') return true;
     CHECK(sheet != NULL && file != NULL);
     if (kernel != NULL)

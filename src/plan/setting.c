@@ -76,6 +76,7 @@ bool setting_is_group(const char *key)
             prefix == 0 || (strncmp(key, tables[i]->prefix, prefix) == 0 && key[prefix] == '.');
         const char *rest = prefix == 0 ? key : key + prefix + 1;
         size_t n = prefix == 0 ? length : length - prefix - 1;
+        /* A group ends at a dot of the key: "machine.net" is none. */
         for (int j = 0; below && j < tables[i]->nfield; j++)
             if (strncmp(tables[i]->field[j].key, rest, n) == 0 && tables[i]->field[j].key[n] == '.')
                 return true;
