@@ -25,6 +25,8 @@ struct catalogue catalogue_of_kernels(void)
 const struct program_sheet *run_sheet(const char *image, const char *path, const char *hash,
                                       struct arena *a, struct err *e)
 {
+    /* A schedule is known by its ending; everything else is an image, whose sheet it brings
+     * itself. */
     const char *dot = strrchr(path, '.');
     if (dot != NULL && strcmp(dot, ".goal") == 0) return schedule_sheet(image, a, e);
     return guest_sheet(image, path, hash, a, e);

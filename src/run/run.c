@@ -37,6 +37,7 @@ struct run_cache *run_cache_create(void)
 
 void run_cache_destroy(struct run_cache *c)
 {
+    /* Each by the program type that made it. */
     for (int i = 0; c && i < c->n; i++) c->type[i]->cache_destroy(c->cache[i]);
     free(c);
 }
@@ -65,6 +66,8 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
               struct program_run *r, struct err *e)
 {
     *r = (struct program_run){.type = run_program(spec), .spec = *spec, .arena = a};
+    /* How a run is executed is no part of its identity: an order changes this copy of the
+     * settings only. */
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
     if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
@@ -103,6 +106,7 @@ static bool attempt(struct program_run *r, struct arena *scratch, struct arena *
 static bool attempts(struct program_run *r, struct arena *scratch, struct arena *a, struct run_result *out,
                      struct err *e)
 {
+    /* A program asks again when its residual is too large: the next attempt has more refinement. */
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     bool ok = attempt(r, scratch, a, out, e);
     while (ok && r->type->again && r->type->again(r, out)) {
