@@ -99,7 +99,10 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     if (!s->assembly) words_add_all(&w, FORCED, forced);
     /* One program sends whole numbers and reals by the same mpi_send, which Fortran's rules forbid.
      */
-    if (!s->assembly && d->language == DRIVER_FORTRAN) words_add(&w, "-fallow-argument-mismatch");
+    if (!s->assembly && d->language == DRIVER_FORTRAN) {
+        words_add(&w, "-fallow-argument-mismatch");
+        words_add(&w, "-fallow-invalid-boz"); /* hexadecimal constants as older compilers took them */
+    }
     words_add(&w, s->assembly ? "-E" : "-S");
     words_add(&w, "-o");
     words_add(&w, "-");

@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
-#include "loader/block_costs.h"
+#include "loader/price.h"
 #include "loader/crash.h"
 #include "vp/world.h"
 
@@ -67,26 +67,14 @@ static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, f
 
 /* --- images ----------------------------------------------------------------------------------- */
 
-static void *at_address(const void *image, uint64_t address, size_t size)
-{
-    return loader_template_at(image, address, size);
-}
-
-/* Every block of the code gets its price on this machine before copies are made. */
+/* Every block of the code gets its price on this machine before copies are made. Where host time is
+ * the cost, blocks only tell that something was computed since the last call. */
 static bool price_blocks(struct guest_world *w, struct err *e)
 {
-    struct block_table table;
-    size_t size;
-    table.entry = loader_template_section(w->image, BLOCK_TABLE_SECTION, &size);
-    /* Where host time is the cost, blocks only tell that something was computed since the last
-     * call. */
-    const struct node_cost told = {.instruction = 1}, *c = &w->node;
-    if (table.entry == NULL || w->cost == PROGRAM_COST_AUTHOR) return true;
-    if (w->cost == PROGRAM_COST_HOST) c = &told;
-    table.n = size / sizeof *table.entry;
-    table.address = loader_template_address(w->image, table.entry);
-    return block_costs_patch(&table, at_address, w->image, c,
-                             c == &told ? 1 : w->spec->program.factor, e);
+    const struct node_cost told = {.instruction = 1};
+    if (w->cost == PROGRAM_COST_AUTHOR) return true;
+    if (w->cost == PROGRAM_COST_HOST) return loader_price_blocks(w->image, &told, 1, e);
+    return loader_price_blocks(w->image, &w->node, w->spec->program.factor, e);
 }
 
 bool guest_world_open(struct guest_world *w, const struct node_spec *node, int nrank, struct err *e)

@@ -197,6 +197,36 @@ END
     [ "$(blocks prog)" -ge 3 ]
 }
 
+@test "an image that is executed runs on one virtual processor" {
+    printf '#include <stdio.h>\nint main(int n, char **v) { printf("%%d %%s\\n", n, v[n - 1]); return 3; }\n' >say.c
+    works mimdsim cc -O1 -fvisibility=hidden say.c -o say
+    fails_with 3 ./say -x "two words"
+    stdout_is "3 two words"
+    cp say elsewhere
+    fails_with 3 env MIMDSIM_DATA= ./elsewhere
+}
+
+@test "blocks of libraries that mimdsim cc made are counted, too" {
+    cat >sum.c <<'END'
+double sum(int n);
+double sum(int n)
+{
+    double s = 0;
+    for (int i = 1; i < n; i++) s += 1.0 / i;
+    return s;
+}
+END
+    printf '#include <stdio.h>\ndouble sum(int n);\nint main(void) { printf("%%.3f\\n", sum(1000000)); }\n' >main.c
+    works mimdsim cc -O2 -shared sum.c -o libsum.so
+    works mimdsim cc -O2 main.c -L. -lsum -Wl,-rpath,"$PWD" -o with-library
+    works mimdsim cc -O2 main.c sum.c -o without
+    for program in with-library without; do # 1e6 of 23 cycles at 300 MHz and a flop at 55 Mflop/s are 94.8 ms
+        works mimdsim mpirun -n 1 -m t3e-300 ./$program
+        stdout_is 14.393
+        stderr_says "t3e-300: 0.0948"
+    done
+}
+
 @test "make's own rules and CMake's toolchain build a project" {
     printf 'prog: one.o two.o\n\t$(CC) $(CFLAGS) -o $@ $^ -lm\n' >Makefile
     make -s CC="$MIMDSIM cc" CFLAGS=-O1
@@ -209,13 +239,16 @@ project(t C)
 include(CheckFunctionExists)
 check_function_exists(strdup HAVE_STRDUP)
 check_function_exists(no_such_function HAVE_NO_SUCH_FUNCTION)
+include(CheckCSourceRuns)
+check_c_source_runs("int main(void) { return 0; }" RUNS)
+check_c_source_runs("int main(void) { return 1; }" FAILS)
 add_library(two SHARED two.c)
 add_executable(t one.c)
 target_link_libraries(t two m)
-file(WRITE answers "${HAVE_STRDUP} ${HAVE_NO_SUCH_FUNCTION}")
+file(WRITE answers "${HAVE_STRDUP} ${RUNS} ${FAILS}${HAVE_NO_SUCH_FUNCTION}")
 END
     cmake -DCMAKE_TOOLCHAIN_FILE="$MIMDSIM_SRCDIR/share/mimdsim.cmake" -DMIMDSIM_FOLDER="${MIMDSIM%/*}" . >log 2>&1
-    [ "$(cat answers)" = "1 " ]
+    [ "$(cat answers)" = "1 1 " ]
     make -s >>log 2>&1
     [ -x t ] && readelf -n libtwo.so | grep -q mimdsim
 }
