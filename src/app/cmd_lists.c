@@ -96,7 +96,9 @@ int cmd_scenarios(int argc, char **argv)
 int cmd_kernels(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, 0, "", "List the kernels.\n\nExample: mimdsim kernels\n", 0, 0);
+    common_parse(&c, argc, argv, 0, "", 
+                 "List the built-in programs; `mimdsim programs` lists examples and your own, too.\n\n"
+                 "Example: mimdsim kernels\n", 0, 0);
     /* Names and titles from the table of programs. */
     struct catalogue k = catalogue_of_kernels();
     common_print_pairs(&c, k.n, k.name, k.title);

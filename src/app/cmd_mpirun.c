@@ -42,6 +42,8 @@ static bool takes_word(const char *option)
 }
 
 /* The first word that is no option and no option's value. */
+/* "--" is accepted before it, as everywhere else; a lone "-" is a name. The search
+ * does not know which options exist: argp refuses those that do not. */
 static int find_program(int argc, char **argv)
 {
     /* As the shell's mpirun: options of ours come before the program, all behind it are its own. */
@@ -122,7 +124,7 @@ static bool make_plan(const struct common *c, const struct own *own, const char 
 /* One worker process, so that a crash of the program is not ours; its lines come through as
  * they are written. */
 static int run_here(const struct common *c, const struct own *own, const char *program,
-                       const char *arguments)
+                    const char *arguments)
 {
     struct plan p = {0};
     struct end end = {0};

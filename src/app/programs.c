@@ -27,9 +27,11 @@ static const struct {
                  {".F90", "f90"}, {".f95", "f90"}, {".f03", "f90"}, {".f08", "f90"}};
 
 /* -g: crashes are told by function and line. */
+/* As people compile for speed, with lines for messages. Part of the identity of a program. */
 static const char flags[][8] = {"-O2", "-g"};
 
 /* NULL: no source, so an image or a schedule. */
+/* By the ending alone, as gcc chooses a language. */
 static const char *verb_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -179,6 +181,7 @@ static bool is_ours(const char *path)
 }
 
 /* Compiled beside its place and then moved there: whoever looks finds all of it or nothing. */
+/* A process that is killed on the way leaves a file that nobody takes for an image. */
 static bool compile(const char *self, const char *verb, const char *path, const char *image,
                     struct err *e)
 {

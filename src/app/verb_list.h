@@ -17,7 +17,9 @@
     X(cmd_check, "check", "validate files without running")                                                            \
     X(cmd_machines, "machines", "list machines, show one with its sources, or compare two")                            \
     X(cmd_scenarios, "scenarios", "list scenarios")                                                                    \
-    X(cmd_kernels, "kernels", "list kernels")                                                                          \
+    X(cmd_kernels, "kernels", "list built-in programs (programs lists all)")                                           \
+    X(cmd_programs, "programs", "list programs: built in, examples, your own")                                         \
+    X(cmd_new, "new", "write a parallel program to begin with, and its scenario")                                      \
     X(cmd_verify, "verify", "compare every algorithm with reference vectors")                                          \
     X(cmd_validate, "validate", "compare machines with published values, networks with references")                    \
     X(cmd_links, "links", "show the most heavily loaded links of a run")                                               \
