@@ -360,11 +360,11 @@ struct mpi_functions {
     int *nneighbors);
     int (*graphdims_get)(struct mpi_rank *self, MPI_Comm comm, int *nnodes, int *nedges);
     int (*dist_graph_create)(struct mpi_rank *self, MPI_Comm comm_old, int n,
-    const int sources[], const int degrees[], const int destinations[], const int weights[],
+    const int sources[], const int degrees[], const int destinations[], const int *weights,
     MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
     int (*dist_graph_create_adjacent)(struct mpi_rank *self, MPI_Comm comm_old, int indegree,
-    const int sources[], const int sourceweights[], int outdegree, const int destinations[],
-    const int destweights[], MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
+    const int sources[], const int *sourceweights, int outdegree, const int destinations[],
+    const int *destweights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
     int (*dist_graph_neighbors)(struct mpi_rank *self, MPI_Comm comm, int maxindegree,
     int sources[], int sourceweights[], int maxoutdegree, int destinations[],
     int destweights[]);
@@ -388,6 +388,14 @@ struct mpi_functions {
     int (*type_get_attr)(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval,
     void *attribute_val, int *flag);
     int (*type_delete_attr)(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval);
+    int (*win_create_keyval)(struct mpi_rank *self, MPI_Win_copy_attr_function *win_copy_attr_fn,
+    MPI_Win_delete_attr_function *win_delete_attr_fn, int *win_keyval, void *extra_state);
+    int (*win_free_keyval)(struct mpi_rank *self, int *win_keyval);
+    int (*win_set_attr)(struct mpi_rank *self, MPI_Win win, int win_keyval,
+    void *attribute_val);
+    int (*win_get_attr)(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val,
+    int *flag);
+    int (*win_delete_attr)(struct mpi_rank *self, MPI_Win win, int win_keyval);
     int (*keyval_create)(struct mpi_rank *self, MPI_Copy_function *copy_fn,
     MPI_Delete_function *delete_fn, int *keyval, void *extra_state);
     int (*keyval_free)(struct mpi_rank *self, int *keyval);
@@ -401,6 +409,11 @@ struct mpi_functions {
     int (*comm_get_errhandler)(struct mpi_rank *self, MPI_Comm comm,
     MPI_Errhandler *errhandler);
     int (*comm_call_errhandler)(struct mpi_rank *self, MPI_Comm comm, int errorcode);
+    int (*win_create_errhandler)(struct mpi_rank *self,
+    MPI_Win_errhandler_function *win_errhandler_fn, MPI_Errhandler *errhandler);
+    int (*win_set_errhandler)(struct mpi_rank *self, MPI_Win win, MPI_Errhandler errhandler);
+    int (*win_get_errhandler)(struct mpi_rank *self, MPI_Win win, MPI_Errhandler *errhandler);
+    int (*win_call_errhandler)(struct mpi_rank *self, MPI_Win win, int errorcode);
     int (*errhandler_free)(struct mpi_rank *self, MPI_Errhandler *errhandler);
     int (*error_class)(struct mpi_rank *self, int errorcode, int *errorclass);
     int (*error_string)(struct mpi_rank *self, int errorcode, char *string, int *resultlen);
@@ -423,6 +436,71 @@ struct mpi_functions {
     int (*info_get_nthkey)(struct mpi_rank *self, MPI_Info info, int n, char *key);
     int (*info_dup)(struct mpi_rank *self, MPI_Info info, MPI_Info *newinfo);
     int (*info_free)(struct mpi_rank *self, MPI_Info *info);
+    int (*win_create)(struct mpi_rank *self, void *base, MPI_Aint size, MPI_Count disp_unit,
+    MPI_Info info, MPI_Comm comm, MPI_Win *win);
+    int (*win_allocate)(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit, MPI_Info info,
+    MPI_Comm comm, void *baseptr, MPI_Win *win);
+    int (*win_allocate_shared)(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit,
+    MPI_Info info, MPI_Comm comm, void *baseptr, MPI_Win *win);
+    int (*win_shared_query)(struct mpi_rank *self, MPI_Win win, int rank, MPI_Aint *size,
+    MPI_Count *disp_unit, void *baseptr);
+    int (*win_create_dynamic)(struct mpi_rank *self, MPI_Info info, MPI_Comm comm,
+    MPI_Win *win);
+    int (*win_attach)(struct mpi_rank *self, MPI_Win win, void *base, MPI_Aint size);
+    int (*win_detach)(struct mpi_rank *self, MPI_Win win, const void *base);
+    int (*win_free)(struct mpi_rank *self, MPI_Win *win);
+    int (*win_get_group)(struct mpi_rank *self, MPI_Win win, MPI_Group *group);
+    int (*win_get_name)(struct mpi_rank *self, MPI_Win win, char *win_name, int *resultlen);
+    int (*win_set_name)(struct mpi_rank *self, MPI_Win win, const char *win_name);
+    int (*win_get_info)(struct mpi_rank *self, MPI_Win win, MPI_Info *info_used);
+    int (*win_set_info)(struct mpi_rank *self, MPI_Win win, MPI_Info info);
+    int (*put)(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Win win);
+    int (*get)(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Win win);
+    int (*accumulate)(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Op op, MPI_Win win);
+    int (*get_accumulate)(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, void *result_addr, MPI_Count result_count,
+    MPI_Datatype result_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Op op, MPI_Win win);
+    int (*fetch_and_op)(struct mpi_rank *self, const void *origin_addr, void *result_addr,
+    MPI_Datatype datatype, int target_rank, MPI_Aint target_disp, MPI_Op op, MPI_Win win);
+    int (*compare_and_swap)(struct mpi_rank *self, const void *origin_addr,
+    const void *compare_addr, void *result_addr, MPI_Datatype datatype, int target_rank,
+    MPI_Aint target_disp, MPI_Win win);
+    int (*rput)(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Win win, MPI_Request *request);
+    int (*rget)(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Win win, MPI_Request *request);
+    int (*raccumulate)(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
+    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count,
+    MPI_Datatype target_datatype, MPI_Op op, MPI_Win win, MPI_Request *request);
+    int (*rget_accumulate)(struct mpi_rank *self, const void *origin_addr,
+    MPI_Count origin_count, MPI_Datatype origin_datatype, void *result_addr,
+    MPI_Count result_count, MPI_Datatype result_datatype, int target_rank, MPI_Aint target_disp,
+    MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win,
+    MPI_Request *request);
+    int (*win_fence)(struct mpi_rank *self, int assert, MPI_Win win);
+    int (*win_start)(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win);
+    int (*win_complete)(struct mpi_rank *self, MPI_Win win);
+    int (*win_post)(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win);
+    int (*win_wait)(struct mpi_rank *self, MPI_Win win);
+    int (*win_test)(struct mpi_rank *self, MPI_Win win, int *flag);
+    int (*win_lock)(struct mpi_rank *self, int lock_type, int rank, int assert, MPI_Win win);
+    int (*win_unlock)(struct mpi_rank *self, int rank, MPI_Win win);
+    int (*win_lock_all)(struct mpi_rank *self, int assert, MPI_Win win);
+    int (*win_unlock_all)(struct mpi_rank *self, MPI_Win win);
+    int (*win_flush)(struct mpi_rank *self, int rank, MPI_Win win);
+    int (*win_flush_all)(struct mpi_rank *self, MPI_Win win);
+    int (*win_flush_local)(struct mpi_rank *self, int rank, MPI_Win win);
+    int (*win_flush_local_all)(struct mpi_rank *self, MPI_Win win);
+    int (*win_sync)(struct mpi_rank *self, MPI_Win win);
     double (*wtime)(struct mpi_rank *self);
     double (*wtick)(struct mpi_rank *self);
     int (*abi_get_version)(struct mpi_rank *self, int *abi_major, int *abi_minor);
@@ -625,8 +703,8 @@ int mpi_graph_map(struct mpi_rank *self, MPI_Comm comm, int nnodes, const int in
 int mpi_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int rank, int maxneighbors, int neighbors[]);
 int mpi_graph_neighbors_count(struct mpi_rank *self, MPI_Comm comm, int rank, int *nneighbors);
 int mpi_graphdims_get(struct mpi_rank *self, MPI_Comm comm, int *nnodes, int *nedges);
-int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const int sources[], const int degrees[], const int destinations[], const int weights[], MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
-int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int indegree, const int sources[], const int sourceweights[], int outdegree, const int destinations[], const int destweights[], MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
+int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const int sources[], const int degrees[], const int destinations[], const int *weights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
+int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int indegree, const int sources[], const int *sourceweights, int outdegree, const int destinations[], const int *destweights, MPI_Info info, int reorder, MPI_Comm *comm_dist_graph);
 int mpi_dist_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int maxindegree, int sources[], int sourceweights[], int maxoutdegree, int destinations[], int destweights[]);
 int mpi_dist_graph_neighbors_count(struct mpi_rank *self, MPI_Comm comm, int *indegree, int *outdegree, int *weighted);
 int mpi_comm_create_keyval(struct mpi_rank *self, MPI_Comm_copy_attr_function *comm_copy_attr_fn, MPI_Comm_delete_attr_function *comm_delete_attr_fn, int *comm_keyval, void *extra_state);
@@ -639,6 +717,11 @@ int mpi_type_free_keyval(struct mpi_rank *self, int *type_keyval);
 int mpi_type_set_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval, void *attribute_val);
 int mpi_type_get_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval, void *attribute_val, int *flag);
 int mpi_type_delete_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval);
+int mpi_win_create_keyval(struct mpi_rank *self, MPI_Win_copy_attr_function *win_copy_attr_fn, MPI_Win_delete_attr_function *win_delete_attr_fn, int *win_keyval, void *extra_state);
+int mpi_win_free_keyval(struct mpi_rank *self, int *win_keyval);
+int mpi_win_set_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val);
+int mpi_win_get_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val, int *flag);
+int mpi_win_delete_attr(struct mpi_rank *self, MPI_Win win, int win_keyval);
 int mpi_keyval_create(struct mpi_rank *self, MPI_Copy_function *copy_fn, MPI_Delete_function *delete_fn, int *keyval, void *extra_state);
 int mpi_keyval_free(struct mpi_rank *self, int *keyval);
 int mpi_attr_put(struct mpi_rank *self, MPI_Comm comm, int keyval, void *attribute_val);
@@ -648,6 +731,10 @@ int mpi_comm_create_errhandler(struct mpi_rank *self, MPI_Comm_errhandler_functi
 int mpi_comm_set_errhandler(struct mpi_rank *self, MPI_Comm comm, MPI_Errhandler errhandler);
 int mpi_comm_get_errhandler(struct mpi_rank *self, MPI_Comm comm, MPI_Errhandler *errhandler);
 int mpi_comm_call_errhandler(struct mpi_rank *self, MPI_Comm comm, int errorcode);
+int mpi_win_create_errhandler(struct mpi_rank *self, MPI_Win_errhandler_function *win_errhandler_fn, MPI_Errhandler *errhandler);
+int mpi_win_set_errhandler(struct mpi_rank *self, MPI_Win win, MPI_Errhandler errhandler);
+int mpi_win_get_errhandler(struct mpi_rank *self, MPI_Win win, MPI_Errhandler *errhandler);
+int mpi_win_call_errhandler(struct mpi_rank *self, MPI_Win win, int errorcode);
 int mpi_errhandler_free(struct mpi_rank *self, MPI_Errhandler *errhandler);
 int mpi_error_class(struct mpi_rank *self, int errorcode, int *errorclass);
 int mpi_error_string(struct mpi_rank *self, int errorcode, char *string, int *resultlen);
@@ -667,6 +754,44 @@ int mpi_info_get_nkeys(struct mpi_rank *self, MPI_Info info, int *nkeys);
 int mpi_info_get_nthkey(struct mpi_rank *self, MPI_Info info, int n, char *key);
 int mpi_info_dup(struct mpi_rank *self, MPI_Info info, MPI_Info *newinfo);
 int mpi_info_free(struct mpi_rank *self, MPI_Info *info);
+int mpi_win_create(struct mpi_rank *self, void *base, MPI_Aint size, MPI_Count disp_unit, MPI_Info info, MPI_Comm comm, MPI_Win *win);
+int mpi_win_allocate(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit, MPI_Info info, MPI_Comm comm, void *baseptr, MPI_Win *win);
+int mpi_win_allocate_shared(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit, MPI_Info info, MPI_Comm comm, void *baseptr, MPI_Win *win);
+int mpi_win_shared_query(struct mpi_rank *self, MPI_Win win, int rank, MPI_Aint *size, MPI_Count *disp_unit, void *baseptr);
+int mpi_win_create_dynamic(struct mpi_rank *self, MPI_Info info, MPI_Comm comm, MPI_Win *win);
+int mpi_win_attach(struct mpi_rank *self, MPI_Win win, void *base, MPI_Aint size);
+int mpi_win_detach(struct mpi_rank *self, MPI_Win win, const void *base);
+int mpi_win_free(struct mpi_rank *self, MPI_Win *win);
+int mpi_win_get_group(struct mpi_rank *self, MPI_Win win, MPI_Group *group);
+int mpi_win_get_name(struct mpi_rank *self, MPI_Win win, char *win_name, int *resultlen);
+int mpi_win_set_name(struct mpi_rank *self, MPI_Win win, const char *win_name);
+int mpi_win_get_info(struct mpi_rank *self, MPI_Win win, MPI_Info *info_used);
+int mpi_win_set_info(struct mpi_rank *self, MPI_Win win, MPI_Info info);
+int mpi_put(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win);
+int mpi_get(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win);
+int mpi_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win);
+int mpi_get_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, void *result_addr, MPI_Count result_count, MPI_Datatype result_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win);
+int mpi_fetch_and_op(struct mpi_rank *self, const void *origin_addr, void *result_addr, MPI_Datatype datatype, int target_rank, MPI_Aint target_disp, MPI_Op op, MPI_Win win);
+int mpi_compare_and_swap(struct mpi_rank *self, const void *origin_addr, const void *compare_addr, void *result_addr, MPI_Datatype datatype, int target_rank, MPI_Aint target_disp, MPI_Win win);
+int mpi_rput(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win, MPI_Request *request);
+int mpi_rget(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win, MPI_Request *request);
+int mpi_raccumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win, MPI_Request *request);
+int mpi_rget_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count, MPI_Datatype origin_datatype, void *result_addr, MPI_Count result_count, MPI_Datatype result_datatype, int target_rank, MPI_Aint target_disp, MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win, MPI_Request *request);
+int mpi_win_fence(struct mpi_rank *self, int assert, MPI_Win win);
+int mpi_win_start(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win);
+int mpi_win_complete(struct mpi_rank *self, MPI_Win win);
+int mpi_win_post(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win);
+int mpi_win_wait(struct mpi_rank *self, MPI_Win win);
+int mpi_win_test(struct mpi_rank *self, MPI_Win win, int *flag);
+int mpi_win_lock(struct mpi_rank *self, int lock_type, int rank, int assert, MPI_Win win);
+int mpi_win_unlock(struct mpi_rank *self, int rank, MPI_Win win);
+int mpi_win_lock_all(struct mpi_rank *self, int assert, MPI_Win win);
+int mpi_win_unlock_all(struct mpi_rank *self, MPI_Win win);
+int mpi_win_flush(struct mpi_rank *self, int rank, MPI_Win win);
+int mpi_win_flush_all(struct mpi_rank *self, MPI_Win win);
+int mpi_win_flush_local(struct mpi_rank *self, int rank, MPI_Win win);
+int mpi_win_flush_local_all(struct mpi_rank *self, MPI_Win win);
+int mpi_win_sync(struct mpi_rank *self, MPI_Win win);
 double mpi_wtime(struct mpi_rank *self);
 double mpi_wtick(struct mpi_rank *self);
 int mpi_abi_get_version(struct mpi_rank *self, int *abi_major, int *abi_minor);

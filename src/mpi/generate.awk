@@ -15,7 +15,6 @@ BEGIN {
     reason["session"] = "sessions: a run has one world, begun by MPI_Init"
     reason["partitioned"] = "partitioned communication is for threads, and a rank is one thread"
     reason["tool"] = "the tools' interface: the simulator records more than it could tell"
-    reason["window"] = "one-sided communication"
     reason["external"] = "external32: all ranks of a machine write numbers the same way"
     reason["none"] = "not there"
     handles = "comm MPI_Comm group MPI_Group type MPI_Datatype op MPI_Op request MPI_Request info MPI_Info " \
@@ -95,6 +94,7 @@ function declared(i, large,   k, base) {
         sub(/@/, large ? "_c" : "", k)
         return k (k ~ /\*$/ ? "" : " ") par[i]
     }
+    if (k == "w") return "const int *" par[i] # a pointer: the sign for no weights is no array
     base = k; sub(/\*$/, "", base)
     if (base in handle) {
         if (arr[i]) return (k == base ? "const " : "") handle[base] " " par[i] "[]"

@@ -141,7 +141,8 @@ int mpi_keyval_end(struct mpi_rank *r, int *keyval)
 {
     struct mpi_keyval *k = keyval_of(r, *keyval);
     if (!k) return r->code;
-    if (--k->o.uses == 0) mpi_handle_end(r, k);
+    if (!k->freed && --k->o.uses == 0) mpi_handle_end(r, k);
+    k->freed = true;
     *keyval = MPI_KEYVAL_INVALID;
     return MPI_SUCCESS;
 }

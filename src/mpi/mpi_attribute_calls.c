@@ -1,5 +1,5 @@
 /* mpi_attribute_calls.c - the functions of keyvals and attributes. */
-#include "mpi/mpi_internal.h"
+#include "mpi/mpi_window.h"
 
 #define KEYVALS(create_name, free_name, copy_type, delete_type, a, b, c)                           \
     int create_name(struct mpi_rank *self, copy_type *a, delete_type *b, int *c,                   \
@@ -12,6 +12,8 @@ KEYVALS(mpi_comm_create_keyval, mpi_comm_free_keyval, MPI_Comm_copy_attr_functio
         MPI_Comm_delete_attr_function, comm_copy_attr_fn, comm_delete_attr_fn, comm_keyval)
 KEYVALS(mpi_type_create_keyval, mpi_type_free_keyval, MPI_Type_copy_attr_function,
         MPI_Type_delete_attr_function, type_copy_attr_fn, type_delete_attr_fn, type_keyval)
+KEYVALS(mpi_win_create_keyval, mpi_win_free_keyval, MPI_Win_copy_attr_function,
+        MPI_Win_delete_attr_function, win_copy_attr_fn, win_delete_attr_fn, win_keyval)
 KEYVALS(mpi_keyval_create, mpi_keyval_free, MPI_Copy_function, MPI_Delete_function, copy_fn,
         delete_fn, keyval)
 
@@ -81,4 +83,28 @@ int mpi_type_get_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_key
 int mpi_type_delete_attr(struct mpi_rank *self, MPI_Datatype datatype, int type_keyval)
 {
     return mpi_attribute_delete(self, KIND_TYPE, mpi_type_of(self, datatype), type_keyval);
+}
+
+/* --- windows: their own attributes are in mpi_window.c --- */
+
+int mpi_win_set_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val)
+{
+    return mpi_attribute_set(self, KIND_WIN, mpi_window_of(self, win), win_keyval, attribute_val);
+}
+
+int mpi_win_get_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val,
+                     int *flag)
+{
+    struct mpi_window *w = mpi_window_of(self, win);
+    if (!w) return self->code;
+    if (mpi_window_attribute(w, win_keyval, attribute_val)) {
+        *flag = 1;
+        return MPI_SUCCESS;
+    }
+    return mpi_attribute_get(self, KIND_WIN, w, win_keyval, attribute_val, flag);
+}
+
+int mpi_win_delete_attr(struct mpi_rank *self, MPI_Win win, int win_keyval)
+{
+    return mpi_attribute_delete(self, KIND_WIN, mpi_window_of(self, win), win_keyval);
 }

@@ -107,3 +107,9 @@ int mpi_errhandler_free(struct mpi_rank *self, MPI_Errhandler *errhandler)
     *errhandler = MPI_ERRHANDLER_NULL;
     return MPI_SUCCESS;
 }
+
+int mpi_win_create_errhandler(struct mpi_rank *self, MPI_Win_errhandler_function *win_errhandler_fn,
+                              MPI_Errhandler *errhandler)
+{
+    return create_handler(self, (MPI_Handler_function *)(intptr_t)win_errhandler_fn, errhandler);
+}

@@ -1,6 +1,6 @@
 /* mpi_find.c - from handles to communicators and groups, and what is wrong with handles that are
  * none. */
-#include "mpi/mpi_internal.h"
+#include "mpi/mpi_window.h"
 
 enum { FIRST_HANDLE = 0x400 };
 
@@ -47,4 +47,10 @@ struct mpi_group *mpi_group_of(struct mpi_rank *r, MPI_Group handle)
     if (handle == MPI_GROUP_EMPTY) return (struct mpi_group *)&empty;
     struct mpi_group *g = mpi_object(r, handle, KIND_GROUP);
     return g ? g : mpi_bad_handle(r, handle, KIND_GROUP);
+}
+
+struct mpi_window *mpi_window_of(struct mpi_rank *r, MPI_Win handle)
+{
+    struct mpi_window *w = mpi_object(r, handle, KIND_WIN);
+    return w ? w : mpi_bad_handle(r, handle, KIND_WIN);
 }

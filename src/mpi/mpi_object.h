@@ -122,6 +122,7 @@ struct mpi_errhandler {
 struct mpi_keyval {
     struct mpi_object o;
     void *copy, *remove, *extra;
+    bool freed; /* by the program: it lives on while values are attached */
 };
 
 struct mpi_entry {

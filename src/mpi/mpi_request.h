@@ -39,6 +39,7 @@ enum { PROGRESS_TASK = -1, PROGRESS_NONE = -2 };
 struct mpi_task *mpi_task_start(struct mpi_rank *r, mpi_task_fn *run, void *argument);
 int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wanted, bool block);
 void mpi_wait_request(struct mpi_rank *r, struct comm_request *q);
+void mpi_task_go_on(struct mpi_rank *r, struct mpi_task *t);
 void mpi_wait_task(struct mpi_rank *r, const struct mpi_task *t);
 void mpi_poll_tasks(struct mpi_rank *r);
 void mpi_tasks_end(struct mpi_world *w);

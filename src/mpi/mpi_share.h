@@ -26,7 +26,6 @@ struct mpi_type *mpi_type_of(struct mpi_rank *r, MPI_Datatype handle);
 struct mpi_op *mpi_op_of(struct mpi_rank *r, MPI_Op handle);
 struct mpi_request *mpi_request_of(struct mpi_rank *r, MPI_Request handle);
 struct mpi_errhandler *mpi_errhandler_of(struct mpi_rank *r, MPI_Errhandler handle);
-struct mpi_window *mpi_window_of(struct mpi_rank *r, MPI_Win handle);
 void mpi_comm_drop(struct mpi_rank *r, struct mpi_comm *c);
 void mpi_group_drop(struct mpi_rank *r, struct mpi_group *g);
 void mpi_type_use(struct mpi_type *t);
@@ -123,6 +122,5 @@ void mpi_name_give(struct mpi_rank *r, enum mpi_kind kind, const void *object, c
 
 /* --- mpi_window.c: attribute: one of the standard's, false: none of them --- */
 bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value);
-void mpi_windows_end(struct mpi_rank *r);
 
 #endif

@@ -125,6 +125,7 @@ int mpi_finalize(struct mpi_rank *self)
     char text[160];
     mpi_attributes_end(self, KIND_COMM, self->self_comm);
     mpi_attributes_end(self, KIND_COMM, self->world_comm);
+    if (self->windows) mpi_fail(self, "a window was not freed");
     if (self->pending > 0) {
         snprintf(text, sizeof text, "%d request%s started and neither completed nor freed",
                  self->pending, self->pending == 1 ? " was" : "s were");

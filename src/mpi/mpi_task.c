@@ -55,8 +55,8 @@ static void begin(void *argument)
     t->done = true;
 }
 
-/* go_on: run t until it waits or is done; a task that ends leaves the list. */
-static void go_on(struct mpi_rank *r, struct mpi_task *t)
+/* Run t until it waits or is done; a task that ends leaves the list. */
+void mpi_task_go_on(struct mpi_rank *r, struct mpi_task *t)
 {
     const char *call = r->call;
     r->running = t;
@@ -86,7 +86,7 @@ struct mpi_task *mpi_task_start(struct mpi_rank *r, mpi_task_fn *run, void *argu
     while (*end) end = &(*end)->next;
     *end = t;
     s->fiber = fiber_start(s->fibers, s->number, begin, t);
-    go_on(r, t);
+    mpi_task_go_on(r, t);
     return t;
 }
 
@@ -120,7 +120,7 @@ int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wa
     if (found < nwanted) return found < 0 ? PROGRESS_NONE : found;
     struct mpi_task *t = r->tasks;
     for (int i = nwanted; i < found; i++) t = t->next;
-    go_on(r, t);
+    mpi_task_go_on(r, t);
     return PROGRESS_TASK;
 }
 
