@@ -110,3 +110,13 @@ makespan() {
         [ "$expected" = "$found" ] || { echo "$kernel: $expected us, again $found us"; return 1; }
     done
 }
+
+@test "each receive finds the message that it found" {
+    printf '%s\n' 'num_ranks 2' 'rank 0 {' 'a: send 8b to 1 tag 1' 'b: calc 50000' 'b requires a' 'c: send 9b to 1 tag 2' \
+        'c requires b' '}' 'rank 1 {' 'a: recv 9b from 0 tag 2' 'b: calc 100000' 'b requires a' 'c: recv 8b from 0 tag 1' \
+        'c requires b' '}' > late.goal
+    expected=$(makespan late.goal -m loggp-example)
+    works mimdsim timeline late.goal -m loggp-example --format goal --dir out
+    found=$(makespan out/timeline.goal -m loggp-example)
+    [ "$expected" = "$found" ] || { echo "$expected us, again $found us"; return 1; }
+}

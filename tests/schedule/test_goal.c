@@ -242,6 +242,13 @@ static void broken_binary_is_refused(void **state)
     const struct bytes whole = two_ranks_binary();
     struct random r = random_make(5, 0, 0);
     struct err e;
+    /* an operation of the list that is one beyond the last */
+    struct bytes beyond = whole;
+    struct arena *memory = arena_create();
+    beyond.s[8 + 38 + 8 + 8 + 3 * 39] = 3;
+    assert_null(read_binary(&beyond, beyond.n, memory, &e));
+    assert_non_null(strstr(e.text, "rank 0: a dependency of operation 3"));
+    arena_destroy(memory);
     for (int n = 1; n < whole.n; n++) {
         struct arena *a = arena_create();
         assert_null(read_binary(&whole, n, a, &e));

@@ -73,6 +73,20 @@ static void what_is_there_earlier_goes_first(void **state)
                   -1, (const int64_t[]){2 * US, (6000 + 3000 + 7000 + 100) * 1000});
 }
 
+/* The send could start with the computing time, before the message came: it goes first, at 6 us. */
+static void what_could_start_earlier_goes_first(void **state)
+{
+    (void)state;
+    expect_finish("num_ranks 2\n"
+                  "rank 0 {\nsend 0b to 1\nrecv 0b from 1\n}\n"
+                  "rank 1 {\n"
+                  "recv 0b from 0\n"
+                  "a: calc 6000\n"
+                  "b: send 0b to 0\nb irequires a\n"
+                  "}\n",
+                  -1, (const int64_t[]){6 * US + trip(0) + receipt(0), 11 * US});
+}
+
 /* b waits for a's end, c for its start alone. */
 static void requirements_are_ends_or_starts(void **state)
 {
@@ -150,6 +164,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_message_takes_what_the_machine_says),
         cmocka_unit_test(what_is_there_earlier_goes_first),
+        cmocka_unit_test(what_could_start_earlier_goes_first),
         cmocka_unit_test(requirements_are_ends_or_starts),
         cmocka_unit_test(processors_compute_beside_each_other),
         cmocka_unit_test(large_sends_wait_for_their_receive),
