@@ -21,6 +21,7 @@ static void to_joint_axes(const struct subspace *s, const struct articulated *b,
 {
     real full[36], t[36];
     sym6_expand(full, &b->inertia);
+    /* Unit columns: the matrix in joint axes is a permutation of that in body axes. */
     if (s->pick) {
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++) m[6 * i + j] = full[6 * s->pick[i] + s->pick[j]];
@@ -28,6 +29,7 @@ static void to_joint_axes(const struct subspace *s, const struct articulated *b,
         }
         return;
     }
+    /* Otherwise two products with the orthonormal [H W], of which the second is symmetric. */
     for (int j = 0; j < 6; j++)
         for (int i = 0; i < 6; i++) t[6 * j + i] = screw_dot(full + 6 * i, s->col + 6 * j);
     for (int i = 0; i < 6; i++) {
@@ -39,6 +41,8 @@ static void to_joint_axes(const struct subspace *s, const struct articulated *b,
 /* A (symmetric 6x6) = W S W^T for S (c x c). */
 static void from_joint_axes(const struct subspace *s, const real *schur, struct sym6 *out)
 {
+    /* Where entry (r, k) of the full matrix lies among the 21 of struct sym6: its blocks a,
+     * b, c. */
     static const signed char at[6][6] = {{0, 1, 2, 6, 7, 8},    {1, 3, 4, 9, 10, 11},    {2, 4, 5, 12, 13, 14},
                                          {6, 9, 12, 15, 16, 17}, {7, 10, 13, 16, 18, 19}, {8, 11, 14, 17, 19, 20}};
     real *flat[21];
@@ -46,6 +50,7 @@ static void from_joint_axes(const struct subspace *s, const real *schur, struct 
     for (int k = 0; k < 9; k++) flat[6 + k] = &out->b[k];
     for (int k = 0; k < 21; k++) *flat[k] = 0;
     for (int i = 0; i < s->c; i++) {
+        /* W has unit columns: rows and columns of S only move to their places. */
         if (s->pick) {
             for (int j = 0; j <= i; j++) *flat[at[s->pick[s->d + i]][s->pick[s->d + j]]] = schur[6 * i + j];
             continue;
@@ -64,12 +69,15 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     int d = s->d, c = s->c;
     real m[36], p[6], y[36], schur[36], along_w[6];
     struct work uncounted = {0};
+    /* I_hh, I_wh and e = tau - H^T p, apart for the way back. */
     to_joint_axes(s, b, m, p);
     for (int i = 0; i < d; i++) {
         for (int j = 0; j <= i; j++) b->g[packed_index(i, j)] = m[6 * i + j];
         for (int j = 0; j < c; j++) y[c * i + j] = b->wh[d * j + i] = m[6 * i + d + j];
         b->e[i] = tau[i] - p[i];
     }
+    /* Not positive definite: nothing resists along H (massless bodies), and u' is not
+     * determined. */
     if (d > 0 && !dense_factor(d, b->g, b->g, &uncounted)) return false;
     if (d > 0) dense_solve(d, 1, b->g, b->e, &uncounted);
     if (d > 0) dense_forward(d, c, b->g, y, &uncounted);
@@ -85,6 +93,7 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
         along_w[i] = p[d + i];
         for (int k = 0; k < d; k++) along_w[i] += b->wh[d * i + k] * b->e[k];
     }
+    /* p^a = H tau + W (p_w + I_wh I_hh^-1 e): along H the joint force itself is handed on. */
     screw_zero(pa);
     subspace_h(s, tau, pa);
     subspace_w(s, along_w, pa);
@@ -96,7 +105,8 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     return true;
 }
 
-/* moving: with velocity terms. */
+/* moving: with velocity terms.
+ * The body alone: its own inertia, P less the loads (physics 1.10). */
 static void start(const struct dynamics *d, int i, bool moving, struct articulated *b)
 {
     sym6_from_inertia(&b->inertia, &d->body[i].inertia);
@@ -113,6 +123,7 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
     int parent = d->body[i].parent;
     real *a = d->a + 6 * i, h[6], w[6], z[6];
     struct work uncounted = {0};
+    /* What the body would do if its joint did not give way. */
     xform_motion(a, &d->pose[i].x, parent >= 0 ? d->a + 6 * parent : moving ? d->base : still);
     if (moving && !d->at_rest) screw_add(a, d->bias + 6 * i);
     subspace_h_transposed(s, a, h);
@@ -132,7 +143,8 @@ static void accelerate(struct dynamics *d, int i, bool moving, const struct arti
     subspace_h(s, z, a);
 }
 
-/* The three sweeps at d's poses and, if moving, velocities. */
+/* The three sweeps at d's poses and, if moving, velocities.
+ * Tip to base, then base to tip: O(n) whatever the tree. */
 static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
 {
     const bool biased = moving && !d->at_rest;
@@ -156,6 +168,7 @@ static bool sweep(struct dynamics *d, bool moving, const real *tau, real *ud)
     return good;
 }
 
+/* The general case: any joints, at rest or in motion. */
 bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
     dynamics_place(d, q);
@@ -166,12 +179,14 @@ bool aba_full(struct dynamics *d, const real *q, const real *u, const real *tau,
     return sweep(d, true, tau, ud);
 }
 
+/* At the poses of the last call: what forces alone do, without gravity and velocities. */
 bool aba_response(struct dynamics *d, const real *tau, real *ud, struct work *w)
 {
     work_count_aba(d, false, w);
     return sweep(d, false, tau, ud);
 }
 
+/* All-revolute systems have a faster text of their own. */
 bool aba(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
     return d->revolute ? aba_revolute(d, q, u, tau, ud, w) : aba_full(d, q, u, tau, ud, w);

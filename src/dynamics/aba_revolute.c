@@ -46,6 +46,7 @@ static inline void start(const struct revolute *b, real u, const real *wp, real 
 
 /* The rigid body's inertia. */
 enum { RIGID_FLOP = 3 + 6 + 3 + 6 };
+/* About the origin from second moments: half the products of a general inertia. */
 static inline void rigid(const struct revolute *b, struct link *l)
 {
     const real *s = b->s, *S = b->second;
@@ -74,6 +75,7 @@ static inline bool eliminate(struct link *l, bool at_rest, real tau)
     for (int j = 0; j < 3; j++) b[j] -= kx * b[6 + j], b[3 + j] -= ky * b[6 + j];
     c[0] -= k0 * b[6], c[1] -= k0 * b[7], c[2] -= k0 * b[8];
     c[3] -= k1 * b[7], c[4] -= k1 * b[8], c[5] -= k2 * b[8];
+    /* No bias: e alone reaches the parent. */
     if (at_rest) {
         l->n[0] += kx * e, l->n[1] += ky * e, l->n[2] = tau;
         l->f[0] += k0 * e, l->f[1] += k1 * e, l->f[2] += k2 * e;

@@ -8,6 +8,8 @@
 /* Rotation of a quaternion x y z w of any length. */
 static void rotation_of(const double *quat, quad *r)
 {
+    /* In quad from the file's doubles: a length that is off by rounding is no error of the
+     * rotation. */
     quad x = quat[0], y = quat[1], z = quat[2], w = quat[3];
     quad f = 2 / (x * x + y * y + z * z + w * w);
     r[0] = 1 - f * (y * y + z * z), r[1] = f * (x * y - w * z), r[2] = f * (x * z + w * y);
@@ -33,6 +35,7 @@ void direction_orthonormalise(quad *t, const quad *n)
 /* Some unit vector orthogonal to n: exact for coordinate axes. */
 void direction_any_orthogonal(const quad *n, quad *t)
 {
+    /* Along the smallest component, so that the difference does not cancel. */
     int k = 0;
     for (int i = 1; i < 3; i++)
         if (fabsq(n[i]) < fabsq(n[k])) k = i;
@@ -95,7 +98,8 @@ static void slide_of(const struct body_def *b, quad *slide)
     mat3_transpose(slide, columns);
 }
 
-/* y = R^T S R for the symmetric S. */
+/* y = R^T S R for the symmetric S.
+ * Of an inertia given in user axes. */
 static void turn_back(quad *y, const quad *r, const quad *s)
 {
     quad transposed[9];
@@ -106,6 +110,7 @@ static void turn_back(quad *y, const quad *r, const quad *s)
 /* Inverse of a symmetric 3x3 by cofactors; false when it is not positive definite. */
 static bool invert(quad *y, const quad *s)
 {
+    /* Cofactors of the first row give determinant and inverse. */
     quad a = s[3] * s[5] - s[4] * s[4], b = s[2] * s[4] - s[1] * s[5], c = s[1] * s[4] - s[2] * s[3];
     quad det = s[0] * a + s[1] * b + s[2] * c;
     if (!(s[0] > 0) || !(s[0] * s[3] - s[1] * s[1] > 0) || !(det > 0)) return false;
@@ -122,8 +127,10 @@ static void phi_of(struct body_constants *c, quad mass)
     quad inverse[6], full[9], skew[9], t[9];
     for (int i = 0; i < 9; i++) c->phi_b[i] = 0;
     for (int i = 0; i < 6; i++) c->phi_a[i] = c->phi_c[i] = 0;
+    /* Massless bodies and point masses have none; the constraint force algorithm refuses them. */
     if (!(mass > 0) || !invert(inverse, c->jc)) return;
     for (int i = 0; i < 6; i++) c->phi_a[i] = inverse[i];
+    /* physics 1.3: Phi about the body's origin. */
     sym3_expand(full, inverse);
     mat3_skew(skew, c->s);
     mat3_mul(t, full, skew);
@@ -146,6 +153,7 @@ static void about_origin(struct body_constants *c, quad mass)
     c->j[5] = c->jc[5] + mass * (s[0] * s[0] + s[1] * s[1]);
 }
 
+/* Frames are given in user axes; everything inside is in turned ones. */
 void frame_constants_make(const struct model *m, int i, const struct frame *f, quad *r, quad *p)
 {
     quad turn[9], rotation[9], offset[3] = {f->p[0], f->p[1], f->p[2]};
@@ -157,6 +165,7 @@ void frame_constants_make(const struct model *m, int i, const struct frame *f, q
     mat3_mul_vec_transposed(p, turn, offset);
 }
 
+/* The parent's frame is turned, too: both ends of the joint's placement. */
 void body_constants_place(const struct model *m, int i, struct body_constants *c)
 {
     const struct body_def *b = &m->body[i];
@@ -169,6 +178,7 @@ void body_constants_place(const struct model *m, int i, struct body_constants *c
     c->unit = b->pitch == 0 ? 1 : 1 / sqrtq(1 + pitch * pitch);
 }
 
+/* Turned by the same rotation as the frame. */
 void body_constants_inertia(const struct model *m, int i, struct body_constants *c)
 {
     const struct body_def *b = &m->body[i];

@@ -3,9 +3,11 @@
 
 #include "linalg/dense.h"
 
+/* Bodies with several children couple them; others pass on to the next joint only. */
 static int child_count(const struct dynamics *d, int i) { return d->model->child_at[i + 1] - d->model->child_at[i]; }
 
-/* Phi of body i as it stands. */
+/* Phi of body i as it stands.
+ * Phi of a body with several children is lowered by each child that is eliminated. */
 static const struct sym6 *phi_of(const struct dynamics *d, const struct cfa_system *s, int i)
 {
     return child_count(d, i) > 1 ? &s->phi[i] : &d->body[i].phi;
@@ -23,6 +25,7 @@ static void moved_column(const struct body_pose *pose, int k, real *xw)
         xform_force(xw, &pose->x, column);
         return;
     }
+    /* A unit column moved is a column of the rotation, with a lever arm if it is a force. */
     int axis = pose->s.pick[pose->s.d + k];
     const real *r = pose->x.r + axis % 3;
     vec3_set(column, r[0], r[3], r[6]);
@@ -42,6 +45,7 @@ static void phi_times(const struct sym6 *phi, const real *xw, bool angular, real
         sym6_mul(u, phi, xw);
         return;
     }
+    /* Half of the products are with zeros. */
     sym3_mul_vec(u, phi->a, xw);
     mat3_mul_vec_transposed(u + 3, phi->b, xw);
 }
@@ -51,6 +55,7 @@ static void project(const struct subspace *s, const struct sym6 *phi, real *g, s
 {
     real full[36], t[36];
     sym6_expand(full, phi);
+    /* Picked columns: the entries are there already. */
     if (s->pick) {
         for (int i = 0; i < s->c; i++)
             for (int j = 0; j <= i; j++) g[packed_index(i, j)] = full[6 * s->pick[s->d + i] + s->pick[s->d + j]];
@@ -66,6 +71,7 @@ static void project(const struct subspace *s, const struct sym6 *phi, real *g, s
 /* phi -= y^T D^-1 y for y (c x 6). */
 static void lower_phi(struct sym6 *phi, int c, const real *y, const real *g)
 {
+    /* The 21 entries of a symmetric 6x6, block by block. */
     static const signed char row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int k = 0; k < c; k++) {
         const real *v = y + 6 * k;
@@ -79,7 +85,8 @@ static void lower_phi(struct sym6 *phi, int c, const real *y, const real *g)
     }
 }
 
-/* The parent's block (packed n x n) -= y^T D^-1 y for y (c x n). */
+/* The parent's block (packed n x n) -= y^T D^-1 y for y (c x n).
+ * The parent's W is known, so its block of A itself can be lowered. */
 static void lower_block(real *block, int n, int c, const real *y, const real *g)
 {
     for (int k = 0; k < c; k++) {
@@ -98,6 +105,7 @@ static int couple(const struct body_pose *pose, const struct sym6 *phi, real *u,
     int c = pose->s.c, flop = 0;
     real xw[36];
     for (int k = 0; k < c; k++) {
+        /* A moment needs no lever arm: 30 flops instead of 75. */
         bool angular = is_angular(&pose->s, k);
         moved_column(pose, k, xw + 6 * k);
         phi_times(phi, xw + 6 * k, angular, u + 6 * k);
@@ -121,10 +129,13 @@ static bool eliminate(struct dynamics *d, int i, struct cfa_system *s, struct wo
     int c = pose->s.c, parent = d->body[i].parent;
     real u[36];
     if (c == 0) return true;
+    /* All children have been eliminated: its own diagonal block is final now. */
     if (child_count(d, i) > 1) project(&pose->s, &s->phi[i], row->g, w);
+    /* A joint on the base couples to nobody below. */
     if (parent < 0) return dense_factor(c, row->g, row->g, w);
     w->flop += (uint64_t)couple(pose, phi_of(d, s, parent), u, row->g);
     if (!dense_factor(c, row->g, row->g, w)) return false;
+    /* An only child meets one joint below, others the whole body (6 columns). */
     bool alone = child_count(d, parent) == 1;
     const struct subspace *ps = &d->pose[parent].s;
     row->width = alone ? ps->c : 6;
@@ -147,6 +158,7 @@ static bool eliminate(struct dynamics *d, int i, struct cfa_system *s, struct wo
 
 bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
 {
+    /* A chain needs no lowered Phi: every body has at most one child. */
     s->row = TAKE(d->arena, d->nbody, struct cfa_row);
     s->phi = d->model->is_chain ? NULL : TAKE(d->arena, d->nbody, struct sym6);
     for (int i = 0; i < d->nbody; i++) {
@@ -155,6 +167,7 @@ bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
         else
             project(&d->pose[i].s, &d->body[i].phi, s->row[i].g, w);
     }
+    /* Leaves have the highest numbers. */
     for (int i = d->nbody - 1; i >= 0; i--)
         if (!eliminate(d, i, s, w)) return false;
     return true;
@@ -170,6 +183,7 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
     bool alone = parent >= 0 && child_count(d, parent) == 1, carried = parent >= 0 && !alone;
     const bool gathers = child_count(d, i) > 1;
     real t[6] = {0}, z[6];
+    /* What the siblings' forces do to the common parent. */
     if (carried) xform_motion(t, &pose->x, beta + 6 * parent);
     if (gathers) screw_sub(t, beta + 6 * i);
     if (carried || gathers) {
@@ -177,6 +191,7 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
         for (int k = 0; k < c; k++) r[6 * i + k] += z[k];
         w->flop += (uint64_t)(joint_cost_of(d->body[i].joint)->w_transposed + c);
     }
+    /* L^-1 of the row, then its effect below through y. */
     dense_forward(c, 1, row->g, r + 6 * i, w);
     for (int k = 0; k < c && parent >= 0; k++) {
         real scaled = r[6 * i + k] * row->g[packed_index(k, k)];
@@ -195,22 +210,26 @@ static void solve_outward(struct dynamics *d, const struct cfa_system *s, int i,
     const struct cfa_row *row = &s->row[i];
     int c = pose->s.c, parent = d->body[i].parent;
     bool alone = parent >= 0 && child_count(d, parent) == 1;
+    /* The root has nothing below it. */
     const real *from = parent < 0 ? NULL : alone ? r + 6 * parent : g + 6 * parent;
     real *force = x + 6 * i, t[6];
     for (int k = 0; k < c; k++)
         for (int j = 0; j < row->width; j++) r[6 * i + k] += row->y[row->width * k + j] * from[j];
+    /* D^-1 and L^-T of the row. */
     dense_scale(c, 1, row->g, r + 6 * i, w);
     dense_backward(c, 1, row->g, r + 6 * i, w);
     screw_zero(force);
     subspace_w(&pose->s, r + 6 * i, force);
     screw_copy(g + 6 * i, force);
     w->flop += (uint64_t)(2 * c * row->width + joint_cost_of(d->body[i].joint)->w);
+    /* The parent's remaining force is what its other children see. */
     if (parent < 0 || alone) return;
     xform_force(t, &pose->x, force);
     screw_sub(g + 6 * parent, t);
     w->flop += XFORM_FORCE_FLOP + 6;
 }
 
+/* Two sweeps for each right-hand side; the factors stay. */
 void cfa_solve(struct dynamics *d, const struct cfa_system *s, real *r, real *x, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);

@@ -3,35 +3,14 @@
 #include "dynamics/loops.h"
 #include "linalg/least_norm.h"
 
-/* d->load = the given loads (NULL: none), copied to `sum` for more to be added. Returns the array to put back. */
+/* d->load = the given loads (NULL: none), copied to `sum` for more to be added. Returns the array to put back.
+ * Loop forces are loads of their bodies, so that open algorithms serve closed systems. */
 static real *with_loads(struct dynamics *d, const real *given, real *sum)
 {
     real *before = d->load;
     for (int k = 0; k < 6 * d->nbody; k++) sum[k] = given ? given[k] : 0;
     d->load = sum;
     return before;
-}
-
-/* S (nrow x nrow), symmetric, from the response to unit loop forces. */
-static bool delassus(struct dynamics *d, const struct loops *l, real *ud, real *s, struct work *w)
-{
-    int m = l->nrow;
-    struct arena_mark mark = arena_mark(d->arena);
-    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *r = TAKE(d->arena, m, real);
-    bool good = true;
-    for (int k = 0; k < m && good; k++) {
-        real *before = with_loads(d, NULL, load);
-        loops_column(l, k, load, w);
-        good = aba_response(d, d->zero, ud, w);
-        d->load = before;
-        loops_residual(l, d->a, NULL, true, r, w);
-        for (int i = 0; i < m; i++) s[i * m + k] = r[i];
-    }
-    for (int i = 0; i < m; i++)
-        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (real)0.5 * (s[i * m + k] + s[k * m + i]);
-    w->flop += (uint64_t)(m * (m - 1));
-    arena_release(d->arena, mark);
-    return good;
 }
 
 /* One pass: what the loops still lack at `ud`'s accelerations in d->a becomes more lambda. */
@@ -41,6 +20,7 @@ static bool correct(struct dynamics *d, const struct loops *l, const real *s, co
     int m = l->nrow;
     real *copy = TAKE(d->arena, size_product(m, m), real), *r = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
+    /* S lambda = -r in the least-norm sense: loops may be redundant (physics 7.4). */
     loops_residual(l, d->a, d->base, false, r, w);
     for (int k = 0; k < m * m; k++) copy[k] = s[k];
     for (int k = 0; k < m; k++) r[k] = -r[k];
@@ -50,7 +30,8 @@ static bool correct(struct dynamics *d, const struct loops *l, const real *s, co
     return true;
 }
 
-/* Largest |residual| over the largest acceleration of a body. */
+/* Largest |residual| over the largest acceleration of a body.
+ * The same measure as the parallel programs report. */
 static double worst_of(struct dynamics *d, const struct loops *l, const real *r)
 {
     real worst = 0, scale = 0;
@@ -59,6 +40,7 @@ static double worst_of(struct dynamics *d, const struct loops *l, const real *r)
     return scale > 0 ? (double)(worst / scale) : 0;
 }
 
+/* Open system, S, then lambda twice: once to solve, once to remove rounding. */
 bool closed_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
                     struct cfa_report *report, struct work *w)
 {
@@ -73,8 +55,9 @@ bool closed_forward(struct dynamics *d, const real *q, const real *u, const real
     real *reference = TAKE(d->arena, m, real), *x = TAKE(d->arena, m, real);
     real *load = TAKE(d->arena, size_product(6, d->nbody), real), *first = TAKE(d->arena, d->nu, real);
     real *a = TAKE(d->arena, size_product(6, d->nbody), real);
+    /* loops_respond overwrites the accelerations, whose residual is wanted first. */
     for (int k = 0; k < 6 * d->nbody; k++) a[k] = d->a[k];
-    good = good && delassus(d, &l, first, s, &own);
+    good = good && loops_respond(d, &l, first, 0, s, &own);
     loops_reference(d, &l, reference, &own);
     for (int k = 0; k < 6 * d->nbody; k++) d->a[k] = a[k];
     for (int pass = 0; pass < 2 && good; pass++) { /* the second removes what rounding left */
@@ -84,6 +67,7 @@ bool closed_forward(struct dynamics *d, const real *q, const real *u, const real
         good = aba_full(d, q, u, tau, ud, &own);
         d->load = given;
     }
+    /* What is left over of the constraints, relative to the accelerations. */
     if (good && report) {
         loops_residual(&l, d->a, d->base, false, reference, &own);
         own.div++; /* of worst_of */

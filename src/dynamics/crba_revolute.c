@@ -15,6 +15,7 @@ struct axes {
     struct inertia *composite;
 };
 
+/* Laid out in the scratch of struct dynamics: no allocation in a call. */
 static struct axes axes_in(struct dynamics *d)
 {
     struct axes a = {.n = d->nbody};
@@ -27,7 +28,7 @@ static struct axes axes_in(struct dynamics *d)
 }
 
 /* Transforms, axes, and each body's own inertia. */
-enum { TURN_FLOP = 18, OUTWARD_FLOP = TURN_FLOP + VEC3_CROSS_FLOP, OUTWARD_ROOT_FLOP = 3 };
+enum { OUTWARD_FLOP = MAT3_TURN_FLOP + VEC3_CROSS_FLOP, OUTWARD_ROOT_FLOP = 3 };
 static void outward(struct dynamics *d, const real *q, struct axes *a)
 {
     real *sine = d->scratch + 45 * (size_t)a->n, *cosine = sine + a->n;
@@ -35,11 +36,7 @@ static void outward(struct dynamics *d, const real *q, struct axes *a)
     for (int i = 0; i < a->n; i++) {
         const struct revolute *b = &d->revolute[i];
         struct xform *x = &a->x[i], *w = &a->world[i];
-        for (int k = 0; k < 9; k += 3) {
-            x->r[k] = cosine[i] * b->e[k] + sine[i] * b->e[k + 1];
-            x->r[k + 1] = cosine[i] * b->e[k + 1] - sine[i] * b->e[k];
-            x->r[k + 2] = b->e[k + 2];
-        }
+        mat3_turn_z(x->r, b->e, sine[i], cosine[i]);
         vec3_copy(x->p, b->t);
         if (b->parent >= 0) {
             xform_compose(w, &a->world[b->parent], x);

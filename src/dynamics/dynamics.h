@@ -44,6 +44,10 @@ void dynamics_load(struct dynamics *d, const struct state *s);
 /* dynamics_place: transforms and subspaces of all bodies at q (nq), in d->pose. */
 void dynamics_place(struct dynamics *d, const real *q);
 
+/* dynamics_world: transforms of all bodies' internal frames to the base (nbody), at the poses; in d's arena. w may be
+ * NULL. */
+struct xform *dynamics_world(struct dynamics *d, struct work *w);
+
 /* dynamics_velocities: d->v (linear part too) and d->bias of all bodies at (q, u); after dynamics_place. */
 void dynamics_velocities(struct dynamics *d, const real *u);
 

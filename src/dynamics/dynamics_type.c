@@ -10,6 +10,7 @@ struct problem {
     real *q, *u, *ud, *tau;
 };
 
+/* Inputs are rounded once to this precision; quad sees the doubles exactly. */
 static real *to_real(struct arena *a, const double *x, int n)
 {
     real *y = TAKE(a, n, real);
@@ -17,10 +18,12 @@ static real *to_real(struct arena *a, const double *x, int n)
     return y;
 }
 
+/* Work arrays, loads and inputs of one call; the caller's mark gives them back. */
 static struct problem problem_take(const struct model *m, const struct state *s, struct arena *a, struct work *w)
 {
     struct problem p = {.d = dynamics_take(m, a)};
     dynamics_load(p.d, s);
+    /* Turning loads into internal axes is part of the algorithm's cost. */
     work_count_load(p.d, w);
     p.q = to_real(a, s->q, m->nq);
     p.u = to_real(a, s->qd, m->nu);
@@ -29,22 +32,26 @@ static struct problem problem_take(const struct model *m, const struct state *s,
     return p;
 }
 
+/* Answers leave in double: what a table without types can hold. */
 static void to_double(double *y, const real *x, int n)
 {
     for (int i = 0; i < n; i++) y[i] = (double)x[i];
 }
 
+/* Physics (2.1) to (2.5). */
 static void inverse(const struct model *m, const struct state *s, struct arena *scratch, double *tau, struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
     real *out = TAKE(scratch, m->nu, real);
+    /* A state at rest may leave out its velocity terms (model.h). */
     p.d->at_rest = s->at_rest;
     rnea(p.d, p.q, p.u, p.ud, out, w);
     to_double(tau, out, m->nu);
     arena_release(scratch, mark);
 }
 
+/* Which algorithm; all of them answer the same question. */
 static bool solve(struct problem *p, enum forward_method method, real *ud, real *lambda, struct cfa_report *report,
                   struct work *w)
 {
@@ -54,11 +61,13 @@ static bool solve(struct problem *p, enum forward_method method, real *ud, real 
         const struct cfa_options options = {.direct = method == FORWARD_CFA_DIRECT};
         return cfa(d, p->q, p->u, p->tau, &options, ud, lambda, report, w);
     }
+    /* Closed systems have one way besides constraint forces. */
     if (d->model->nloop > 0) return closed_forward(d, p->q, p->u, p->tau, ud, lambda, report, w);
     if (method == FORWARD_ABA) return aba(d, p->q, p->u, p->tau, ud, w);
     return crba_forward(d, p->q, p->u, p->tau, method == FORWARD_CRBA_SPARSE, ud, w);
 }
 
+/* Springs are given forces here: the state's tau is what drives act with. */
 static bool forward(const struct model *m, const struct state *s, enum forward_method method, struct arena *scratch,
                     double *qdd, double *lambda, struct forward_report *report, struct work *w)
 {
@@ -72,12 +81,14 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     bool good = solve(&p, method, ud, force, report ? &full : NULL, w);
     if (good) to_double(qdd, ud, m->nu);
     if (good && lambda) to_double(lambda, force, m->nrow);
+    /* The robust method refines inside and outside; users want to know how often in all. */
     const int refined = full.inner_done + full.outer_done;
     if (report) *report = (struct forward_report){full.residual, full.rank, full.nrow, refined, full.fell_back};
     arena_release(scratch, mark);
     return good;
 }
 
+/* Full and symmetric, (nu x nu), for references. */
 static void mass_matrix(const struct model *m, const struct state *s, struct arena *scratch, double *mass,
                         struct work *w)
 {
@@ -105,6 +116,7 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
     arena_release(scratch, mark);
 }
 
+/* Poses, velocities and accelerations of all bodies in the base's frame. */
 static void kinematics(const struct model *m, const struct state *s, struct arena *scratch, double *pose)
 {
     struct arena_mark mark = arena_mark(scratch);
@@ -112,6 +124,7 @@ static void kinematics(const struct model *m, const struct state *s, struct aren
     struct body_motion *x = TAKE(scratch, m->nbody, struct body_motion);
     forward_kinematics(p.d, p.q, p.u, p.ud, x);
     for (int i = 0; i < m->nbody; i++) {
+        /* In the order of POSE_NUMBERS: matrix, place, then pairs of linear and angular. */
         double *to = pose + POSE_NUMBERS * (size_t)i;
         to_double(to, x[i].r, 9);
         to_double(to + 9, x[i].p, 3);
@@ -123,6 +136,7 @@ static void kinematics(const struct model *m, const struct state *s, struct aren
     arena_release(scratch, mark);
 }
 
+/* Conserved quantities, for the laws that tests and studies check. */
 static void totals(const struct model *m, const struct state *s, struct arena *scratch, struct dynamics_totals *t)
 {
     struct arena_mark mark = arena_mark(scratch);
@@ -138,6 +152,7 @@ static void totals(const struct model *m, const struct state *s, struct arena *s
     arena_release(scratch, mark);
 }
 
+/* Time steps of a whole system; the state is overwritten. */
 static bool advance(const struct model *m, struct state *s, enum step_rule rule, double h, int steps,
                     struct arena *scratch, struct work *w)
 {
@@ -153,6 +168,7 @@ static bool advance(const struct model *m, struct state *s, enum step_rule rule,
     return good;
 }
 
+/* How far loops have drifted apart: largest position and velocity error. */
 static void drift(const struct model *m, const struct state *s, struct arena *scratch, double *position,
                   double *velocity)
 {
@@ -169,6 +185,7 @@ static void drift(const struct model *m, const struct state *s, struct arena *sc
     arena_release(scratch, mark);
 }
 
+/* One table a precision; dynamics_types.c has them side by side. */
 #define dynamics_type_here REAL_NAME(dynamics_type)
 extern const struct dynamics_type dynamics_type_here;
 const struct dynamics_type dynamics_type_here = {

@@ -78,6 +78,7 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
     real *given = TAKE(d->arena, d->nu, real), *resistance = TAKE(d->arena, d->nu + 6, real);
     struct work own = {0};
     bool good = true;
+    /* tau_0: given forces and springs as they are now. */
     for (int k = 0; k < d->nu; k++) given[k] = tau[k];
     springs_add(d, q, u, given);
     dynamics_place(d, q);

@@ -9,6 +9,7 @@ bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const re
     struct arena_mark mark = arena_mark(d->arena);
     real *sum = TAKE(d->arena, d->nu, real);
     for (int k = 0; k < d->nu; k++) sum[k] = tau[k];
+    /* Spring forces at the present state: explicit, however stiff. */
     springs_add(d, q, u, sum);
     work_count_springs(d, w);
     bool good = d->model->nloop > 0 ? closed_forward(d, q, u, sum, ud, NULL, NULL, w) : aba(d, q, u, sum, ud, w);
@@ -16,12 +17,14 @@ bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const re
     return good;
 }
 
+/* The accelerations persist between steps: kick-drift-kick begins where it ended. */
 struct integrator integrator_make(struct dynamics *d, enum step_rule rule, real h, real *q, real *u, const real *tau)
 {
     return (struct integrator){.d = d, .rule = rule, .h = h, .q = q, .u = u, .tau = tau,
                                .a = TAKE(d->arena, d->nu, real)};
 }
 
+/* One evaluation of the right-hand side, counted. */
 static bool accelerate(struct integrator *it, const real *q, const real *u, real *a)
 {
     it->evaluations++;
@@ -45,6 +48,7 @@ static void combine(struct integrator *it, int n, const real *x, real h, const r
     it->work.flop += 2 * (uint64_t)n;
 }
 
+/* Order 1, symplectic: new rates move the coordinates (physics 9). */
 static bool step_semi_implicit(struct integrator *it)
 {
     if (!accelerate(it, it->q, it->u, it->a)) return false;
@@ -53,6 +57,7 @@ static bool step_semi_implicit(struct integrator *it)
     return true;
 }
 
+/* Springs at the end of the step, to first order: stable however stiff (physics 9.0). */
 static bool step_linearly_implicit(struct integrator *it)
 {
     it->evaluations++;
@@ -63,6 +68,7 @@ static bool step_linearly_implicit(struct integrator *it)
     return true;
 }
 
+/* Order 2, symmetric in time but for the predicted rates (physics 9). */
 static bool step_kdk(struct integrator *it)
 {
     int n = it->d->nu;
@@ -72,6 +78,7 @@ static bool step_kdk(struct integrator *it)
     real *predicted = TAKE(it->d->arena, n, real);
     combine(it, n, it->u, half, it->a, it->u);
     drift(it);
+    /* Rates act on accelerations, too: a prediction of the full step's. */
     combine(it, n, it->u, half, it->a, predicted);
     it->work.flop++; /* half */
     bool good = accelerate(it, it->q, predicted, it->a);
@@ -95,6 +102,8 @@ static bool derive(struct integrator *it, const real *q, const real *u, real *qd
 /* Quaternions of all joints to length 1. */
 static void normalise(struct integrator *it)
 {
+    /* Drift off the unit sphere is an error of fourth order; normalising it away keeps the
+     * rotation. */
     for (int i = 0; i < it->d->nbody; i++) {
         const struct body *b = &it->d->body[i];
         const int quaternion = joint_quaternion(b->joint);
@@ -106,6 +115,7 @@ static void normalise(struct integrator *it)
     }
 }
 
+/* Classical Runge-Kutta on plain numbers: order 4, no symmetry (physics 9). */
 static bool step_rk4(struct integrator *it)
 {
     const struct model *m = it->d->model;
@@ -116,6 +126,7 @@ static bool step_rk4(struct integrator *it)
     real *sq = TAKE(it->d->arena, nq, real), *su = TAKE(it->d->arena, nu, real);
     static const real at[4] = {0, (real)0.5, (real)0.5, 1}, weight[4] = {1, 2, 2, 1};
     bool good = true;
+    /* Stage s starts from the derivatives of the stage before. */
     for (int s = 0; s < 4 && good; s++) {
         const real h = at[s] * it->h;
         combine(it, nq, it->q, h, kq, q);
@@ -125,6 +136,7 @@ static bool step_rk4(struct integrator *it)
         combine(it, nq, sq, weight[s], kq, sq);
         combine(it, nu, su, weight[s], ku, su);
     }
+    /* The weighted sum of the four, from the step's beginning. */
     const real sixth = it->h / 6;
     combine(it, nq, it->q, sixth, sq, it->q);
     combine(it, nu, it->u, sixth, su, it->u);
@@ -134,6 +146,7 @@ static bool step_rk4(struct integrator *it)
     return good;
 }
 
+/* One rule a step; changing it between steps is allowed. */
 bool integrator_step(struct integrator *it)
 {
     switch (it->rule) {

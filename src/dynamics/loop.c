@@ -4,6 +4,7 @@
 #include "dynamics/body.h"
 #include "dynamics/body_constants.h"
 
+/* The model's frame in internal axes of its body, in quad precision first. */
 static void frame_to(const struct model *m, int body, const struct frame *f, struct xform *x)
 {
     quad r[9], p[3];
@@ -25,12 +26,14 @@ void loop_make(const struct model *m, int i, struct loop *l)
     l->beta = (real)def->beta;
     frame_to(m, def->body_a, &def->frame_a, &l->a);
     frame_to(m, def->body_b, &def->frame_b, &l->b);
+    /* Files give [linear; angular], here the angular part comes first. */
     for (int k = 0; k < def->nrow; k++)
         for (int j = 0; j < 6; j++) l->row[6 * k + j] = (real)def->row[k][(j + 3) % 6];
 }
 
 /* y = a^-1 o b. */
 enum { BETWEEN_FLOP = MAT3_MUL_FLOP + 3 + MAT3_VEC_FLOP };
+/* The relative pose: constraints concern it alone. */
 static void between(struct xform *y, const struct xform *a, const struct xform *b)
 {
     real p[3];
@@ -41,6 +44,7 @@ static void between(struct xform *y, const struct xform *a, const struct xform *
 
 /* Rotation vector of a small rotation: vee of (R - R^T) / 2. */
 enum { SMALL_ANGLE_FLOP = 6 };
+/* Exact to second order; a constraint that is met sees no more of it. */
 static void small_angle(const real *r, real *angle)
 {
     const real half = (real)0.5;
@@ -49,6 +53,7 @@ static void small_angle(const real *r, real *angle)
 
 /* y = w x (w x p). */
 enum { CENTRIPETAL_FLOP = 2 * VEC3_CROSS_FLOP };
+/* Of a point at p on a body that turns by w. */
 static void centripetal(const real *w, const real *p, real *y)
 {
     vec3_cross(y, w, p);
@@ -63,6 +68,7 @@ static void joint_columns(const struct loop *l, const real *r, struct loop_pose 
 {
     struct body free = {.joint = l->joint, .d = 6 - l->c};
     struct subspace s;
+    /* The constrained directions lie in frame a: columns of W are rows of r. */
     if (moves_with_a(l)) {
         for (int k = 0; k < l->c; k++)
             for (int j = 0; j < 3; j++) p->w[6 * k + j] = 0, p->w[6 * k + 3 + j] = r[3 * (3 - l->c + k) + j];
@@ -77,6 +83,8 @@ enum { PROJECT_FLOP = 2 * SCREW_DOT_FLOP + 5 };
 static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
 {
     for (int k = 0; k < l->c; k++) {
+        /* Position and velocity of the constraint, and Baumgarte's terms for both (physics
+         * 7.6). */
         p->g[k] = screw_dot(p->w + 6 * k, error);
         p->rho[k] = screw_dot(p->w + 6 * k, relative);
         p->stabilise[k] = 2 * l->alpha * p->rho[k] + l->beta * l->beta * p->g[k];
@@ -96,6 +104,7 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
     xform_compose(&wa, xa, &l->a);
     xform_compose(&wb, xb, &l->b);
     p->ta = l->a;
+    /* Both bodies' forces in axes of frame a, each at its own point. */
     mat3_transposed_mul(p->tb.r, xb->r, wa.r);
     vec3_copy(p->tb.p, l->b.p);
     for (int k = 0; k < 6 * l->c; k++) p->w[k] = l->row[k];
@@ -103,6 +112,7 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
     xform_motion(b, &p->tb, vb);
     for (int k = 0; k < 6; k++) relative[k] = b[k] - a[k];
     real ca[3], cb[3];
+    /* gamma: what the points' accelerations are at zero joint accelerations (physics 7.3). */
     centripetal(va, l->a.p, ca);
     centripetal(vb, l->b.p, cb);
     mat3_mul_vec_transposed(ca, p->ta.r, ca);
@@ -129,6 +139,8 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     xform_compose(&wa, xa, &l->a);
     xform_compose(&wb, xb, &l->b);
     p->tb = l->b;
+    /* Body a is taken to the point of body b: one point for both, since the joint lets them
+     * slip. */
     between(&p->ta, xa, &wb);
     between(&rel, &wa, &wb);
     joint_columns(l, rel.r, p);
@@ -138,6 +150,7 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     const real *turn = relative, *slip = relative + 3;
     mat3_mul_vec_transposed(pa, p->ta.r, p->ta.p);
     mat3_mul_vec_transposed(pb, p->tb.r, p->tb.p);
+    /* Angular part: the relative rotation is seen from a turning frame. */
     vec3_cross(p->gamma, turn, a);
     centripetal(b, pb, p->gamma + 3);
     centripetal(a, pa, t);
@@ -146,12 +159,14 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     /* W moving with frame a cancels w_J x v_J */
     if (!moves_with_a(l)) vec3_add(t, turn);
     vec3_cross_sub(p->gamma + 3, t, slip);
+    /* The position error, turned from frame a into frame b. */
     small_angle(rel.r, angle);
     mat3_mul_vec_transposed(error, rel.r, angle);
     mat3_mul_vec_transposed(error + 3, rel.r, rel.p);
     project(l, error, relative, p);
 }
 
+/* Rows of a file are given in frame a, joints in frame b. */
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p)
 {
@@ -168,6 +183,7 @@ int loop_place_flops(const struct loop *l)
     return (l->by_rows ? PLACE_ROWS_FLOP : joint) + l->c * PROJECT_FLOP;
 }
 
+/* Equal and opposite on the two bodies, each moved to its origin. */
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb)
 {
     real f[6], t[6];
@@ -183,6 +199,7 @@ void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *f
     }
 }
 
+/* One column a constraint: the same force for a unit of lambda. */
 void loop_column(const struct loop_pose *p, bool side_b, real *out)
 {
     for (int k = 0; k < p->c; k++) {
@@ -191,6 +208,7 @@ void loop_column(const struct loop_pose *p, bool side_b, real *out)
     }
 }
 
+/* W^T (T_b^T a_b - T_a^T a_a + gamma) + stabilisation (physics 7.2). */
 void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r)
 {
     real a[6], b[6];

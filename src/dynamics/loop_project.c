@@ -4,33 +4,13 @@
 #include "dynamics/work_count.h"
 #include "linalg/least_norm.h"
 
-/* Responses M^-1 J^T (nrow x nu) to unit loop forces and S = J M^-1 J^T. */
-static bool responses(struct dynamics *d, const struct loops *l, real *response, real *s, struct work *w)
-{
-    int m = l->nrow, n = d->nu;
-    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *column = TAKE(d->arena, m, real), *given = d->load;
-    bool good = true;
-    d->load = load;
-    for (int k = 0; k < m && good; k++) {
-        for (int i = 0; i < 6 * d->nbody; i++) load[i] = 0;
-        loops_column(l, k, load, w);
-        good = aba_response(d, d->zero, response + (size_t)k * (size_t)n, w);
-        loops_residual(l, d->a, NULL, true, column, w);
-        for (int i = 0; i < m; i++) s[i * m + k] = column[i];
-    }
-    d->load = given;
-    for (int i = 0; i < m; i++)
-        for (int k = 0; k < i; k++) s[i * m + k] = s[k * m + i] = (real)0.5 * (s[i * m + k] + s[k * m + i]);
-    w->flop += (uint64_t)(m * (m - 1));
-    return good;
-}
-
 /* delta (nu) = - M^-1 J^T S^+ x with x = g (position) or rho (velocity) at (q, u). */
 static bool correction(struct dynamics *d, const real *q, const real *u, bool position, real *delta, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
     int m = d->model->nrow, n = d->nu;
     struct loops l;
+    /* Everything anew: the state has moved since the last step of Newton. */
     dynamics_place(d, q);
     dynamics_velocities(d, u);
     work_count_place(d, w);
@@ -39,12 +19,14 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     real *response = TAKE(d->arena, size_product(m, n), real), *s = TAKE(d->arena, size_product(m, m), real);
     real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
-    bool good = responses(d, &l, response, s, w);
+    bool good = loops_respond(d, &l, response, (size_t)n, s, w);
     for (int k = 0; k < l.nloop; k++)
         for (int i = 0; i < l.pose[k].c; i++)
             x[l.loop[k].row_at + i] = position ? l.pose[k].g[i] : l.pose[k].rho[i];
     loops_reference(d, &l, reference, w);
+    /* Redundant constraints are met together (physics 7.4). */
     least_norm_solve(m, reference, s, x, room, w);
+    /* Weighted by M: of all corrections the one with the least kinetic energy (physics 7.5). */
     for (int i = 0; i < n; i++) {
         delta[i] = 0;
         for (int k = 0; k < m; k++) delta[i] -= response[(size_t)k * (size_t)n + (size_t)i] * x[k];
@@ -54,6 +36,7 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     return good;
 }
 
+/* Newton's method on positions, then velocities, which are linear in u. */
 bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);
@@ -62,6 +45,7 @@ bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work 
     bool good = true;
     for (int k = 0; k < newton && good; k++) {
         good = correction(d, q, u, true, delta, &own);
+        /* A correction is a motion: it moves along the group like a step of length 1. */
         for (int i = 0; i < d->nbody && good; i++)
             body_step(&d->body[i], q + d->body[i].q_at, delta + d->body[i].u_at, 1);
         for (int i = 0; i < d->nbody && good; i++) work_add(&own, &body_cost(&d->body[i])->step);

@@ -1,22 +1,7 @@
 /* loops.c - all loops of a model together. */
 #include "dynamics/loops.h"
 
-/* Transforms of the bodies' internal frames to the base. */
-static struct xform *world_poses(struct dynamics *d, struct work *w)
-{
-    struct xform *x = TAKE(d->arena, d->nbody, struct xform);
-    for (int i = 0; i < d->nbody; i++) {
-        int p = d->body[i].parent;
-        if (p < 0) {
-            x[i] = d->pose[i].x;
-        } else {
-            xform_compose(&x[i], &x[p], &d->pose[i].x);
-            w->flop += XFORM_COMPOSE_FLOP;
-        }
-    }
-    return x;
-}
-
+/* Placed once an evaluation: forces, columns and residuals share poses and velocity terms. */
 void loops_take(struct dynamics *d, struct loops *l, struct work *w)
 {
     const struct model *m = d->model;
@@ -27,7 +12,8 @@ void loops_take(struct dynamics *d, struct loops *l, struct work *w)
     l->loop = TAKE(d->arena, m->nloop, struct loop);
     l->pose = TAKE(d->arena, m->nloop, struct loop_pose);
     if (m->nloop == 0) return;
-    struct xform *x = world_poses(d, w);
+    struct xform *x = dynamics_world(d, w);
+    /* The base is a body at rest in its own frame. */
     xform_identity(&base);
     for (int k = 0; k < m->nloop; k++) {
         struct loop *loop = &l->loop[k];
@@ -45,6 +31,7 @@ static int force_flops(const struct loop *l)
     return SCREW_AXPY_FLOP * l->c + ((l->body_a >= 0) + (l->body_b >= 0)) * (XFORM_FORCE_FLOP + SCREW_ADD_FLOP);
 }
 
+/* On a loop's two bodies alone; the base takes any force. */
 void loops_force(const struct loops *l, const real *lambda, real *f, struct work *w)
 {
     for (int k = 0; k < l->nloop; k++) {
@@ -57,6 +44,7 @@ void loops_force(const struct loops *l, const real *lambda, real *f, struct work
 void loops_column(const struct loops *l, int k, real *f, struct work *w)
 {
     int n = 0;
+    /* The loop that constraint k belongs to. */
     while (n + 1 < l->nloop && l->loop[n + 1].row_at <= k) n++;
     real unit[6] = {0};
     int a = l->loop[n].body_a, b = l->loop[n].body_b;
@@ -73,6 +61,7 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
     for (int k = 0; k < l->nloop; k++) {
         struct loop_pose p = l->pose[k];
         int ba = l->loop[k].body_a, bb = l->loop[k].body_b;
+        /* Responses to forces alone have no velocity terms (physics 7.2). */
         if (homogeneous) {
             screw_zero(p.gamma);
             screw_zero(p.stabilise);
@@ -82,7 +71,9 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
     }
 }
 
-/* column^T Phi column of one side. */
+/* column^T Phi column of one side.
+ * A body's part of the diagonal of A_ll: what the constraint would feel if its joints were
+ * cut. */
 static real side_reference(const struct dynamics *d, int body, const real *column, struct work *w)
 {
     real a[6];
@@ -92,6 +83,7 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
         w->flop += SYM6_MUL_FLOP + SCREW_DOT_FLOP;
         return screw_dot(a, column);
     }
+    /* Point masses have no Phi; their mass still gives the right order of magnitude. */
     real m = d->body[body].m;
     if (!(m > 0)) return 0;
     w->flop += VEC3_DOT_FLOP;
@@ -108,8 +100,37 @@ void loops_reference(const struct dynamics *d, const struct loops *l, real *refe
         loop_column(&l->pose[k], true, b);
         for (int i = 0; i < loop->c; i++) {
             real sum = side_reference(d, loop->body_a, a + 6 * i, w) + side_reference(d, loop->body_b, b + 6 * i, w);
+            /* A loop between massless bodies has no scale of its own. */
             reference[loop->row_at + i] = sum > 0 ? sum : 1;
         }
         w->flop += (uint64_t)(loop->c * (2 * XFORM_FORCE_FLOP + 1));
     }
+}
+
+bool loops_respond(struct dynamics *d, const struct loops *l, real *response, size_t stride, real *s,
+                   struct work *w)
+{
+    const int m = l->nrow;
+    struct arena_mark mark = arena_mark(d->arena);
+    real *load = TAKE(d->arena, size_product(6, d->nbody), real), *column = TAKE(d->arena, m, real);
+    real *given = d->load;
+    bool good = true;
+    /* Column k: accelerations of the loops' frames under a unit force in constraint k (physics
+     * 7.2), which is a load on its two bodies and nothing else. */
+    d->load = load;
+    for (int k = 0; k < m && good; k++) {
+        for (int i = 0; i < 6 * d->nbody; i++) load[i] = 0;
+        loops_column(l, k, load, w);
+        good = aba_response(d, d->zero, response + (size_t)k * stride, w);
+        loops_residual(l, d->a, NULL, true, column, w);
+        for (int i = 0; i < m; i++) s[i * m + k] = column[i];
+    }
+    d->load = given;
+    /* Symmetric but for rounding; the mean keeps the solver's matrix exactly so. */
+    for (int i = 0; i < m; i++)
+        for (int k = 0; k < i; k++)
+            s[i * m + k] = s[k * m + i] = (real)0.5 * (s[i * m + k] + s[k * m + i]);
+    w->flop += (uint64_t)(m * (m - 1));
+    arena_release(d->arena, mark);
+    return good;
 }

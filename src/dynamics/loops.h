@@ -29,4 +29,10 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
 /* loops_reference: (nrow) diagonal of A_ll = sum of column^T Phi column; for bodies without Phi, 1 / mass alone. */
 void loops_reference(const struct dynamics *d, const struct loops *l, real *reference, struct work *w);
 
+/* loops_respond: S = J M^-1 J^T (nrow x nrow), symmetric, and the responses M^-1 J^T to unit loop
+ * forces (nu), `stride` numbers apart (0: each over the one before); at d's poses. d->a is
+ * overwritten. Returns false as aba_response. */
+bool loops_respond(struct dynamics *d, const struct loops *l, real *response, size_t stride, real *s,
+                   struct work *w);
+
 #endif

@@ -12,6 +12,7 @@
 /* Angles by which rounding of a file's numbers may tilt axes. */
 static quad tolerance_of(enum precision p) { return p == PRECISION_QUAD ? 1e-30Q : 1e-12Q; }
 
+/* Of a frame alone: no body, no turning. */
 static void rotation_of(const struct frame *f, quad *r)
 {
     quad p[3];
@@ -42,6 +43,7 @@ static void first_normal(const struct model *m, quad *n)
 {
     quad slide[3], other[3];
     int first = -1;
+    /* The first axis that turns decides for all others. */
     for (int i = 0; i < m->nbody; i++)
         if (turns(m->body[i].joint)) {
             axis_in_base(m, i, n);
@@ -50,6 +52,7 @@ static void first_normal(const struct model *m, quad *n)
     vec3_set(n, 0, 0, 1);
     for (int i = 0; i < m->nbody; i++) {
         if (!slides(m->body[i].joint)) continue;
+        /* One slide alone leaves a choice: any normal orthogonal to it. */
         if (first < 0) {
             first = i;
             axis_in_base(m, i, slide);
@@ -58,6 +61,7 @@ static void first_normal(const struct model *m, quad *n)
         }
         axis_in_base(m, i, other);
         vec3_cross(other, slide, other);
+        /* Parallel slides say nothing new. */
         if (!(vec3_norm(other) > 1e-6Q)) continue;
         vec3_scale(n, 1 / vec3_norm(other), other);
         return;
@@ -84,6 +88,7 @@ static bool settle(const struct body_def *b, quad tolerance, quad *n)
         direction_orthonormalise(n, axis);
         return true;
     }
+    /* The sine of the angle between axis and normal. */
     vec3_cross(tilt, axis, n);
     if (!turns(b->joint) || !(vec3_norm(tilt) <= tolerance)) return false;
     vec3_scale(n, vec3_dot(axis, n) < 0 ? -1 : 1, axis);
@@ -97,6 +102,7 @@ quad *planar_normals(const struct model *m, quad tolerance, struct arena *a, str
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *b = &m->body[i];
         quad *n = normal + 3 * (i + 1);
+        /* Chains of equal links: no need to turn the same normal again. */
         if (i > 0 && same(m, i, i - 1, normal)) {
             vec3_copy(n, n - 3);
             continue;
@@ -104,6 +110,7 @@ quad *planar_normals(const struct model *m, quad tolerance, struct arena *a, str
         rotation_of(&b->placement, r);
         mat3_mul_vec_transposed(n, r, normal + 3 * (b->parent + 1));
         if (settle(b, tolerance, n)) continue;
+        /* The first body that leaves the plane is named. */
         err_set(e, ERR_CONFIG, "the scene is not planar: the %s joint of '%s' leaves the plane", joint_name(b->joint),
                 b->name);
         return NULL;
@@ -117,6 +124,7 @@ static bool planar_loops(const struct model *m, const quad *normal, quad toleran
     for (int l = 0; l < m->nloop; l++) {
         const struct loop_def *def = &m->loop[l];
         quad a[3], b[3];
+        /* Both sides of the loop must see the same plane. */
         planar_normal_in(&def->frame_a, normal + 3 * (def->body_a + 1), a);
         planar_normal_in(&def->frame_b, normal + 3 * (def->body_b + 1), b);
         vec3_sub(a, b);
@@ -132,6 +140,7 @@ bool planar_scene(const struct model *m, const struct state *s, enum precision p
     struct arena *scratch = arena_create();
     const quad tolerance = tolerance_of(precision), *normal = planar_normals(m, tolerance, scratch, e);
     bool planar = normal && planar_loops(m, normal, tolerance, e);
+    /* A base that turns about any other direction tilts the plane. */
     if (planar && s) {
         quad turn[3], out[3];
         for (int i = 0; i < 3; i++) turn[i] = s->base_acceleration[i];
@@ -143,6 +152,7 @@ bool planar_scene(const struct model *m, const struct state *s, enum precision p
     return planar;
 }
 
+/* x where the joint has a direction of its own, else anywhere in the plane. */
 void planar_frame(const struct model *m, int i, const quad *normal, quad *rows)
 {
     quad *x = rows + 3, *y = rows + 6;
@@ -164,8 +174,10 @@ void planar_placement(const quad *outer, const quad *inner, const struct frame *
 {
     quad r[9], p[3], axis[3];
     frame_constants_make(NULL, -1, f, r, p);
+    /* The angle between the two x axes; their normals agree to the tolerance. */
     mat3_mul_vec(axis, r, inner + 3);
     const quad c = vec3_dot(outer + 3, axis), s = vec3_dot(outer + 6, axis), length = sqrtq(c * c + s * s);
+    /* A tilt within the tolerance shortens the projection: made unit again. */
     x[0] = c / length, x[1] = s / length;
     x[2] = vec3_dot(outer + 3, p), x[3] = vec3_dot(outer + 6, p);
 }

@@ -7,20 +7,24 @@
 #include "dynamics/planar_frame.h"
 #include "linalg/angle.h"
 
+/* As body_constants_place, in three components. */
 static void make_frames(const struct model *m, int i, const quad *normal, struct body *b)
 {
     const struct body_def *def = &m->body[i];
     quad own[9], parents[9], x[4], along = 0;
     planar_frame(m, i, normal + 3 * (i + 1), own);
     planar_frame(m, def->parent, normal + 3 * (def->parent + 1), parents);
+    /* Cosine, sine and shift of the joint frame in the parent's. */
     planar_placement(parents, own, &def->placement, x);
     b->tree = (struct xform){(real)x[0], (real)x[1], {(real)x[2], (real)x[3]}};
     for (int k = 0; k < 9; k++) b->frame[k] = (real)own[k];
+    /* An axis against the normal turns the other way round. */
     for (int k = 0; k < 3; k++) along += def->axis[k] * own[k];
     b->flipped = (joint_plane(def->joint) == PLANE_TURNS || joint_plane(def->joint) == PLANE_MOVES) && along < 0;
     body_springs(m, i, b);
 }
 
+/* About the normal alone: all that acts of a body in its plane (physics 1.5). */
 static void make_inertia(const struct model *m, int i, const quad *normal, struct body *b)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -30,9 +34,11 @@ static void make_inertia(const struct model *m, int i, const quad *normal, struc
     for (int j = 0; j < 9; j++) jc += own[j / 3] * def->inertia[at[j]] * own[j % 3];
     b->m = (real)mass;
     b->jc = (real)jc;
+    /* Zero when there are none: planar scenes may have massless bodies. */
     b->per_m = mass > 0 && jc > 0 ? (real)(1 / mass) : 0;
     b->per_jc = mass > 0 && jc > 0 ? (real)(1 / jc) : 0;
     jo = jc;
+    /* Parallel axes: J_o = J_c + m |s|^2, with s in the plane. */
     for (int k = 0; k < 2; k++) {
         quad s = 0;
         for (int j = 0; j < 3; j++) s += own[3 * (k + 1) + j] * def->com[j];
@@ -67,6 +73,7 @@ static quad *normals_of(const struct model *m, struct arena *a)
     return normal;
 }
 
+/* Equal neighbours are copied, as in space. */
 const struct body *bodies_make(const struct model *m, struct arena *a)
 {
     struct body *b = TAKE(a, m->nbody, struct body);
@@ -86,6 +93,7 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
     return b;
 }
 
+/* Of the base's acceleration the part in the plane; the rest does no work. */
 void base_motion(const struct model *m, const struct state *s, real *a)
 {
     struct arena *scratch = arena_create();
@@ -107,6 +115,7 @@ static void subspace_set(const struct body *b, struct subspace *s)
     static const signed char straight[3] = {0, 1, 2}, slide[3] = {1, 0, 2};
     s->d = b->d;
     s->c = SPACE - b->d;
+    /* A flip changes signs, so its columns are written out. */
     s->pick = b->flipped ? NULL : b->plane == PLANE_SLIDES ? slide : straight;
     if (!b->flipped) return;
     for (int k = 0; k < SQUARE; k++) s->col[k] = 0;
@@ -115,6 +124,7 @@ static void subspace_set(const struct body *b, struct subspace *s)
     s->col[8] = b->plane == PLANE_MOVES ? -1 : 1;
 }
 
+/* Columns never move in the plane: they are fixed in the body. */
 void body_subspace(const struct body *b, const real *q, struct subspace *s)
 {
     (void)q;
@@ -130,6 +140,7 @@ static void turn(const struct body *b, real q, struct xform *x)
     x->s = b->tree.s * c + b->tree.c * s;
 }
 
+/* Turn, slide or both, from the placement. */
 void body_place(const struct body *b, const real *q, struct body_pose *pose)
 {
     struct xform *x = &pose->x;
@@ -144,6 +155,7 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
         x->p[1] += q[0] * x->s;
         break;
     case PLANE_MOVES:
+        /* y changes its sign with the axis, x does not. */
         xform_shift(&b->tree, q[1], b->flipped ? -q[2] : q[2], x->p);
         turn(b, q[0], x);
         break;
@@ -152,6 +164,7 @@ void body_place(const struct body *b, const real *q, struct body_pose *pose)
     }
 }
 
+/* physics 1.5: centripetal at the origin, Coriolis of what slides. */
 void body_bias(const struct body *b, const struct body_pose *pose, const real *v, const real *h, const real *u,
                real *bias)
 {
@@ -162,11 +175,13 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
     bias[1] = pull * (x->c * x->p[0] + x->s * x->p[1]);
     bias[2] = pull * (x->c * x->p[1] - x->s * x->p[0]);
     if (b->plane != PLANE_SLIDES && b->plane != PLANE_MOVES) return;
+    /* 2 w* + w_J, as in space. */
     const real t = w + w + h[0];
     bias[1] -= t * h[2];
     bias[2] += t * h[1];
 }
 
+/* The moment about the normal and the forces in the plane. */
 void body_load(const struct body *b, const double *fext, real *f)
 {
     screw_zero(f);
@@ -177,6 +192,7 @@ void body_load(const struct body *b, const double *fext, real *f)
     }
 }
 
+/* As in space: a planar joint's velocity is given in body axes. */
 void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
 {
     for (int i = 0; i < b->d; i++) qd[i] = u[i];
@@ -190,6 +206,7 @@ void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
 void body_step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[3];
+    /* Half the turn, the shift, the other half. */
     if (b->plane == PLANE_MOVES) { /* displacement along the axes of mid-step */
         const real half = (real)0.5 * h;
         q[0] += half * u[0];
@@ -212,6 +229,7 @@ enum { TURN = 6, SHIFT = 8, BIAS = 10, SLIDES = 6 };
 #define STEPS(n) .step = {.flop = 2 * (n)}
 #define PLANAR_STEPS .qdot = {.flop = 6, .trig = 2}, .step = {.flop = 15, .trig = 2}
 
+/* By motion in the plane; flipped joints multiply by their columns. */
 static const struct joint_cost picked[PLANE_MOVES + 1] = {
     [PLANE_STAYS] = {.bias = BIAS, PICKED(0)},
     [PLANE_TURNS] = {.place = TURN, .place_trig = 2, .bias = BIAS, STEPS(1), PICKED(1)},

@@ -6,31 +6,9 @@
 
 #include <string.h>
 
-#include "dynamics/planar_body.h"
-#include "dynamics/planar_loop.h"
-#include "linalg/least_norm.h"
+#include "dynamics/planar_scene.h"
 
-/* A body in motion. Symmetric matrices: [about the normal; x; y] as aa, ax, ay, xx, xy, yy. */
-struct moving {
-    struct body_pose pose;
-    real w; /* rate about the normal */
-    real bias[SPACE];
-    real a[SPACE];   /* acceleration */
-    real f[SPACE];   /* force on the body by its parent; while articulating: bias force */
-    real inertia[6]; /* articulated */
-    real per, rest;  /* 1 / inertia along the joint; what is left of the joint force there */
-};
-
-struct scene {
-    const struct model *model;
-    const struct state *state;
-    const struct body *body;
-    struct moving *moving;
-    real base[SPACE];
-    const real *load; /* (nbody x 3) forces of loops on the bodies; NULL: none */
-    bool terms;       /* with velocity terms, wrenches and the base's acceleration */
-};
-
+/* Everything of one call, from the caller's scratch. */
 static struct scene scene_take(const struct model *m, const struct state *s, struct arena *scratch)
 {
     struct scene x = {m, s, bodies_make(m, scratch), TAKE(scratch, m->nbody, struct moving), {0}, NULL, true};
@@ -42,7 +20,7 @@ static struct scene scene_take(const struct model *m, const struct state *s, str
 static real turned(const struct body *b, real x) { return b->flipped ? -x : x; }
 
 /* The joint's velocity (or acceleration) from its rates: about the normal and along x, y. Signs cost nothing. */
-static void joint_motion(const struct body *b, const double *u, real *h)
+void planar_joint_motion(const struct body *b, const double *u, real *h)
 {
     screw_zero(h);
     switch (b->plane) {
@@ -78,7 +56,8 @@ static void joint_part(const struct body *b, const real *x, double *y)
     }
 }
 
-/* a += what joint_motion found, d flops. */
+/* a += what planar_joint_motion found, d flops.
+ * By kinds, so that zeros are not added. */
 static void joint_add(const struct body *b, const real *h, real *a)
 {
     if (b->plane == PLANE_MOVES) screw_add(a, h);
@@ -105,8 +84,9 @@ static void start(const struct scene *x, int i, struct work *w)
     w->call++;
     m->w = 0;
     if (x->state->at_rest) return;
-    joint_motion(b, x->state->qd + b->u_at, h);
+    planar_joint_motion(b, x->state->qd + b->u_at, h);
     m->w = h[0];
+    /* Centripetal acceleration of the joint by the parent's turning, in own axes. */
     if (b->parent >= 0) {
         const real square = turning * turning, px = -(square * t->p[0]), py = -(square * t->p[1]);
         m->w += turning;
@@ -115,6 +95,7 @@ static void start(const struct scene *x, int i, struct work *w)
         w->flop += 1 + 1 + 2 + 6;
     }
     if (!slides(b)) return;
+    /* 2 w* + w_J: the parent's rate and the own one. */
     const real twice = turning + m->w;
     m->bias[1] -= twice * h[2];
     m->bias[2] += twice * h[1];
@@ -128,6 +109,7 @@ static void pull(const struct scene *x, int i, struct work *w)
     const struct body *b = &x->body[i];
     struct moving *m = &x->moving[i];
     screw_zero(m->f);
+    /* P of physics 1.5. */
     if (x->terms && !x->state->at_rest) {
         body_gyro(b, &m->w, m->f);
         w->flop += BODY_GYRO_FLOP;
@@ -136,6 +118,7 @@ static void pull(const struct scene *x, int i, struct work *w)
         screw_sub(m->f, x->load + SPACE * i);
         w->flop += SCREW_ADD_FLOP;
     }
+    /* A response to loop forces has no wrenches. */
     if (!x->terms || !x->state->fext) return;
     real load[SPACE];
     body_load(b, x->state->fext + 6 * i, load);
@@ -143,6 +126,7 @@ static void pull(const struct scene *x, int i, struct work *w)
     w->flop += BODY_LOAD_FLOP + SCREW_ADD_FLOP;
 }
 
+/* physics (2.1) to (2.5) in three components. */
 void planar_inverse(const struct model *model, const struct state *s, struct arena *scratch, double *tau,
                     struct work *w)
 {
@@ -153,7 +137,7 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
         struct moving *m = &x.moving[i];
         real h[SPACE], moved[SPACE], inertial[SPACE];
         start(&x, i, w);
-        joint_motion(b, s->qdd + b->u_at, h);
+        planar_joint_motion(b, s->qdd + b->u_at, h);
         xform_motion(moved, &m->pose.x, b->parent < 0 ? x.base : x.moving[b->parent].a);
         screw_copy(m->a, moved);
         m->a[1] += m->bias[1], m->a[2] += m->bias[2];
@@ -176,7 +160,8 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
     arena_release(scratch, mark);
 }
 
-/* y = S x; 15 flops. */
+/* y = S x; 15 flops.
+ * Six numbers for nine. */
 static void symmetric_multiply(const real *s, const real *x, real *y)
 {
     y[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
@@ -206,7 +191,8 @@ static void hand_inertia(const struct xform *x, const real *s, bool bare, real *
     w->flop += bare ? 10 + 6 + 3 + 6 : 10 + 6 + 8 + 6 + 6;
 }
 
-/* The body's own inertia. */
+/* The body's own inertia.
+ * physics 1.5 about the body's origin. */
 static void rigid(const struct body *b, real *s)
 {
     s[0] = b->jo;
@@ -224,6 +210,7 @@ static bool give_way(struct moving *m, int k, real tau, real *left, struct work 
     const real *s = m->inertia, d = s[row[k][k]];
     const int i = others[k][0], j = others[k][1];
     if (!(d > 0)) return false;
+    /* physics (2.6) for one column: D is a number. */
     m->per = 1 / d;
     m->rest = tau - m->f[k];
     const real gi = s[row[i][k]] * m->per, gj = s[row[j][k]] * m->per;
@@ -248,7 +235,7 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
     const struct body *b = &x->body[i];
     struct moving *m = &x->moving[i], *parent = b->parent < 0 ? NULL : &x->moving[b->parent];
     real left[6], moved[SPACE], force[SPACE], shifted[SPACE];
-    joint_motion(b, tau, force);
+    planar_joint_motion(b, tau, force);
     switch (b->plane) {
     case PLANE_TURNS:
         if (!give_way(m, 0, force[0], left, w)) return false;
@@ -264,6 +251,7 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
         screw_add(m->f, shifted);
         w->flop += 15 + SCREW_ADD_FLOP;
     }
+    /* Nobody asks for what reaches the base. */
     if (!parent) return true;
     if (b->plane != PLANE_MOVES) hand_inertia(&m->pose.x, left, b->plane == PLANE_TURNS, parent->inertia, w);
     xform_force(moved, &m->pose.x, b->plane == PLANE_MOVES ? force : m->f);
@@ -275,6 +263,7 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
 /* y = S^-1 x by elimination in order; 25 flops, 3 divisions. False: not positive definite. */
 static bool symmetric_solve(const real *s, const real *x, real *y, struct work *w)
 {
+    /* L D L^T of a 3x3, written out. */
     if (!(s[0] > 0)) return false;
     const real d0 = 1 / s[0], l1 = s[1] * d0, l2 = s[2] * d0, m11 = s[3] - l1 * s[1], m21 = s[4] - l2 * s[1];
     if (!(m11 > 0)) return false;
@@ -300,9 +289,10 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
     carried[1] += m->bias[1], carried[2] += m->bias[2];
     screw_copy(m->a, carried);
     w->flop += XFORM_MOTION_FLOP + 2;
+    /* Three degrees of freedom: the joint force alone decides. */
     if (b->plane == PLANE_MOVES) {
         real own[SPACE];
-        joint_motion(b, tau, force);
+        planar_joint_motion(b, tau, force);
         screw_sub(force, m->f);
         if (!symmetric_solve(m->inertia, force, own, w)) return false;
         screw_sub(own, carried);
@@ -321,10 +311,11 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
     return true;
 }
 
-/* open_forward: accelerations of the scene cut open, with x's loads and terms; the bodies have been started. */
-static bool open_forward(const struct scene *x, const double *tau, double *ud, struct work *w)
+/* planar_open_forward: accelerations of the scene cut open, with x's loads and terms; the bodies have been started. */
+bool planar_open_forward(const struct scene *x, const double *tau, double *ud, struct work *w)
 {
     bool good = true;
+    /* Down the tree for forces, up for inertias, down again for accelerations. */
     for (int i = 0; i < x->model->nbody; i++) {
         pull(x, i, w);
         rigid(&x->body[i], x->moving[i].inertia);
@@ -332,140 +323,6 @@ static bool open_forward(const struct scene *x, const double *tau, double *ud, s
     for (int i = x->model->nbody - 1; i >= 0 && good; i--) good = articulate(x, i, tau + x->body[i].u_at, w);
     for (int i = 0; i < x->model->nbody && good; i++)
         good = accelerate(x, i, tau + x->body[i].u_at, ud + x->body[i].u_at, w);
-    return good;
-}
-
-/* The loops of a scene in its state. */
-struct closing {
-    int n; /* constraints of all of them */
-    struct loop *loop;
-    struct loop_pose *pose;
-    real *load; /* (nbody x 3) */
-};
-
-/* closing_take: places, 14 flops a body, and velocities, 13, then the loops. */
-static struct closing closing_take(const struct scene *x, struct arena *scratch, struct work *w)
-{
-    const struct model *m = x->model;
-    struct closing c = {loop_rows(m), TAKE(scratch, m->nloop, struct loop), TAKE(scratch, m->nloop, struct loop_pose),
-                        TAKE(scratch, size_product(SPACE, m->nbody), real)};
-    struct xform *place = TAKE(scratch, m->nbody + 1, struct xform);
-    real *v = TAKE(scratch, size_product(SPACE, m->nbody + 1), real); /* of the base, then of the bodies */
-    xform_identity(&place[0]);
-    for (int i = 0; i < m->nbody; i++) {
-        const int p = x->body[i].parent + 1;
-        real h[SPACE];
-        xform_compose(&place[i + 1], &place[p], &x->moving[i].pose.x);
-        joint_motion(&x->body[i], x->state->qd + x->body[i].u_at, h);
-        xform_motion(v + SPACE * (i + 1), &x->moving[i].pose.x, v + SPACE * p);
-        screw_add(v + SPACE * (i + 1), h);
-        w->flop += XFORM_COMPOSE_FLOP + XFORM_MOTION_FLOP + SCREW_ADD_FLOP;
-    }
-    loops_make(m, c.loop, TAKE(scratch, m->nrow, int));
-    for (int l = 0; l < m->nloop; l++) {
-        const int a = c.loop[l].body_a + 1, b = c.loop[l].body_b + 1;
-        loop_place(&c.loop[l], &place[a], &place[b], v + SPACE * a, v + SPACE * b, &c.pose[l]);
-        w->flop += (uint64_t)loop_place_flops(&c.loop[l]);
-    }
-    return c;
-}
-
-/* closing_force: load = the loops' forces for lambda (n). */
-static void closing_force(const struct scene *x, const struct closing *c, const real *lambda, struct work *w)
-{
-    memset(c->load, 0, (size_t)(SPACE * x->model->nbody) * sizeof(real));
-    for (int side = 0; side < 2 * x->model->nloop; side++) {
-        const struct loop *l = &c->loop[side / 2];
-        const int body = side % 2 ? l->body_b : l->body_a;
-        real column[6 * SPACE];
-        if (body < 0) continue;
-        loop_column(&c->pose[side / 2], side % 2, column);
-        for (int k = 0; k < l->c; k++) screw_axpy(c->load + SPACE * body, lambda[l->row_at + k], column + SPACE * k);
-        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SCREW_AXPY_FLOP));
-    }
-}
-
-/* closing_residual: r (n): what the present accelerations leave of the constraints; without terms the linear part. */
-static void closing_residual(const struct scene *x, const struct closing *c, real *r, struct work *w)
-{
-    static const real still[SPACE] = {0};
-    for (int l = 0; l < x->model->nloop; l++) {
-        const struct loop *loop = &c->loop[l];
-        const struct loop_pose *p = &c->pose[l];
-        const real *base = x->terms ? x->base : still;
-        real a[SPACE], b[SPACE];
-        xform_motion(a, &p->ta, loop->body_a < 0 ? base : x->moving[loop->body_a].a);
-        xform_motion(b, &p->tb, loop->body_b < 0 ? base : x->moving[loop->body_b].a);
-        screw_sub(b, a);
-        if (x->terms) screw_add(b, p->gamma);
-        for (int k = 0; k < loop->c; k++)
-            r[loop->row_at + k] = screw_dot(p->w + SPACE * k, b);
-        for (int k = 0; k < loop->c && x->terms; k++) r[loop->row_at + k] += p->stabilise[k];
-        w->flop += (uint64_t)(2 * XFORM_MOTION_FLOP + (x->terms ? 2 : 1) * SCREW_ADD_FLOP +
-                              loop->c * (SCREW_DOT_FLOP + (x->terms ? 1 : 0)));
-    }
-}
-
-/* closing_reference: what S's rounding scales with: the constraints' own bodies as if they were free. */
-static void closing_reference(const struct scene *x, const struct closing *c, real *reference, struct work *w)
-{
-    for (int k = 0; k < c->n; k++) reference[k] = 0;
-    for (int side = 0; side < 2 * x->model->nloop; side++) {
-        const struct loop *l = &c->loop[side / 2];
-        const int body = side % 2 ? l->body_b : l->body_a;
-        real column[6 * SPACE], a[SPACE];
-        if (body < 0) continue;
-        loop_column(&c->pose[side / 2], side % 2, column);
-        for (int k = 0; k < l->c; k++) {
-            body_accelerate(&x->body[body], column + SPACE * k, a);
-            reference[l->row_at + k] += screw_dot(column + SPACE * k, a);
-        }
-        w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP + 1));
-    }
-}
-
-/* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops' forces;
- * twice, to remove what rounding left. */
-static bool closed_forward(struct scene *x, const double *tau, double *ud, struct arena *scratch, struct work *w)
-{
-    const struct closing c = closing_take(x, scratch, w);
-    const int n = c.n;
-    real *S = TAKE(scratch, size_product(n, n), real), *copy = TAKE(scratch, size_product(n, n), real),
-         *room = TAKE(scratch, size_product(n, n + 2), real);
-    real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real), *r = TAKE(scratch, n, real);
-    const double *none = TAKE(scratch, x->model->nu, double);
-    struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;
-    closing_reference(x, &c, reference, w);
-    memcpy(at_rest, moving, (size_t)x->model->nbody * sizeof *at_rest);
-    for (int i = 0; i < x->model->nbody; i++) screw_zero(at_rest[i].bias);
-    struct scene response = *x;
-    response.moving = at_rest;
-    response.terms = false;
-    response.load = c.load;
-    screw_zero(response.base);
-    bool good = true;
-    for (int k = 0; k < n && good; k++) {
-        for (int j = 0; j < n; j++) r[j] = j == k;
-        closing_force(x, &c, r, w);
-        good = open_forward(&response, none, ud, w);
-        closing_residual(&response, &c, r, w);
-        for (int j = 0; j < n; j++) S[j * n + k] = r[j];
-    }
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (real)0.5 * (S[i * n + k] + S[k * n + i]);
-    w->flop += (uint64_t)(n * (n - 1));
-    good = good && open_forward(x, tau, ud, w);
-    for (int pass = 0; pass < 2 && good; pass++) {
-        closing_residual(x, &c, r, w);
-        for (int k = 0; k < n * n; k++) copy[k] = S[k];
-        for (int k = 0; k < n; k++) r[k] = -r[k];
-        least_norm_solve(n, reference, copy, r, room, w);
-        for (int k = 0; k < n; k++) lambda[k] += r[k];
-        w->flop += (uint64_t)n;
-        closing_force(x, &c, lambda, w);
-        x->load = c.load;
-        good = open_forward(x, tau, ud, w);
-    }
     return good;
 }
 
@@ -484,7 +341,8 @@ bool planar_forward(const struct model *model, const struct state *s, struct are
         tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
         w->flop += BODY_SPRING_FLOP;
     }
-    const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w) : open_forward(&x, tau, qdd, w);
+    const bool good = model->nloop > 0 ? planar_closed_forward(&x, tau, qdd, scratch, w)
+                                       : planar_open_forward(&x, tau, qdd, w);
     arena_release(scratch, mark);
     return good;
 }

@@ -4,7 +4,8 @@
 #include "base/check.h"
 #include "dynamics/planar_frame.h"
 
-/* A constraint in the axes of its loop frame, [angular; linear]: a row of the file's or one of the joint's. */
+/* A constraint in the axes of its loop frame, [angular; linear]: a row of the file's or one of the joint's.
+ * Both kinds as one row of six numbers. */
 static void spatial_row(const struct loop_def *def, int k, quad *row)
 {
     for (int j = 0; j < 6; j++) row[j] = 0;
@@ -18,6 +19,7 @@ static bool planar_row(const struct loop_def *def, int k, const quad *rows, real
 {
     quad full[6], part[3] = {0}, square = 0;
     spatial_row(def, k, full);
+    /* The angular part along the normal, the linear one along x and y. */
     for (int j = 0; j < 3; j++) {
         part[0] += rows[j] * full[j];
         part[1] += rows[3 + j] * full[3 + j];
@@ -27,6 +29,7 @@ static bool planar_row(const struct loop_def *def, int k, const quad *rows, real
         square += part[j] * part[j];
         w[j] = (real)part[j];
     }
+    /* A constraint out of the plane is met by every motion in it. */
     return square > 1e-18Q;
 }
 
@@ -43,6 +46,7 @@ static void loop_make(const struct model *m, int i, const quad *normal, struct l
     const struct loop_def *def = &m->loop[i];
     const int nrow = m->row_at[i + 1] - m->row_at[i];
     quad a[9], b[9], frame[9], inner[3];
+    /* Planar frames of both bodies, and one for the loop's own frame b. */
     planar_frame(m, def->body_a, normal + 3 * (def->body_a + 1), a);
     planar_frame(m, def->body_b, normal + 3 * (def->body_b + 1), b);
     planar_normal_in(&def->frame_b, b, inner);
@@ -56,6 +60,7 @@ static void loop_make(const struct model *m, int i, const quad *normal, struct l
         if (planar_row(def, k, frame, l->w + SPACE * l->c)) place[l->c++] = m->row_at[i] + k;
 }
 
+/* Constraints that do not act have no row: numbers are those of the plane. */
 void loops_make(const struct model *m, struct loop *loop, int *place)
 {
     struct arena *scratch = arena_create();
@@ -72,6 +77,7 @@ void loops_make(const struct model *m, struct loop *loop, int *place)
     arena_destroy(scratch);
 }
 
+/* By making them: whether a row acts depends on the normal. */
 int loop_rows(const struct model *m)
 {
     if (m->nloop == 0) return 0;
@@ -85,6 +91,7 @@ int loop_rows(const struct model *m)
 
 /* y = r^T x. */
 enum { TURN_BACK_FLOP = 6 };
+/* Into the axes of r. */
 static void turn_back(const struct xform *r, const real *x, real *y)
 {
     const real a = r->c * x[0] + r->s * x[1], b = r->c * x[1] - r->s * x[0];
@@ -94,6 +101,7 @@ static void turn_back(const struct xform *r, const real *x, real *y)
 
 /* y = a^-1 o b. */
 enum { BETWEEN_FLOP = 2 + 6 + TURN_BACK_FLOP };
+/* The relative pose of two frames. */
 static void between(struct xform *y, const struct xform *a, const struct xform *b)
 {
     const real p[2] = {b->p[0] - a->p[0], b->p[1] - a->p[1]};
@@ -115,6 +123,7 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
 {
     struct xform wa, wb, rel;
     real a[SPACE], b[SPACE], relative[SPACE], error[SPACE], pa[2], pb[2];
+    /* Both frames in the base's. */
     xform_compose(&wa, xa, &l->a);
     xform_compose(&wb, xb, &l->b);
     between(&rel, &wa, &wb);
@@ -128,17 +137,20 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
     }
     xform_motion(a, &p->ta, va);
     xform_motion(b, &p->tb, vb);
+    /* Velocities of both frames, in the loop's axes; then gamma (physics 7.3). */
     for (int k = 0; k < SPACE; k++) relative[k] = b[k] - a[k];
     turn_back(&p->ta, p->ta.p, pa);
     turn_back(&p->tb, p->tb.p, pb);
     screw_zero(p->gamma);
     add_centripetal(1, b[0], pb, p->gamma);
     add_centripetal(-1, a[0], pa, p->gamma);
+    /* Joints are seen from b's turning frame. */
     if (!l->by_rows) {
         const real t = a[0] + a[0] + relative[0];
         p->gamma[1] += t * relative[2];
         p->gamma[2] -= t * relative[1];
     }
+    /* The sine stands for the angle: exact where the constraint is met. */
     error[0] = rel.s;
     if (l->by_rows) error[1] = rel.p[0], error[2] = rel.p[1];
     else turn_back(&rel, rel.p, error + 1);

@@ -3,6 +3,7 @@
 
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
 {
+    /* From the rounded constants, so that both texts compute with the same numbers. */
     struct revolute *out = TAKE(a, m->nbody, struct revolute);
     for (int i = 0; i < m->nbody; i++) {
         struct revolute *r = &out[i];
@@ -11,6 +12,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
         vec3_copy(r->t, b[i].tree.p);
         r->m = b[i].m;
         vec3_copy(r->s, b[i].s);
+        /* S = tr(J)/2 U - J: the products of inertia change sign. */
         r->second[0] = half * ((j[3] - j[0]) + j[5]);
         r->second[3] = half * ((j[0] - j[3]) + j[5]);
         r->second[5] = half * ((j[0] - j[5]) + j[3]);
@@ -23,6 +25,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
 void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w)
 {
     if (!w) return;
+    /* Bodies on the base save the part that concerns their parent. */
     uint64_t children = 0;
     for (int i = 0; i < d->nbody; i++) children += d->revolute[i].parent >= 0;
     const uint64_t n = (uint64_t)d->nbody;

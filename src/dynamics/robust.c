@@ -11,9 +11,11 @@ static void refine(struct dynamics *d, const real *q, const real *u, const real 
     struct arena_mark mark = arena_mark(d->arena);
     real *rest = TAKE(d->arena, d->nu, real), *more = TAKE(d->arena, d->nu, real), *given = d->load;
     double before = 1;
+    /* As outer refinement of the parallel programs (physics 8.6), with another solver. */
     for (int step = 0; step < ROBUST_OUTER; step++) {
         rnea_full(d, q, u, ud, rest, w);
         for (int k = 0; k < d->nu; k++) rest[k] = tau[k] - rest[k];
+        /* The loads are in tau - RNEA already. */
         d->load = NULL;
         bool good = aba_response(d, rest, more, w);
         d->load = given;
@@ -27,6 +29,7 @@ static void refine(struct dynamics *d, const real *q, const real *u, const real 
     arena_release(d->arena, mark);
 }
 
+/* Constraint forces first, since their error shows; articulated bodies where they fail. */
 bool forward_robust(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, real *lambda,
                     struct cfa_report *report, struct work *w)
 {

@@ -5,6 +5,7 @@
 /* y += columns k0 .. k0 + n - 1 times x. */
 static void expand(const struct subspace *s, int k0, int n, const real *x, real *y)
 {
+    /* Picked columns add where others multiply. */
     for (int k = 0; k < n; k++)
         if (s->pick) y[s->pick[k0 + k]] += x[k];
         else screw_axpy(y, x[k], s->col + SPACE * (k0 + k));
@@ -32,6 +33,7 @@ void subspace_project(const struct subspace *a, bool a_w, const real *m, const s
 {
     int a0 = a_w ? a->d : 0, na = a_w ? a->c : a->d, b0 = b_w ? b->d : 0, nb = b_w ? b->c : b->d;
     real t[SQUARE]; /* M B, (SPACE x nb) */
+    /* First M B, one column after the other, then its products with the columns of A. */
     for (int j = 0; j < nb; j++)
         for (int i = 0; i < SPACE; i++)
             t[SPACE * j + i] =

@@ -9,7 +9,8 @@ void system_prepare(struct model *m)
     m->constants = bodies_make(m, m->arena);
 }
 
-/* Random velocities made consistent with the loops. */
+/* Random velocities made consistent with the loops.
+ * A ring's seeded rates violate its closure; the nearest rates that do not are taken. */
 static void close_velocities(const struct model *m, struct state *s, struct arena *a)
 {
     struct arena_mark mark = arena_mark(a);

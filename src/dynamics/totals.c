@@ -2,30 +2,19 @@
 #include "dynamics/dynamics.h"
 #include "dynamics/loops.h"
 
-/* Transforms of the internal frames to the base; d must be placed. */
-static struct xform *world_poses(struct dynamics *d)
-{
-    struct xform *x = TAKE(d->arena, d->nbody, struct xform);
-    for (int i = 0; i < d->nbody; i++) {
-        int p = d->body[i].parent;
-        if (p < 0)
-            x[i] = d->pose[i].x;
-        else
-            xform_compose(&x[i], &x[p], &d->pose[i].x);
-    }
-    return x;
-}
-
 /* One body's part; com in *t is the first moment until the end. */
 static void add_body(const struct dynamics *d, int i, const struct xform *x, struct motion_totals *t)
 {
     const struct body *b = &d->body[i];
     const real *v = d->v + 6 * i, half = (real)0.5;
     real vc[3], spin[3], linear[3], c[3];
+    /* Velocity of the centre of mass, and spin about it: kinetic energy without a distant
+     * origin. */
     vec3_copy(vc, v + 3);
     vec3_cross_add(vc, v, b->s);
     sym3_mul_vec(spin, b->jc, v);
     t->kinetic += half * (b->m * vec3_dot(vc, vc) + vec3_dot(v, spin));
+    /* In the base's frame: place, then linear and angular momentum about the base's origin. */
     mat3_mul_vec(c, x->r, b->s);
     vec3_add(c, x->p);
     for (int k = 0; k < 3; k++) t->potential -= b->m * (real)d->model->gravity[k] * c[k];
@@ -44,7 +33,7 @@ static struct xform *world_motion(struct dynamics *d, const real *q, const real 
 {
     dynamics_place(d, q);
     dynamics_velocities(d, u);
-    return world_poses(d);
+    return dynamics_world(d, NULL);
 }
 
 void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t)
@@ -55,9 +44,11 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         add_body(d, i, &x[i], t);
+        /* Springs store energy, dampers do not. */
         real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
         t->potential += b->stiffness * stretch * stretch / 2;
     }
+    /* Massless systems have no centre. */
     for (int k = 0; k < 3 && t->mass > 0; k++) t->com[k] /= t->mass;
     arena_release(d->arena, mark);
 }
@@ -70,11 +61,13 @@ void forward_kinematics(struct dynamics *d, const real *q, const real *u, const 
         const struct body *b = &d->body[i];
         static const real still[6] = {0};
         real *a = d->a + 6 * i, carried[6];
+        /* As in rnea.c, but without gravity: these are accelerations that an observer sees. */
         screw_copy(a, d->bias + 6 * i);
         subspace_h(&d->pose[i].s, ud + b->u_at, a);
         xform_motion(carried, &d->pose[i].x, b->parent >= 0 ? d->a + 6 * b->parent : still);
         screw_add(a, carried);
         struct body_motion *o = &out[i];
+        /* From internal to user axes, and everything else into the base's. */
         mat3_mul_transposed(o->r, x[i].r, b->user);
         vec3_copy(o->p, x[i].p);
         mat3_mul_vec(o->w, x[i].r, d->v + 6 * i);
@@ -85,6 +78,7 @@ void forward_kinematics(struct dynamics *d, const real *q, const real *u, const 
     arena_release(d->arena, mark);
 }
 
+/* What the constraints still lack at the positions and velocities themselves. */
 void loop_drift(struct dynamics *d, const real *q, const real *u, real *g, real *rho)
 {
     struct arena_mark mark = arena_mark(d->arena);

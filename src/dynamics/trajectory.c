@@ -14,6 +14,7 @@ static const char *const names[] = {"rk2",    "rk4",    "rkf45",  "rkck",  "rk8p
 
 const char *const *trajectory_steppers(void) { return names; }
 
+/* In the order of the names; GSL's types are variables, hence no static table. */
 static const gsl_odeiv2_step_type *stepper_of(int i)
 {
     const gsl_odeiv2_step_type *const type[] = {
@@ -36,6 +37,7 @@ static int derivative(double t, const double y[], double dy[], void *context)
     struct flow *f = context;
     const struct model *m = f->d->model;
     (void)t;
+    /* GSL would go on for ever where steps vanish. */
     if (++f->evaluations > f->most) return GSL_EBADFUNC;
     for (int i = 0; i < m->nbody; i++) {
         const struct body *b = &f->d->body[i];
@@ -51,6 +53,7 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
     struct flow *f = context;
     int n = f->d->model->nq + f->d->model->nu;
     for (int i = 0; i < n; i++) f->shifted[i] = y[i], dfdt[i] = 0;
+    /* A step that balances rounding against the third derivative: the cube root of eps. */
     for (int j = 0; j < n; j++) {
         double h = 6e-6 * fmax(fabs(y[j]), 1e-2);
         f->shifted[j] = y[j] + h;
@@ -85,6 +88,7 @@ static int stepper_find(const char *name, struct err *e)
     int count = (int)(sizeof names / sizeof *names) - 1;
     for (int i = 0; i < count; i++)
         if (strcmp(names[i], name) == 0) return i;
+    /* As everywhere: the nearest name. */
     const char *near = text_nearest(name, names, count);
     err_set(e, ERR_USAGE, "no integrator '%s'%s%s%s", name, near ? "; did you mean '" : "", near ? near : "",
             near ? "'?" : "");
@@ -122,11 +126,13 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     if (which < 0) return false;
     size_t n = (size_t)(m->nq + m->nu);
     if (report) *report = (struct trajectory_report){0};
+    /* A system of fixed joints. */
     if (n == 0) return true; /* nothing can move */
     if (!(duration > 0) || !isfinite(duration))
         return err_set(e, ERR_CHECK, "integrator '%s': the duration %g is not positive and "
                                      "finite", options->stepper, duration);
     struct arena_mark mark = arena_mark(scratch);
+    /* q and u as one vector of plain numbers. */
     struct flow f = {.d = dynamics_take(m, scratch), .tau = s->tau, .shifted = TAKE(scratch, n, double),
                      .change = TAKE(scratch, n, double)};
     f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
@@ -136,12 +142,14 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     memcpy(y + m->nq, s->qd, (size_t)m->nu * sizeof *y);
     double first = options->first_step > 0 ? options->first_step : duration / 1000;
     gsl_odeiv2_system system = {derivative, jacobian, n, &f};
+    /* The first step is a guess; the driver finds its own. */
     gsl_odeiv2_driver *driver =
         gsl_odeiv2_driver_alloc_y_new(&system, stepper_of(which), first, options->tolerance, options->tolerance);
     long steps = options->fixed_steps > 0
                      ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
                      : drive(driver, duration, y);
     gsl_odeiv2_driver_free(driver);
+    /* A step may end in overflow without GSL noticing. */
     bool finite = true;
     for (size_t i = 0; i < n; i++) finite = finite && isfinite(y[i]);
     if (steps >= 0 && finite) state_from(f.d, y, s);

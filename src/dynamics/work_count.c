@@ -1,6 +1,7 @@
 /* work_count.c - operation counts of the serial algorithms. */
 #include "dynamics/work_count.h"
 
+/* Sums over joint types: the source executes nothing else. */
 void work_count_place(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
@@ -12,6 +13,7 @@ void work_count_place(const struct dynamics *d, struct work *w)
     }
 }
 
+/* The base carries no velocity, so that its bodies add none. */
 void work_count_velocities(const struct dynamics *d, struct work *w)
 {
     if (!w || d->at_rest) return;
@@ -41,10 +43,12 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         const struct joint_cost *c = joint_cost_of(b->joint);
+        /* Bodies on the base neither hand forces on nor are carried. */
         bool child = b->parent >= 0;
         w->call += 1;
         w->flop += (uint64_t)(c->h + c->h_transposed + XFORM_MOTION_FLOP + SCREW_ADD_FLOP + BODY_FORCE_FLOP + load +
                               (child ? XFORM_FORCE_FLOP + SCREW_ADD_FLOP : 0));
+        /* Angular velocities, bias and P. */
         if (!d->at_rest)
             w->flop += (uint64_t)(c->rate + c->bias + (child ? MAT3_VEC_FLOP + VEC3_ADD_FLOP : 0) + BODY_GYRO_FLOP +
                                   SCREW_ADD_FLOP);
@@ -58,6 +62,7 @@ static void count_eliminate(const struct body *b, const struct joint_cost *cost,
     w->flop += d * (d + 1) * (2 * d + 1) / 6 - d + (2 * d * d - d) + d * (d - 1) * c; /* factor, solve, forward */
     w->flop += d + c * (c + 1) / 2 * 3 * d + 2 * c * d;                               /* e, Schur, p */
     w->div += d;
+    /* Into joint axes and back, where columns are not unit vectors. */
     if (!body_picks(b)) w->flop += 396 + 21 * 11 + 66 + c * c * 21 * 3;               /* joint axes and back */
     w->flop += 2 * c * d + (2 * d * d - d) + 2 * d;                                   /* accelerate */
     w->flop += (uint64_t)(2 * cost->h + 2 * cost->w + cost->h_transposed + cost->w_transposed);
@@ -87,6 +92,7 @@ void work_count_crba(const struct dynamics *d, struct work *w)
         const struct body *b = &d->body[i];
         w->call += 1;
         if (b->parent >= 0) w->flop += INERTIA_MOVE_FLOP + INERTIA_ADD_FLOP;
+        /* Each column walks to the root: depth matters, not the number of bodies. */
         uint64_t column = INERTIA_MUL_FLOP + (uint64_t)joint_cost_of(b->joint)->h_transposed;
         for (int j = i; d->body[j].parent >= 0; j = d->body[j].parent)
             column += XFORM_FORCE_FLOP + (uint64_t)joint_cost_of(d->body[d->body[j].parent].joint)->h_transposed;
