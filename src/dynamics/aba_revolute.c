@@ -169,6 +169,7 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     real *sine = d->scratch, *cosine = sine + n;
     struct link *link = (struct link *)(cosine + n);
     struct motion *motion = (struct motion *)(link + n), base = {{0}, {0}};
+    /* All angles in one vectorised loop: half the time of a call otherwise. */
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];

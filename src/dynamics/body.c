@@ -30,6 +30,7 @@ static void make_frames(const struct model *m, int i, struct body *b)
     const struct body_def *def = &m->body[i];
     struct body_constants c;
     body_constants_place(m, i, &c);
+    /* Only some bodies are turned: the others' wrenches are taken as they are. */
     b->turned = c.turned;
     round_to(b->tree.r, c.tree_r, 9);
     round_to(b->tree.p, c.tree_p, 3);

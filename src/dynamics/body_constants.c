@@ -145,6 +145,7 @@ static void about_origin(struct body_constants *c, quad mass)
 {
     const quad *s = c->s;
     vec3_scale(c->ms, mass, s);
+    /* J - m s~ s~, written out. */
     c->j[0] = c->jc[0] + mass * (s[1] * s[1] + s[2] * s[2]);
     c->j[1] = c->jc[1] - mass * (s[0] * s[1]);
     c->j[2] = c->jc[2] - mass * (s[0] * s[2]);

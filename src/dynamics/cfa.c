@@ -39,6 +39,8 @@ static void accelerations(struct cfa_run *r)
     struct arena_mark mark = arena_mark(d->arena);
     real *net = TAKE(d->arena, size_product(6, d->nbody), real), t[6];
     for (int i = 0; i < d->nbody; i++) {
+        /* Action and reaction: a joint's force on its body, and moved to the parent, against
+         * it. */
         screw_copy(net + 6 * i, r->f + 6 * i);
         if (has_gyro(r)) screw_sub(net + 6 * i, r->gyro + 6 * i);
         if (d->body[i].parent < 0) continue;
@@ -46,6 +48,7 @@ static void accelerations(struct cfa_run *r)
         screw_sub(net + 6 * d->body[i].parent, t);
         r->work.flop += XFORM_FORCE_FLOP + SCREW_ADD_FLOP;
     }
+    /* Loop forces are known numbers here; border and answer_loops find them. */
     loops_force(&r->loops, r->lambda, net, &r->work);
     for (int i = 0; i < d->nbody; i++) body_accelerate(&d->body[i], net + 6 * i, r->y + 6 * i);
     arena_release(d->arena, mark);
@@ -58,13 +61,15 @@ static void relative( struct cfa_run *r, int i, real *z)
     static const real still[6] = {0};
     struct dynamics *d = r->d;
     int parent = d->body[i].parent;
+    /* physics 4.3: what the joint would have to allow for the two bodies to stay together. */
     xform_motion(z, &d->pose[i].x, parent >= 0 ? r->y + 6 * parent : r->full ? d->base : still);
     for (int k = 0; k < 6; k++) z[k] = r->y[6 * i + k] - z[k];
     if (has_velocities(r)) screw_sub(z, d->bias + 6 * i);
     r->work.flop += XFORM_MOTION_FLOP + SCREW_ADD_FLOP + (has_velocities(r) ? SCREW_ADD_FLOP : 0);
 }
 
-/* z = W^T Z of all joints. */
+/* z = W^T Z of all joints.
+ * Zero when every joint holds: W spans what it must not allow. */
 static void violations(struct cfa_run *r)
 {
     struct dynamics *d = r->d;
@@ -82,6 +87,7 @@ static void answer_joints(struct cfa_run *r)
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
     real *x = TAKE(d->arena, size_product(6, d->nbody), real);
+    /* A x = -z: the matrix is that of the free bodies' accelerations under constraint forces. */
     for (int k = 0; k < 6 * d->nbody; k++) r->z[k] = -r->z[k];
     cfa_solve(d, &r->system, r->z, x, &r->work);
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] += x[k];
@@ -96,11 +102,13 @@ static void border(struct cfa_run *r)
     int m = r->loops.nrow, size = 6 * d->nbody;
     real *f = r->f, *lambda = r->lambda, *column = TAKE(d->arena, m, real);
     bool full = r->full;
+    /* Without velocity terms: pure responses. */
     r->full = false;
     r->lambda = TAKE(d->arena, m, real);
     for (int k = 0; k < m; k++) {
         r->f = r->response + (size_t)k * (size_t)size;
         for (int i = 0; i < m; i++) r->lambda[i] = i == k;
+        /* The second pass is a refinement: S is used for every solution. */
         for (int pass = 0; pass < 2; pass++) {
             accelerations(r);
             violations(r);
@@ -114,6 +122,7 @@ static void border(struct cfa_run *r)
         for (int k = 0; k < i; k++)
             r->s[i * m + k] = r->s[k * m + i] = (real)0.5 * (r->s[i * m + k] + r->s[k * m + i]);
     r->work.flop += (uint64_t)(m * (m - 1));
+    /* Back to the forces of the caller. */
     r->f = f;
     r->lambda = lambda;
     r->full = full;
@@ -129,6 +138,7 @@ static void answer_loops(struct cfa_run *r, real *residual)
     real *s = TAKE(d->arena, size_product(m, m), real), *room = TAKE(d->arena, size_product(m, m + 2), real);
     for (int k = 0; k < m * m; k++) s[k] = r->s[k];
     for (int k = 0; k < m; k++) residual[k] = -residual[k];
+    /* Redundant loops leave lambda open, not u' (physics 7.4). */
     r->rank = least_norm_solve(m, r->reference, s, residual, room, &r->work);
     for (int k = 0; k < m; k++) {
         r->lambda[k] += residual[k];
@@ -146,6 +156,7 @@ static void pass(struct cfa_run *r, const real *wanted)
     accelerations(r);
     violations(r);
     answer_joints(r);
+    /* Open systems are done. */
     if (m == 0) return;
     struct arena_mark mark = arena_mark(d->arena);
     real *residual = TAKE(d->arena, m, real);
@@ -164,6 +175,7 @@ static void solve(struct cfa_run *r, const real *tau, const real *wanted, int in
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] = 0;
     for (int k = 0; k < r->loops.nrow; k++) r->lambda[k] = 0;
     for (int i = 0; i < d->nbody; i++) subspace_h(&d->pose[i].s, tau + d->body[i].u_at, r->f + 6 * i);
+    /* The first pass solves, the others refine (physics 8.6). */
     for (int k = 0; k <= inner; k++) pass(r, wanted);
     accelerations(r);
     for (int i = 0; i < d->nbody; i++) {
@@ -185,6 +197,7 @@ static void correction(struct cfa_run *r, const real *q, const real *u, const re
     real *lack = TAKE(d->arena, m, real), *load = TAKE(d->arena, size, real);
     for (int k = 0; k < size; k++) load[k] = given ? given[k] : 0;
     loops_force(&r->loops, lambda, load, &r->work);
+    /* The closed system's inverse dynamics, with the loops' forces as loads. */
     d->load = load;
     rnea_full(d, q, u, ud, rest, &r->work);
     d->load = given;
@@ -208,6 +221,7 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
     for (int step = 0; step < options->outer; step++) {
         correction(r, q, u, tau, options->inner, ud, lambda, more);
         double size = relative_size(d->nu, more, ud);
+        /* Not smaller than the one before: rounding has the last word. */
         if (!(size < before)) {
             if (step == 0) report->correction = size;
             break;
@@ -217,12 +231,14 @@ static void refine_outer(struct cfa_run *r, const real *q, const real *u, const 
         r->work.flop += (uint64_t)(d->nu + r->loops.nrow);
         report->correction = before = size;
         report->outer_done = step + 1;
+        /* Below one unit in the last place nothing is left to correct. */
         if (size <= (double)REAL_EPSILON) break;
     }
     arena_release(d->arena, mark);
 }
 
-/* The velocity terms of all bodies. */
+/* The velocity terms of all bodies.
+ * Once an evaluation; refinements have no velocity terms. */
 static void velocity_terms(struct cfa_run *r, const real *u)
 {
     struct dynamics *d = r->d;
@@ -246,6 +262,7 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     r->z = TAKE(d->arena, size_product(6, n), real);
     r->gyro = TAKE(d->arena, size_product(6, n), real);
     r->bias = TAKE(d->arena, d->nu, real);
+    /* Inverse dynamics places the bodies itself. */
     if (direct) {
         dynamics_place(d, q);
         work_count_place(d, &r->work);
@@ -256,6 +273,7 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     if (!cfa_factor(d, &r->system, &r->work)) return false;
     loops_take(d, &r->loops, &r->work);
     r->lambda = TAKE(d->arena, m, real);
+    /* Room for S and the responses only where there are loops. */
     if (m == 0) return true;
     r->response = TAKE(d->arena, size_product(m, size_product(6, n)), real);
     r->s = TAKE(d->arena, size_product(m, m), real);
@@ -279,7 +297,8 @@ static void solve_paper(struct cfa_run *r, const real *tau, int inner, real *ud)
     arena_release(d->arena, mark);
 }
 
-/* Largest violation of a joint over the largest acceleration. */
+/* Largest violation of a joint over the largest acceleration.
+ * W^T Z in the operator form: it does not share rounding errors with the factors. */
 static double residual_of(struct cfa_run *r)
 {
     real worst = 0, scale = 0;
@@ -302,6 +321,8 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
     struct cfa_report own = {.nrow = d->model->nrow};
     bool good = d->model->has_phi && prepare(&r, d, options->direct, q, u);
     if (good) {
+        /* The two formulations solve the same system from different right-hand sides (physics
+         * 4.2, 4.3). */
         if (options->direct)
             solve(&r, tau, NULL, options->inner, ud);
         else
@@ -310,6 +331,7 @@ bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, cons
         own.inner_done = options->inner;
         real *sum = TAKE(d->arena, r.loops.nrow, real);
         for (int k = 0; k < r.loops.nrow; k++) sum[k] = r.lambda[k];
+        /* Refinements change r.lambda: the sum is kept apart. */
         refine_outer(&r, q, u, tau, options, ud, sum, &own);
         for (int k = 0; k < r.loops.nrow && lambda; k++) lambda[k] = sum[k];
         own.rank = r.rank;

@@ -155,6 +155,7 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
     int n = d->nu;
     real *mass = TAKE(d->arena, size_product(n, n), real), *x = TAKE(d->arena, n, real);
     bool good;
+    /* The bias forces, which the fast path has, too. */
     rnea(d, q, u, d->zero, x, w);
     crba(d, q, mass, w);
     for (int i = 0; i < n; i++) x[i] = tau[i] - x[i];

@@ -56,6 +56,7 @@ enum { FORCE_FLOP = 2 * MAT3_VEC_FLOP + VEC3_CROSS_ADD_FLOP };
 static void force_of(const struct axes *a, int i, real *n, real *f)
 {
     const struct inertia *in = &a->composite[i];
+    /* Column z of the composite's matrix: moments, then forces; no product at all. */
     const real local[6] = {in->j[2], in->j[4], in->j[5], -in->ms[1], in->ms[0], 0};
     mat3_mul_vec(n, a->world[i].r, local);
     mat3_mul_vec(f, a->world[i].r, local + 3);
@@ -64,6 +65,7 @@ static void force_of(const struct axes *a, int i, real *n, real *f)
 
 /* Row i of a chain up to the diagonal, in packed registers. */
 enum { PAIR_FLOP = 11 };
+/* All ancestors of a chain's body are contiguous: the loop has no branches. */
 static void chain_row(const struct axes *a, int i, const real *n, const real *f, real *restrict row)
 {
     const real *x = a->s[0], *y = a->s[1], *z = a->s[2], *u = a->s[3], *v = a->s[4], *w = a->s[5];
@@ -74,6 +76,7 @@ static void chain_row(const struct axes *a, int i, const real *n, const real *f,
 /* Entries on the path to the root, both triangles. */
 static void tree_row(const struct dynamics *d, const struct axes *a, int i, const real *n, const real *f, real *mass)
 {
+    /* Ancestors of a tree's body are anywhere. */
     size_t size = (size_t)a->n;
     for (int j = d->revolute[i].parent; j >= 0; j = d->revolute[j].parent) {
         real m = (n[0] * a->s[0][j] + n[1] * a->s[1][j] + n[2] * a->s[2][j]) +

@@ -4,7 +4,8 @@
 #include "dynamics/integrate.h"
 #include "dynamics/work_count.h"
 
-/* A model's numbers in this precision. */
+/* A model's numbers in this precision.
+ * The state as arrays of `real`; answers go back through to_double. */
 struct problem {
     struct dynamics *d;
     real *q, *u, *ud, *tau;
@@ -56,6 +57,7 @@ static bool solve(struct problem *p, enum forward_method method, real *ud, real 
                   struct work *w)
 {
     struct dynamics *d = p->d;
+    /* It chooses among the others itself. */
     if (method == FORWARD_CFA_ROBUST) return forward_robust(d, p->q, p->u, p->tau, ud, lambda, report, w);
     if (method == FORWARD_CFA_PAPER || method == FORWARD_CFA_DIRECT) {
         const struct cfa_options options = {.direct = method == FORWARD_CFA_DIRECT};
@@ -74,6 +76,7 @@ static bool forward(const struct model *m, const struct state *s, enum forward_m
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, w);
     struct cfa_report full = {0};
+    /* The constraint forces only if they are asked for. */
     real *ud = TAKE(scratch, m->nu, real), *force = TAKE(scratch, m->nrow, real);
     springs_add(p.d, p.q, p.u, p.tau);
     work_count_springs(p.d, w);
@@ -106,6 +109,7 @@ static void wrenches(const struct model *m, const struct state *s, struct arena 
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);
     real *tau = TAKE(scratch, m->nu, real);
+    /* The full form: the fast path keeps no joint forces. */
     rnea_full(p.d, p.q, p.u, p.ud, tau, NULL);
     for (int i = 0; i < m->nbody; i++)
         for (int k = 0; k < 3; k++) {
@@ -160,6 +164,7 @@ static bool advance(const struct model *m, struct state *s, enum step_rule rule,
     struct problem p = problem_take(m, s, scratch, w);
     struct integrator it = integrator_make(p.d, rule, (real)h, p.q, p.u, p.tau);
     bool good = true;
+    /* As far as it goes: a failed step leaves the state before it. */
     for (int k = 0; k < steps && good; k++) good = integrator_step(&it);
     to_double(s->q, p.q, m->nq);
     to_double(s->qd, p.u, m->nu);
@@ -175,6 +180,7 @@ static void drift(const struct model *m, const struct state *s, struct arena *sc
     struct arena_mark mark = arena_mark(scratch);
     struct problem p = problem_take(m, s, scratch, NULL);
     real *g = TAKE(scratch, m->nrow, real), *rho = TAKE(scratch, m->nrow, real);
+    /* Absolute numbers in the model's units. */
     loop_drift(p.d, p.q, p.u, g, rho);
     *position = *velocity = 0;
     for (int k = 0; k < m->nrow; k++) {

@@ -7,6 +7,7 @@
 #include "dynamics/work_count.h"
 #include "linalg/dense.h"
 
+/* As struct articulated in aba.c, in body axes throughout. */
 struct resisting {
     struct sym6 inertia;
     real p[6];   /* bias force, body axes */
@@ -18,6 +19,7 @@ struct resisting {
 enum { LOWER_FLOP = 42 };
 static void lower(struct sym6 *inertia, const real *u, const real *y)
 {
+    /* Blocks of struct sym6: a and c symmetric, b full. */
     static const signed char row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int e = 0; e < 6; e++) {
         inertia->a[e] -= u[row[e]] * y[column[e]];
@@ -91,6 +93,7 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         sym6_from_inertia(&b[i].inertia, &body->inertia);
         body_gyro(body, d->v + 6 * i, b[i].p);
         if (d->load) screw_sub(b[i].p, d->load + 6 * i);
+        /* physics (9.0): spring and damper at the end of the step. */
         own.call++;
         own.flop += BODY_GYRO_FLOP + (d->load ? SCREW_ADD_FLOP : 0);
         if (!body->has_spring) continue;

@@ -52,6 +52,7 @@ static void combine(struct integrator *it, int n, const real *x, real h, const r
 static bool step_semi_implicit(struct integrator *it)
 {
     if (!accelerate(it, it->q, it->u, it->a)) return false;
+    /* u += h a, then q with the new u. */
     combine(it, it->d->nu, it->u, it->h, it->a, it->u);
     drift(it);
     return true;

@@ -1,6 +1,7 @@
-/* planar_closed.c - forward dynamics of planar scenes with loops: S = J M^-1 J^T column by column. */
+/* planar_closed.c - forward dynamics of planar scenes, with loops through S = J M^-1 J^T, column by column. */
 #include <string.h>
 
+#include "dynamics/planar_dynamics.h"
 #include "dynamics/planar_loop.h"
 #include "dynamics/planar_scene.h"
 #include "linalg/least_norm.h"
@@ -97,9 +98,9 @@ static void closing_reference(const struct scene *x, const struct closing *c, re
     }
 }
 
-/* planar_closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops'
+/* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops'
  * forces; twice, to remove what rounding left. */
-bool planar_closed_forward(struct scene *x, const double *tau, double *ud, struct arena *scratch,
+static bool closed_forward(struct scene *x, const double *tau, double *ud, struct arena *scratch,
                            struct work *w)
 {
     const struct closing c = closing_take(x, scratch, w);
@@ -142,5 +143,27 @@ bool planar_closed_forward(struct scene *x, const double *tau, double *ud, struc
         x->load = c.load;
         good = planar_open_forward(x, tau, ud, w);
     }
+    return good;
+}
+
+/* With or without loops: springs are given forces here. */
+bool planar_forward(const struct model *model, const struct state *s, struct arena *scratch, double *qdd,
+                    struct work *w)
+{
+    struct arena_mark mark = arena_mark(scratch);
+    struct scene x = planar_scene_take(model, s, scratch);
+    double *tau = TAKE(scratch, model->nu, double);
+    for (int k = 0; k < model->nu; k++) tau[k] = s->tau[k];
+    for (int i = 0; i < model->nbody; i++) {
+        const struct body *b = &x.body[i];
+        planar_start(&x, i, w);
+        if (!b->has_spring) continue;
+        const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
+        tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
+        w->flop += BODY_SPRING_FLOP;
+    }
+    const bool good = model->nloop > 0 ? closed_forward(&x, tau, qdd, scratch, w)
+                                       : planar_open_forward(&x, tau, qdd, w);
+    arena_release(scratch, mark);
     return good;
 }

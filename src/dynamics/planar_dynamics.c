@@ -9,7 +9,7 @@
 #include "dynamics/planar_scene.h"
 
 /* Everything of one call, from the caller's scratch. */
-static struct scene scene_take(const struct model *m, const struct state *s, struct arena *scratch)
+struct scene planar_scene_take(const struct model *m, const struct state *s, struct arena *scratch)
 {
     struct scene x = {m, s, bodies_make(m, scratch), TAKE(scratch, m->nbody, struct moving), {0}, NULL, true};
     base_motion(m, s, x.base);
@@ -67,9 +67,9 @@ static void joint_add(const struct body *b, const real *h, real *a)
 
 static bool slides(const struct body *b) { return b->plane == PLANE_SLIDES || b->plane == PLANE_MOVES; }
 
-/* start: place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: where the parent
+/* Place, rate, and bias = the joint's acceleration by the parent's turning and its own sliding: where the parent
  * moves 1 flop, and 1, 2 and 6 for the centripetal part; 5 for slides. */
-static void start(const struct scene *x, int i, struct work *w)
+void planar_start(const struct scene *x, int i, struct work *w)
 {
     const struct body *b = &x->body[i];
     struct moving *m = &x->moving[i];
@@ -131,12 +131,12 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
                     struct work *w)
 {
     struct arena_mark mark = arena_mark(scratch);
-    const struct scene x = scene_take(model, s, scratch);
+    const struct scene x = planar_scene_take(model, s, scratch);
     for (int i = 0; i < model->nbody; i++) {
         const struct body *b = &x.body[i];
         struct moving *m = &x.moving[i];
         real h[SPACE], moved[SPACE], inertial[SPACE];
-        start(&x, i, w);
+        planar_start(&x, i, w);
         planar_joint_motion(b, s->qdd + b->u_at, h);
         xform_motion(moved, &m->pose.x, b->parent < 0 ? x.base : x.moving[b->parent].a);
         screw_copy(m->a, moved);
@@ -323,26 +323,5 @@ bool planar_open_forward(const struct scene *x, const double *tau, double *ud, s
     for (int i = x->model->nbody - 1; i >= 0 && good; i--) good = articulate(x, i, tau + x->body[i].u_at, w);
     for (int i = 0; i < x->model->nbody && good; i++)
         good = accelerate(x, i, tau + x->body[i].u_at, ud + x->body[i].u_at, w);
-    return good;
-}
-
-bool planar_forward(const struct model *model, const struct state *s, struct arena *scratch, double *qdd,
-                    struct work *w)
-{
-    struct arena_mark mark = arena_mark(scratch);
-    struct scene x = scene_take(model, s, scratch);
-    double *tau = TAKE(scratch, model->nu, double);
-    for (int k = 0; k < model->nu; k++) tau[k] = s->tau[k];
-    for (int i = 0; i < model->nbody; i++) {
-        const struct body *b = &x.body[i];
-        start(&x, i, w);
-        if (!b->has_spring) continue;
-        const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
-        tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
-        w->flop += BODY_SPRING_FLOP;
-    }
-    const bool good = model->nloop > 0 ? planar_closed_forward(&x, tau, qdd, scratch, w)
-                                       : planar_open_forward(&x, tau, qdd, w);
-    arena_release(scratch, mark);
     return good;
 }

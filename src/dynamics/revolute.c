@@ -24,6 +24,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
 
 void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w)
 {
+    /* References and drift checks are not charged. */
     if (!w) return;
     /* Bodies on the base save the part that concerns their parent. */
     uint64_t children = 0;

@@ -17,6 +17,7 @@ struct load {
 
 /* k = al~ + w~ w~. */
 enum { SPIN_FLOP = 15 };
+/* K = w'~ + w~ w~: what a point at s accelerates by, K s. */
 static inline void spin_matrix(struct motion *c)
 {
     const real *w = c->w, *al = c->al;
