@@ -140,7 +140,7 @@ status_75() {
     return $found
 }
 status_78() { mimdsim run speedup-t3e --set n=500; }
-status_130() { timeout --preserve-status -s INT 1 "$MIMDSIM" run fig6 --quiet --force --set repetitions=5000 --set machine.noise.compute="1 %" -j 1; }
+status_130() { timeout --preserve-status -s INT 1 "$MIMDSIM" run fig6 --quiet --force --set repetitions=1000 --set machine.noise.compute="1 %" -j 1; }
 
 @test "every exit status of the manual is reached, and means what the manual says" {
     statuses=$(sed -n '/^.SH EXIT STATUS/,/^.SH ENV/p' "$MIMDSIM_SRCDIR/docs/mimdsim.1" | grep -oE '^\.B [0-9]+|^[0-9]+$|^\.BR? "?[0-9]+' |
