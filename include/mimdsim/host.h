@@ -61,6 +61,9 @@ struct mimdsim_runtime {
      * program headers; 0 when there are no more. */
     int (*module)(struct mimdsim_host *host, int i, uintptr_t *base, const void **headers,
                   int *count);
+
+    /* Computing that the program states: `flops` operations and `bytes` copied bytes. */
+    void (*compute)(struct mimdsim_host *host, double flops, double bytes);
 };
 
 struct mimdsim_host {

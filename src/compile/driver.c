@@ -57,9 +57,11 @@ static const char *joined(struct driver *d, const char *a, const char *b, const 
     return text;
 }
 
-/* Behind the user's folders; Fortran knows -I only. */
+/* Our headers, behind the user's folders (Fortran knows -I only), and the macro that tells sources
+ * where they are. */
 static void add_includes(struct driver *d, struct words *w)
 {
+    words_add(w, "-D__MIMDSIM__=1");
     const char *const from[] = {d->places->include, d->places->include_built};
     for (int i = 0; i < 2; i++) {
         if (from[i] == NULL || access(from[i], X_OK) != 0) continue; /* gfortran warns */
@@ -101,7 +103,8 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
      */
     if (!s->assembly && d->language == DRIVER_FORTRAN) {
         words_add(&w, "-fallow-argument-mismatch");
-        words_add(&w, "-fallow-invalid-boz"); /* hexadecimal constants as older compilers took them */
+        words_add(&w,
+                  "-fallow-invalid-boz"); /* hexadecimal constants as older compilers took them */
     }
     words_add(&w, s->assembly ? "-E" : "-S");
     words_add(&w, "-o");

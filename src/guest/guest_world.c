@@ -63,7 +63,18 @@ static void fail(void *context, const char *text)
     g->comm->type->end_run(g->comm, text);
 }
 
-static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, fail};
+/* What the program states counts when its author's counts are the cost. Numbers that are none cost
+ * nothing. */
+static void compute(void *context, double flops, double bytes)
+{
+    struct guest_rank *g = context;
+    const struct node_cost *c = &g->world->node;
+    if (g->world->cost != PROGRAM_COST_AUTHOR) return;
+    const double ps = (flops > 0 ? flops : 0) * c->flop + (bytes > 0 ? bytes : 0) * c->byte;
+    comm_elapse(g->comm, ps_rounded(ps * g->world->spec->program.factor));
+}
+
+static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, fail, compute};
 
 /* --- images ----------------------------------------------------------------------------------- */
 

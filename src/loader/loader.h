@@ -35,6 +35,7 @@ struct loader_hooks {
     void (*sleep_ps)(void *context, int64_t ps);  /* idle */
     void (*output)(void *context, int stream, const char *data, size_t n);
     void (*fail)(void *context, const char *text); /* must not return */
+    void (*compute)(void *context, double flops, double bytes); /* stated by the program */
 };
 
 /* How a call into a program ended. */

@@ -93,6 +93,12 @@ static int module(struct mimdsim_host *host, int n, uintptr_t *base, const void 
     return 1;
 }
 
+static void compute(struct mimdsim_host *host, double flops, double bytes)
+{
+    const struct loader_hooks *h = hooks_of(host);
+    if (h->compute) h->compute(host->context, flops, bytes);
+}
+
 void runtime_fill(struct mimdsim_runtime *r)
 {
     *r = (struct mimdsim_runtime){.size = sizeof *r,
@@ -103,5 +109,6 @@ void runtime_fill(struct mimdsim_runtime *r)
                                   .finish = finish,
                                   .leave = leave,
                                   .fail = fail,
-                                  .module = module};
+                                  .module = module,
+                                  .compute = compute};
 }

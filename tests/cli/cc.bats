@@ -190,6 +190,30 @@ END
     sql_is sum.db "SELECT count(*) FROM run WHERE makespan_ps > 1e8" 2
 }
 
+@test "a program states what its computing costs" {
+    cat >state.c <<'END'
+#ifdef __MIMDSIM__
+#include <mimdsim/compute.h>
+#endif
+int main(void)
+{
+    for (volatile int i = 0; i < 1000; i++) continue;
+    mimdsim_compute(55e6, 0);
+    mimdsim_compute(0, 300e6);
+    return 0;
+}
+END
+    works mimdsim cc state.c -o state
+    works mimdsim mpirun -n 1 -m t3e-300 --set program.cost=author ./state
+    stderr_says "t3e-300: 1.5 s" # a second at 55 Mflop/s, a half at 600 MB/s
+    printf 'program p\nexternal mimdsim_compute\ncall mimdsim_compute(110d6, 0d0)\nend\n' >state.f90
+    works mimdsim f90 state.f90 -o state-f90
+    works mimdsim mpirun -n 1 -m t3e-300 --set program.cost=author ./state-f90
+    stderr_says "t3e-300: 2 s"
+    works mimdsim mpirun -n 1 -m t3e-300 ./state
+    [[ $stderr == *e-05\ s* ]]
+}
+
 @test "mimdsim-cc is mimdsim cc in one word" {
     works "${MIMDSIM%/*}/mimdsim-cc" --version
     stdout_is "$(gcc --version)"
