@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -165,6 +166,9 @@ static struct run_order with_heartbeat(const struct run_order *order, int index,
 static _Noreturn void worker_main(const struct campaign *c, int at, int orders, int answers)
 {
     int index;
+    /* A parent that is killed takes its workers along: nobody would read their answers, and code of people may be in an
+     * endless loop. */
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
     struct run_cache *cache = run_cache_create();
     struct err unguarded; /* a crash is then told by its signal alone */

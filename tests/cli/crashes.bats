@@ -1,0 +1,91 @@
+#!/usr/bin/env bats
+# crashes.bats - what goes wrong in programs of people's own, through the real program: told by rank, function and line.
+
+load helper
+
+# made NAME.c|NAME.cc: the source of standard input, compiled; skips where there is no compiler.
+made() {
+    local verb=cc
+    case $1 in *.cc) verb=c++; command -v g++ >there || skip "no g++" ;; *) command -v gcc >there || skip "no gcc" ;; esac
+    cat >"$1"
+    works mimdsim $verb -O1 -g -fno-inline -o "${1%.*}" "$1"
+}
+
+@test "crashes are told by rank, function and line" {
+    made crash.c <<'END'
+#include <mpi.h>
+#include <stdlib.h>
+static volatile int zero;
+static int *volatile nowhere;
+static void write_there(void) { *nowhere = 7; }
+static int deep(int n)
+{
+    volatile char block[100000];
+    block[n] = 1;
+    return deep(n + 1) + block[n];
+}
+int main(int argc, char **argv)
+{
+    int me;
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &me);
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (me == 2 && argv[1][0] == 'n') write_there();
+    if (me == 2 && argv[1][0] == 'd') return 1000 / zero;
+    if (me == 2 && argv[1][0] == 's') return deep(0);
+    if (me == 2 && argv[1][0] == 'l') for (;;) zero = 0;
+    MPI_Barrier(MPI_COMM_WORLD);
+    MPI_Finalize();
+    return 0;
+}
+END
+    works mimdsim mpirun -n 4 ./crash x
+    run --separate-stderr mimdsim mpirun -n 4 ./crash n
+    [ "$status" -ne 0 ]
+    stderr_says "rank 2 in write_there (crash.c:5): segmentation fault at address 0x0 after "
+    run --separate-stderr mimdsim mpirun -n 4 ./crash d
+    stderr_says "rank 2 in main (crash.c:19): whole-number division by zero"
+    run --separate-stderr mimdsim mpirun -n 4 ./crash s
+    stderr_says "rank 2 in deep (crash.c:"
+    stderr_says "stack overflow"
+    run --separate-stderr mimdsim mpirun --limit 0.5 -n 4 ./crash l
+    stderr_says "rank 2 in main (crash.c:21): still busy after 0.5 s of processor time"
+}
+
+@test "an exception that nobody catches ends the run, one that is caught does not" {
+    made throws.cc <<'END'
+#include <iostream>
+#include <stdexcept>
+static int careful(int n) { if (n > 1) throw std::runtime_error("too much"); return n; }
+int main(int argc, char **)
+{
+    try { careful(argc + 1); } catch (const std::exception &e) { std::cout << "caught " << e.what() << std::endl; }
+    return argc > 1 ? careful(argc) : 0;
+}
+END
+    works mimdsim mpirun -q -n 2 ./throws
+    stdout_is $'caught too much\ncaught too much'
+    run --separate-stderr mimdsim mpirun -n 2 ./throws now
+    [ "$status" -ne 0 ]
+    stderr_says "what():  too much"
+    stderr_says "calls abort()"
+}
+
+@test "a worker process ends with the process that started it" {
+    made loop.c <<<'int main(void) { for (volatile int x = 0;;) x = 1; }'
+    mimdsim mpirun -q -n 2 ./loop 3>&- &
+    sleep 1
+    local worker shell=$! parent
+    parent=$(cat "/proc/$shell/task/$shell/children")
+    parent=${parent%% *}
+    worker=$(cat "/proc/$parent/task/$parent/children")
+    worker=${worker%% *}
+    kill -0 "$worker"
+    kill -9 "$parent"
+    for i in 1 2 3 4 5 6 7 8 9 10; do
+        kill -0 "$worker" 2>there || return 0
+        sleep 0.2
+    done
+    kill -9 "$worker"
+    return 1
+}
