@@ -91,6 +91,27 @@ compiled() {
     works mimdsim timeline who.yaml --set ranks=2
 }
 
+@test "computing that the program states is its cost where that is asked for" {
+    compiled states <<'PROGRAM'
+#include <mimdsim/compute.h>
+#include <mpi.h>
+#include <stdio.h>
+int main(int argc, char **argv)
+{
+    MPI_Init(&argc, &argv);
+    const double t = MPI_Wtime();
+    mimdsim_compute(1e9, 0);
+    printf("%d\n", MPI_Wtime() - t > 1);
+    MPI_Finalize();
+    return 0;
+}
+PROGRAM
+    works mimdsim mpirun ./states
+    stdout_is 0
+    works mimdsim mpirun --set program.cost=author ./states
+    stdout_is 1
+}
+
 @test "mistakes on the command line are told" {
     fails_with 64 mimdsim mpirun
     fails_with 66 mimdsim mpirun -n 2 ./nothere

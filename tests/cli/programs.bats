@@ -221,6 +221,15 @@ static void run(struct comm *c) { pthread_t t; if (comm_rank(c) == 1) pthread_cr
     fails_with 66 mimdsim run ./missing.so
 }
 
+@test "a database with such runs agrees with itself; they cannot be made again from their row alone" {
+    program good <<<"$good"
+    image good
+    works mimdsim run ./good.so --set ranks=1,2
+    works mimdsim check mimdsim.db
+    works mimdsim check mimdsim.db --again all
+    stdout_says "2 cannot be made from their row alone"
+}
+
 @test "explain tells of a program without running it, check validates it" {
     program good <<<"$good"
     image good
