@@ -24,6 +24,8 @@ static const char keys_of_files[] =
     "`kernel.name`, "
     "`machine.network.level`, "
     "`model.n`.\n"
+    "- `program`: abbreviation of `program.file`, a program of your own instead of `kernel`; what it "
+    "declares are keys, too.\n"
     "- `ranks`: a number, or `n` for one rank per body.\n"
     "- `n_over_p`: bodies per processor, instead of `n`.\n"
     "- `sweep`: keys with lists of values, combined in every way: `{n: [8, 64], kernel.solver: "

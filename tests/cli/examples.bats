@@ -26,7 +26,15 @@ right() {
 
 @test "a ring all-reduce is right for any number of ranks" { right ring-allreduce --set n=17 --set ranks=1,2,3,5,16; }
 
-@test "prefix sums are right" { right prefix-sum --set n=23 --set ranks=1,2,3,7,16; }
+@test "prefix sums are right, their parts and both serial codes told apart" {
+    right prefix-sum --set n=23 --set ranks=1,2,3,7,16
+    works mimdsim query prefix-sum.db "SELECT count(DISTINCT name), sum(messages) > 0 AND min(name = 'doubling') AS apart FROM stage
+        WHERE messages > 0"
+    [[ "${lines[-1]}" =~ ^\ *1\ +1$ ]]
+    works mimdsim query prefix-sum.db "SELECT count(*) AS n FROM baseline a JOIN baseline b ON a.run_id = b.run_id AND a.name =
+        'one loop' AND b.name = 'parallel code on one processor' AND a.time_ps < b.time_ps"
+    [ "${lines[-1]//[ ]/}" = 15 ]
+}
 
 @test "a stencil is right with and without overlap" {
     right stencil --set n=17 --set steps=5 --set ranks=1,2,3,16

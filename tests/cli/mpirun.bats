@@ -47,7 +47,7 @@ compiled() {
     stdout_says "rank 1 of 2: 2 arguments, two words, and 'a quote'"
     works mimdsim mpirun -n 2 ./tells 0 -n
     stdout_says "2 arguments, -n"
-    works mimdsim mpirun -n 2 ./tells 0 '[1,2]'
+    works mimdsim mpirun -n 2 ./tells '[0,0]' '[1,2]'
     stdout_says "2 arguments, [1,2]"
 }
 

@@ -41,6 +41,10 @@ commands() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$MIMDSIM_SRCD
     fails_with 73 mimdsim new heat
     stderr_says "is there already"
     cmp heat.c before
+    rm heat.yaml
+    fails_with 73 mimdsim new heat
+    cmp heat.c before
+    [ ! -e heat.yaml ]
     touch other.yaml
     fails_with 73 mimdsim new other
     [ ! -e other.c ]
