@@ -218,6 +218,21 @@ void matching_withdraw(struct vp *v, struct comm_request *r)
     v->matching->nwild -= depends_on_time(r);
 }
 
+/* Receives from a given source are bound ahead of time. Where an earlier message of s is still on
+ * its way to an earlier receive that fits m, too, m has not come before that one: MPI's order
+ * again. */
+static void keep_order(struct source *s, const struct comm_request *r, struct message *m)
+{
+    const bool claimed = ((m->tag ^ s->latest_tag) & s->latest_mask) == 0;
+    if (s->latest > m->net.arrival && s->latest_id < m->net.id && claimed)
+        m->net.arrival = s->latest;
+    if (m->net.arrival < s->latest) return;
+    s->latest = m->net.arrival;
+    s->latest_id = m->net.id;
+    s->latest_tag = r->tag;
+    s->latest_mask = r->mask;
+}
+
 static void bind(struct vp *v, struct comm_request *r, struct unmatched *u)
 {
     const sim_ps now = sim_now(v->world->sim);
@@ -228,7 +243,9 @@ static void bind(struct vp *v, struct comm_request *r, struct unmatched *u)
         if (v->waiting == r) vp_wake(v->world, v);
         return;
     }
+    struct source *s = u->source;
     struct message *m = matching_take(v, u);
+    keep_order(s, r, m);
     sim_ps when = m->net.arrival > r->posted_ps ? m->net.arrival : r->posted_ps;
     message_bind(v, r, m, when > now ? when : now);
 }
@@ -372,6 +389,16 @@ static bool behind_wild(const struct vp *v, const struct comm_request *r)
     return false;
 }
 
+/* r waits for u, which others of its sender have passed: these have another try when u is taken. */
+static void hold_behind(const struct unmatched *u, const struct comm_request *r)
+{
+    for (struct unmatched *x = u->after; x; x = x->after)
+        if (x->known && !x->held && message_fits(x->m, r->peer, r)) {
+            x->held = true;
+            x->source->held++;
+        }
+}
+
 /* The first message sent by r's source that fits r, when its arrival is known and no receive before
  * r claims it. */
 static struct unmatched *first_of_source(struct vp *v, const struct comm_request *r)
@@ -379,7 +406,11 @@ static struct unmatched *first_of_source(struct vp *v, const struct comm_request
     struct source *s = *place_of(v->matching, r->peer);
     struct unmatched *u = s ? s->first : NULL;
     while (u && !message_fits(u->m, r->peer, r)) u = u->after;
-    if (!u || !u->known) return NULL;
+    if (!u) return NULL;
+    if (!u->known) {
+        hold_behind(u, r);
+        return NULL;
+    }
     if (v->matching->nwild == 0 && !u->held) return u;
     for (const struct comm_request *p = v->posted; p != r; p = p->detail)
         if (message_fits(u->m, r->peer, p)) return NULL;

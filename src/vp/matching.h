@@ -17,6 +17,10 @@ struct source {
     int rank;
     int held; /* of them that fit a receive for which an earlier one must come first */
     struct unmatched *first, *last;
+    /* of the taken ones, the one that arrives last: when, its number, and what its receive wanted
+     */
+    sim_ps latest;
+    int64_t latest_id, latest_tag, latest_mask;
 };
 
 /* One message that no receive has taken. */

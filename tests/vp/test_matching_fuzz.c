@@ -37,6 +37,7 @@ struct fuzz {
     int nrank;
     bool given;    /* the sources are those of the notes */
     bool by_tests; /* wait by testing */
+    bool crowded;  /* messages pass each other */
     bool promised; /* that no send is synchronous: what is sent is known at once */
     struct rank_note *rank;
 };
@@ -217,15 +218,21 @@ static void expect_equal(const struct fuzz *f, const char *what, const struct ou
     for (int i = 0; i < a->r.nrank; i++) {
         const struct stage_time *x = &a->r.stage[i * a->r.nstage],
                                 *y = &b->r.stage[i * a->r.nstage];
-        if (a->r.finish_ps[i] != b->r.finish_ps[i] || x->wait_ps != y->wait_ps ||
-            x->contention_ps != y->contention_ps || x->recv_ps != y->recv_ps)
+        /* what passed another message counts as held up by it, or not, as it was found: crowded
+         * machines */
+        const bool same = f->crowded
+                              ? x->wait_ps + x->contention_ps == y->wait_ps + y->contention_ps
+                              : x->wait_ps == y->wait_ps && x->contention_ps == y->contention_ps;
+        if (a->r.finish_ps[i] != b->r.finish_ps[i] || x->recv_ps != y->recv_ps || !same)
             fail_msg("%s: seed %d, %d ranks: rank %d ends at %lld and %lld, waits %lld and %lld, "
                      "is held up %lld and %lld ps",
                      what, (int)f->seed, f->nrank, i, (long long)a->r.finish_ps[i],
                      (long long)b->r.finish_ps[i], (long long)x->wait_ps, (long long)y->wait_ps,
                      (long long)x->contention_ps, (long long)y->contention_ps);
     }
-    if (digests) assert_int_equal(a->r.digest, b->r.digest);
+    /* over memory messages are known before their time: which events that saves is the host's
+     * affair */
+    if (digests && !f->crowded) assert_int_equal(a->r.digest, b->r.digest);
 }
 
 static int *shuffled(int n, uint64_t seed)
@@ -243,19 +250,20 @@ static int *shuffled(int n, uint64_t seed)
 /* One program at one level: as MPI says (`loggp`), the same again, the same whatever the order of
  * the ranks on the host, and with the sources given the same times, also where nothing may ask for
  * time. */
-static void try_program(uint64_t seed, int nrank, enum network_level level, int64_t eager)
+static void try_on(uint64_t seed, int nrank, const struct machine_spec *machine)
 {
-    struct fuzz f = {.seed = seed, .nrank = nrank};
+    struct fuzz f = {.seed = seed, .nrank = nrank, .crowded = machine->network.flit_bytes > 0};
+    const struct machine_spec m = *machine;
+    const int level = m.network.level;
+    const int64_t eager = m.software.eager_bytes;
     count_messages(&f);
-    struct machine_spec m = crossbar(nrank);
-    m.network.level = level;
-    m.software.eager_bytes = eager;
     int *order = shuffled(nrank, seed);
     struct outcome wild = go_fuzz(&m, &f, true, NULL);
     int64_t sum = 0;
     for (int i = 0; i < nrank; i++) {
         sum += f.rank[i].sum;
-        for (int round = 0; round < ROUNDS && level == LEVEL_LOGGP && eager < 0; round++)
+        for (int round = 0; round < ROUNDS && level == LEVEL_LOGGP && eager < 0 && !f.crowded;
+             round++)
             expect_order(&f, i, round);
     }
     struct outcome other = go_fuzz(&m, &f, true, order);
@@ -270,9 +278,12 @@ static void try_program(uint64_t seed, int nrank, enum network_level level, int6
     other = go_fuzz(&m, &f, true, NULL);
     expect_equal(&f, "sources given", &wild, &other, false);
     arena_destroy(other.arena);
-    other = go_fuzz(&m, &f, false, NULL);
-    expect_equal(&f, "without time", &wild, &other, false);
-    arena_destroy(other.arena);
+    /* without time, receives from one source do not wait for each other over memory */
+    if (m.software.shared_bandwidth == 0) {
+        other = go_fuzz(&m, &f, false, NULL);
+        expect_equal(&f, "without time", &wild, &other, false);
+        arena_destroy(other.arena);
+    }
     f.given = false;
     f.by_tests = true;
     other = go_fuzz(&m, &f, true, NULL);
@@ -283,6 +294,42 @@ static void try_program(uint64_t seed, int nrank, enum network_level level, int6
     arena_destroy(wild.arena);
     free(order);
     fuzz_done(&f);
+}
+
+static void try_program(uint64_t seed, int nrank, enum network_level level, int64_t eager)
+{
+    struct machine_spec m = crossbar(nrank);
+    m.network.level = level;
+    m.software.eager_bytes = eager;
+    try_on(seed, nrank, &m);
+}
+
+/* Where messages are in each other's way in many ways: levels with packets and flits, processors
+ * that share a port and a memory over which small messages pass large ones, one server for all
+ * software. */
+static void crowded_machines(void **state)
+{
+    (void)state;
+    enum network_level level[] = {LEVEL_LOGGP, LEVEL_LINK, LEVEL_PACKET, LEVEL_FLIT, LEVEL_AUTO};
+    for (uint64_t seed = 1; seed <= 120; seed++) {
+        const int nrank = 4 + (int)(seed % 12);
+        struct machine_spec m = crossbar(nrank);
+        m.network.level = level[seed % 5];
+        m.network.flit_bytes = 8;
+        m.network.packet_bytes = 64;
+        m.network.buffer_flits = 64;
+        m.network.credit_latency = 20e-9;
+        m.network.virtual_channels = 2;
+        m.software.eager_bytes = seed % 3 ? -1 : 150;
+        if (seed % 2) m.topology.family = TOPOLOGY_MESH;
+        if (seed % 4 > 1) {
+            m.topology.processors_per_node = 2;
+            m.software.shared_latency = 1e-6;
+            m.software.shared_bandwidth = seed % 8 > 3 ? 2e7 : 0;
+        }
+        if (seed % 7 == 0) m.software.kernel_server = true, m.software.kernel_time = 1e-6;
+        try_on(seed, nrank, &m);
+    }
 }
 
 static void small_programs(void **state)
@@ -310,6 +357,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_programs),
+        cmocka_unit_test(crowded_machines),
         cmocka_unit_test(programs_of_many_ranks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
