@@ -169,7 +169,7 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     real *sine = d->scratch, *cosine = sine + n;
     struct link *link = (struct link *)(cosine + n);
     struct motion *motion = (struct motion *)(link + n), base = {{0}, {0}};
-    /* All angles in one vectorised loop: half the time of a call otherwise. */
+    /* All angles in one loop that compilers turn into vectors. */
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
@@ -197,6 +197,7 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
     return true;
 }
 
+/* The rest state is compiled apart: no branch on it stands in the sweeps. */
 bool aba_revolute(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
     const int body = MAT3_TURN_FLOP + RIGID_FLOP + (d->load ? SCREW_ADD_FLOP : 0);

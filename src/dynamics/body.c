@@ -71,6 +71,7 @@ void base_motion(const struct model *m, const struct state *s, real *a)
     for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
 }
 
+/* For codes that multiply the inertia out of its factors (kernel/dense_tally.h). */
 void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -82,6 +83,7 @@ void body_inertia_factors(const struct body *b, real *shift, real *about)
     for (int i = 3; i < 6; i++) about[7 * i] = b->m;
 }
 
+/* The wrench acts at the user's origin, which is also the internal one. */
 void body_load(const struct body *b, const double *fext, real *f)
 {
     /* users give [force; moment], here the moment comes first */

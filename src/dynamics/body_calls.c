@@ -11,6 +11,7 @@ static bool same_numbers(const double *x, const double *y, int n)
     return memcmp(x, y, (size_t)n * sizeof *x) == 0;
 }
 
+/* Same turning of frames: what every other equality stands on. */
 bool bodies_alike(const struct model *m, int i, int j)
 {
     if (i == j) return true;

@@ -188,6 +188,7 @@ void body_constants_inertia(const struct model *m, int i, struct body_constants 
     if (turn_of(m, i, c->user)) {
         quad inertia[6];
         for (int k = 0; k < 6; k++) inertia[k] = b->inertia[k];
+        /* Centre and inertia into turned axes together. */
         mat3_mul_vec_transposed(c->s, c->user, c->s);
         turn_back(c->jc, c->user, inertia);
     }

@@ -313,6 +313,7 @@ static double residual_of(struct cfa_run *r)
     return scale > 0 ? (double)(worst / scale) : 0;
 }
 
+/* Solution, residual, refinement; massless bodies are refused, since they have no Phi. */
 bool cfa(struct dynamics *d, const real *q, const real *u, const real *tau, const struct cfa_options *options, real *ud,
          real *lambda, struct cfa_report *report, struct work *w)
 {

@@ -156,6 +156,7 @@ static bool eliminate(struct dynamics *d, int i, struct cfa_system *s, struct wo
     return true;
 }
 
+/* All own blocks first, then every joint's elimination adds to its parent's. */
 bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
 {
     /* A chain needs no lowered Phi: every body has at most one child. */
@@ -180,6 +181,8 @@ static void solve_inward(struct dynamics *d, const struct cfa_system *s, int i, 
     const struct body_pose *pose = &d->pose[i];
     const struct cfa_row *row = &s->row[i];
     int c = pose->s.c, parent = d->body[i].parent;
+    /* Where the effect below goes: into the row of the next joint, or into the body that siblings
+     * share. */
     bool alone = parent >= 0 && child_count(d, parent) == 1, carried = parent >= 0 && !alone;
     const bool gathers = child_count(d, i) > 1;
     real t[6] = {0}, z[6];

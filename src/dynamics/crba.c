@@ -9,6 +9,7 @@ static void composites(const struct dynamics *d, struct inertia *c)
 {
     for (int i = 0; i < d->nbody; i++) c[i] = d->body[i].inertia;
     for (int i = d->nbody - 1; i >= 0; i--) {
+        /* Leaves first, so that each is complete when it is handed down. */
         struct inertia moved;
         if (d->body[i].parent < 0) continue;
         inertia_move(&moved, &d->pose[i].x, &c[i]);
@@ -166,6 +167,7 @@ bool crba_forward(struct dynamics *d, const real *q, const real *u, const real *
         good = sparse_factor(n, up, mass, &own);
         if (good) sparse_solve(n, up, mass, x, &own);
     } else {
+        /* The baseline that ignores the tree. */
         good = cholesky(n, mass);
         if (good) cholesky_solve(n, mass, x);
         /* Counted by formula: the inner loops would cost more to count than to run. */

@@ -110,6 +110,7 @@ static void count(const struct dynamics *d, struct work *w)
     }
 }
 
+/* One sweep to the base: each body's composite is complete when its row is made. */
 void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w)
 {
     count(d, w);

@@ -39,6 +39,7 @@ struct dynamics *dynamics_take(const struct model *m, struct arena *a)
 void dynamics_load(struct dynamics *d, const struct state *s)
 {
     base_motion(d->model, s, d->base);
+    /* Without wrenches the loops that add them are left out. */
     if (!s->fext) {
         d->load = NULL;
         return;

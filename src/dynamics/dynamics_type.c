@@ -166,6 +166,7 @@ static bool advance(const struct model *m, struct state *s, enum step_rule rule,
     bool good = true;
     /* As far as it goes: a failed step leaves the state before it. */
     for (int k = 0; k < steps && good; k++) good = integrator_step(&it);
+    /* Also after a step that failed: the state of the last good one. */
     to_double(s->q, p.q, m->nq);
     to_double(s->qd, p.u, m->nu);
     if (w) work_add(w, &it.work);

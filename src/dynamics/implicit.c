@@ -72,6 +72,7 @@ static void accelerate(struct dynamics *d, int i, const struct resisting *b, rea
     w->flop += (uint64_t)(XFORM_MOTION_FLOP + SCREW_ADD_FLOP + s->d * (SCREW_DOT_FLOP + 1) + body_cost(&d->body[i])->h);
 }
 
+/* As aba_full, with a resistance in the pivots of sprung joints. */
 bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, const real *tau, real *ud,
                       struct work *w)
 {
@@ -108,6 +109,7 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         good = eliminate(&d->pose[i].s, d->bias + 6 * i, given + body->u_at, resistance + body->u_at, &b[i], &ia, pa,
                          &own);
         if (!good || body->parent < 0) continue;
+        /* Handed to the parent as in aba.c. */
         sym6_move(&moved, &d->pose[i].x, &ia);
         sym6_add(&b[body->parent].inertia, &moved);
         xform_force(pa, &d->pose[i].x, pa);

@@ -4,6 +4,7 @@
 #include "dynamics/loops.h"
 #include "dynamics/work_count.h"
 
+/* Forces that users give, springs on top. */
 bool dynamics_forward(struct dynamics *d, const real *q, const real *u, const real *tau, real *ud, struct work *w)
 {
     struct arena_mark mark = arena_mark(d->arena);

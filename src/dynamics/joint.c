@@ -20,6 +20,7 @@ const struct joint_cost *body_cost(const struct body *b) { return joint_cost_of(
 /* Whoever has no function for its columns has unit vectors. */
 bool body_picks(const struct body *b) { return !motion_of[b->joint]->subspace; }
 
+/* For whoever needs the numbers without a body, as planar scenes do. */
 const signed char *joint_pick(enum model_joint joint)
 {
     return motion_of[joint]->subspace ? NULL : motion_of[joint]->pick;

@@ -13,6 +13,7 @@ static void frame_to(const struct model *m, int body, const struct frame *f, str
     for (int k = 0; k < 3; k++) x->p[k] = (real)p[k];
 }
 
+/* All that depends on the model alone. */
 void loop_make(const struct model *m, int i, struct loop *l)
 {
     const struct loop_def *def = &m->loop[i];
@@ -101,6 +102,7 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
 {
     struct xform wa, wb, rel;
     real a[6], b[6], error[6], relative[6];
+    /* Both frames in the base's. */
     xform_compose(&wa, xa, &l->a);
     xform_compose(&wb, xb, &l->b);
     p->ta = l->a;
@@ -177,6 +179,7 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
         place_joint(l, xa, xb, va, vb, p);
 }
 
+/* The sums beside the two functions above. */
 int loop_place_flops(const struct loop *l)
 {
     const int joint = PLACE_JOINT_FLOP + (moves_with_a(l) ? 0 : VEC3_ADD_FLOP);

@@ -43,6 +43,7 @@ bool loop_project(struct dynamics *d, real *q, real *u, int newton, struct work 
     struct work own = {0};
     real *delta = TAKE(d->arena, d->nu, real);
     bool good = true;
+    /* Few are enough: near the loops each doubles the digits. */
     for (int k = 0; k < newton && good; k++) {
         good = correction(d, q, u, true, delta, &own);
         /* A correction is a motion: it moves along the group like a step of length 1. */

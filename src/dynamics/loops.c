@@ -41,6 +41,7 @@ void loops_force(const struct loops *l, const real *lambda, real *f, struct work
     }
 }
 
+/* A unit force in one constraint is two wrenches. */
 void loops_column(const struct loops *l, int k, real *f, struct work *w)
 {
     int n = 0;
@@ -53,6 +54,7 @@ void loops_column(const struct loops *l, int k, real *f, struct work *w)
     w->flop += (uint64_t)force_flops(&l->loop[n]);
 }
 
+/* Zero when the loops hold at these accelerations. */
 void loops_residual(const struct loops *l, const real *a, const real *base, bool homogeneous, real *r,
                     struct work *w)
 {
@@ -91,6 +93,7 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
     return vec3_dot(column + 3, column + 3) / m;
 }
 
+/* What S's rounding is measured by (physics 7.7). */
 void loops_reference(const struct dynamics *d, const struct loops *l, real *reference, struct work *w)
 {
     for (int k = 0; k < l->nloop; k++) {

@@ -30,6 +30,7 @@ static void axis_in_base(const struct model *m, int i, quad *x)
     }
 }
 
+/* Those whose axis has to be the normal. */
 static bool turns(enum model_joint joint)
 {
     return joint_plane(joint) == PLANE_TURNS || joint_plane(joint) == PLANE_MOVES;
@@ -135,6 +136,7 @@ static bool planar_loops(const struct model *m, const quad *normal, quad toleran
     return true;
 }
 
+/* Bodies, then loops, then the base's own motion. */
 bool planar_scene(const struct model *m, const struct state *s, enum precision precision, struct err *e)
 {
     struct arena *scratch = arena_create();
@@ -189,6 +191,7 @@ void planar_normal_in(const struct frame *f, const quad *outer, quad *normal)
     mat3_mul_vec_transposed(normal, r, outer);
 }
 
+/* Moving constraints have no direction to name. */
 int planar_loop_direction(enum model_joint joint, int k)
 {
     /* a loop's constraints are W of its joint: what follows H's columns */

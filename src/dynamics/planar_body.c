@@ -203,6 +203,7 @@ void body_qdot(const struct body *b, const real *q, const real *u, real *qd)
     qd[2] = sine * u[1] + cosine * u[2];
 }
 
+/* Angles step exactly, slides along their own axis, too. */
 void body_step(const struct body *b, real *q, const real *u, real h)
 {
     real rate[3];

@@ -35,6 +35,7 @@ static struct closing closing_take(const struct scene *x, struct arena *scratch,
     }
     /* With places and velocities of both bodies each loop's terms follow (physics 7.3). */
     loops_make(m, c.loop, TAKE(scratch, m->nrow, int));
+    /* Sides of the base stand still at the identity. */
     for (int l = 0; l < m->nloop; l++) {
         const int a = c.loop[l].body_a + 1, b = c.loop[l].body_b + 1;
         loop_place(&c.loop[l], &place[a], &place[b], v + SPACE * a, v + SPACE * b, &c.pose[l]);
@@ -46,6 +47,7 @@ static struct closing closing_take(const struct scene *x, struct arena *scratch,
 /* closing_force: load = the loops' forces for lambda (n). */
 static void closing_force(const struct scene *x, const struct closing *c, const real *lambda, struct work *w)
 {
+    /* Loads are made anew for each lambda. */
     memset(c->load, 0, (size_t)(SPACE * x->model->nbody) * sizeof(real));
     for (int side = 0; side < 2 * x->model->nloop; side++) {
         const struct loop *l = &c->loop[side / 2];
@@ -68,6 +70,7 @@ static void closing_residual(const struct scene *x, const struct closing *c, rea
         const struct loop_pose *p = &c->pose[l];
         const real *base = x->terms ? x->base : still;
         real a[SPACE], b[SPACE];
+        /* Accelerations of both bodies at the loop's frames. */
         xform_motion(a, &p->ta, loop->body_a < 0 ? base : x->moving[loop->body_a].a);
         xform_motion(b, &p->tb, loop->body_b < 0 ? base : x->moving[loop->body_b].a);
         screw_sub(b, a);
@@ -91,6 +94,7 @@ static void closing_reference(const struct scene *x, const struct closing *c, re
         if (body < 0) continue;
         loop_column(&c->pose[side / 2], side % 2, column);
         for (int k = 0; k < l->c; k++) {
+            /* As side_reference in loops.c. */
             body_accelerate(&x->body[body], column + SPACE * k, a);
             reference[l->row_at + k] += screw_dot(column + SPACE * k, a);
         }
@@ -111,6 +115,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
     const double *none = TAKE(scratch, x->model->nu, double);
     struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;
     closing_reference(x, &c, reference, w);
+    /* Same poses, no bias. */
     memcpy(at_rest, moving, (size_t)x->model->nbody * sizeof *at_rest);
     for (int i = 0; i < x->model->nbody; i++) screw_zero(at_rest[i].bias);
     /* The same scene without velocities, wrenches and gravity. */

@@ -76,6 +76,7 @@ void planar_start(const struct scene *x, int i, struct work *w)
     const struct xform *t = &m->pose.x;
     const real turning = b->parent < 0 ? 0 : x->moving[b->parent].w;
     real q[3] = {0}, h[SPACE];
+    /* The model's doubles, rounded as everywhere in this precision. */
     for (int k = 0; k < b->nq; k++) q[k] = (real)x->state->q[b->q_at + k];
     body_place(b, q, &m->pose);
     screw_zero(m->bias);

@@ -33,6 +33,7 @@ static bool planar_row(const struct loop_def *def, int k, const quad *rows, real
     return square > 1e-18Q;
 }
 
+/* Rounded once, as all constants. */
 static void to_transform(const quad *outer, const quad *inner, const struct frame *f, struct xform *x)
 {
     quad y[4];
@@ -118,6 +119,7 @@ static void add_centripetal(real sign, real w, const real *p, real *gamma)
     gamma[2] -= sign * (w * w) * p[1];
 }
 
+/* As place_rows and place_joint of loop.c, in three components. */
 void loop_place(const struct loop *l, const struct xform *xa, const struct xform *xb, const real *va, const real *vb,
                 struct loop_pose *p)
 {
@@ -162,12 +164,14 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
     }
 }
 
+/* The sums of what loop_place calls. */
 int loop_place_flops(const struct loop *l)
 {
     return 2 * XFORM_COMPOSE_FLOP + 2 * BETWEEN_FLOP + 2 * XFORM_MOTION_FLOP + SCREW_ADD_FLOP + 2 * TURN_BACK_FLOP +
            2 * CENTRIPETAL_FLOP + (l->by_rows ? 0 : 6 + TURN_BACK_FLOP) + l->c * (2 * SCREW_DOT_FLOP + 5);
 }
 
+/* As in space. */
 void loop_column(const struct loop_pose *p, bool side_b, real *out)
 {
     for (int k = 0; k < p->c; k++) {

@@ -1,6 +1,7 @@
 /* revolute.c - compact constants of all-revolute systems; what their fast paths execute. */
 #include "dynamics/revolute.h"
 
+/* 22 numbers a body in one piece of memory: what the three sweeps read. */
 struct revolute *revolutes_take(const struct model *m, const struct body *b, struct arena *a)
 {
     /* From the rounded constants, so that both texts compute with the same numbers. */
@@ -22,6 +23,7 @@ struct revolute *revolutes_take(const struct model *m, const struct body *b, str
     return out;
 }
 
+/* The counts of the three fast paths have one shape. */
 void revolute_count(const struct dynamics *d, struct revolute_cost cost, struct work *w)
 {
     /* References and drift checks are not charged. */

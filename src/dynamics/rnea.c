@@ -72,6 +72,7 @@ void rnea_full(struct dynamics *d, const real *q, const real *u, const real *ud,
     work_count_rnea(d, w);
 }
 
+/* The fast path has the same answer to rounding. */
 void rnea(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
     if (d->revolute) rnea_revolute(d, q, u, ud, tau, w);

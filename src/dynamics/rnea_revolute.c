@@ -62,6 +62,7 @@ enum {
     CARRY_AT_REST_FLOP = MAT3_VEC_FLOP + 1 + VEC3_CROSS_ADD_FLOP + MAT3_VEC_FLOP,
     NEWTON_EULER_AT_REST_FLOP = VEC3_CROSS_ADD_FLOP + VEC3_SCALE_FLOP + 21 + VEC3_CROSS_ADD_FLOP
 };
+/* Nothing turns: only accelerations are carried. */
 static inline void carry_at_rest(const struct revolute *b, const real *r, real ud, const struct motion *p,
                                  struct motion *c)
 {
@@ -73,6 +74,7 @@ static inline void carry_at_rest(const struct revolute *b, const real *r, real u
     mat3_mul_vec_transposed(c->a, r, g);
 }
 
+/* Nor are there centripetal terms. */
 static inline void newton_euler_at_rest(const struct revolute *b, const struct motion *c, real *f, real *n)
 {
     const real *s = b->s, *S = b->second, *al = c->al;
@@ -111,6 +113,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
     vec3_copy(base.al, d->base);
     vec3_copy(base.a, d->base + 3);
     if (!at_rest) mat3_skew(base.k, base.al);
+    /* All angles in one loop that compilers turn into vectors. */
     angle_sincos_batch(n, q, sine, cosine);
     for (int i = 0; i < n; i++) {
         const struct revolute *b = &d->revolute[i];
@@ -136,6 +139,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
     }
 }
 
+/* Two cases compiled apart, at rest and in motion. */
 void rnea_revolute(struct dynamics *d, const real *q, const real *u, const real *ud, real *tau, struct work *w)
 {
     const int body = d->at_rest ? MAT3_TURN_FLOP + CARRY_AT_REST_FLOP + NEWTON_EULER_AT_REST_FLOP

@@ -38,6 +38,7 @@ bool forward_robust(struct dynamics *d, const real *q, const real *u, const real
     const double enough = 1e6 * (double)REAL_EPSILON; /* a last correction under this leaves rounding alone */
     bool good = cfa(d, q, u, tau, &options, ud, lambda, &own, w) && own.correction <= enough;
     if (!good) {
+        /* Begin anew: what the first method left is worth nothing. */
         own = (struct cfa_report){.nrow = d->model->nrow};
         good = d->model->nloop > 0 ? closed_forward(d, q, u, tau, ud, lambda, &own, w) : aba_full(d, q, u, tau, ud, w);
         if (good && d->model->nloop == 0) refine(d, q, u, tau, ud, &own, w);

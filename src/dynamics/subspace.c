@@ -22,6 +22,7 @@ void subspace_w(const struct subspace *s, const real *x, real *y) { expand(s, s-
 void subspace_h_transposed(const struct subspace *s, const real *x, real *y) { reduce(s, 0, s->d, x, y); }
 void subspace_w_transposed(const struct subspace *s, const real *x, real *y) { reduce(s, s->d, s->c, x, y); }
 
+/* As a vector, for those who multiply by it. */
 void subspace_column(const struct subspace *s, int k, real *y)
 {
     screw_zero(y);
@@ -29,6 +30,7 @@ void subspace_column(const struct subspace *s, int k, real *y)
     else screw_copy(y, s->col + SPACE * k);
 }
 
+/* Two products; picked columns choose rows and columns instead. */
 void subspace_project(const struct subspace *a, bool a_w, const real *m, const struct subspace *b, bool b_w, real *out)
 {
     int a0 = a_w ? a->d : 0, na = a_w ? a->c : a->d, b0 = b_w ? b->d : 0, nb = b_w ? b->c : b->d;

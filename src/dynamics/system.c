@@ -3,6 +3,7 @@
 
 #include "dynamics/integrate.h"
 
+/* Once a model, in double: every run of it reads these. */
 void system_prepare(struct model *m)
 {
     m->constants = NULL; /* bodies_make would hand the old ones back */
@@ -19,6 +20,7 @@ static void close_velocities(const struct model *m, struct state *s, struct aren
     arena_release(a, mark);
 }
 
+/* Loops are a matter of dynamics, seeds one of models. */
 struct state *state_make(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
     struct state *s = state_given(m, spec, a);

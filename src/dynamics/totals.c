@@ -36,11 +36,13 @@ static struct xform *world_motion(struct dynamics *d, const real *q, const real 
     return dynamics_world(d, NULL);
 }
 
+/* Sums over bodies; the base has no energy. */
 void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct motion_totals *t)
 {
     struct arena_mark mark = arena_mark(d->arena);
     const struct xform *x = world_motion(d, q, u);
     *t = (struct motion_totals){0};
+    /* Parts of all bodies about the base's origin. */
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         add_body(d, i, &x[i], t);
@@ -53,6 +55,7 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
     arena_release(d->arena, mark);
 }
 
+/* Everything that an observer in the base's frame would measure. */
 void forward_kinematics(struct dynamics *d, const real *q, const real *u, const real *ud, struct body_motion *out)
 {
     struct arena_mark mark = arena_mark(d->arena);

@@ -83,6 +83,7 @@ static void state_from(const struct dynamics *d, const double *y, struct state *
     }
 }
 
+/* Its number in both tables. */
 static int stepper_find(const char *name, struct err *e)
 {
     int count = (int)(sizeof names / sizeof *names) - 1;
@@ -98,6 +99,7 @@ static int stepper_find(const char *name, struct err *e)
 /* Drive to the end; the number of steps, negative when GSL failed. GSL's default handler would abort. */
 static long drive(gsl_odeiv2_driver *driver, double duration, double *y)
 {
+    /* GSL's driver chooses its steps by its own estimate of the error. */
     double t = 0;
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     int status = gsl_odeiv2_driver_apply(driver, &t, duration, y);
@@ -118,6 +120,7 @@ static long drive_fixed(gsl_odeiv2_driver *driver, double duration, long steps, 
     return status == GSL_SUCCESS ? steps : -1;
 }
 
+/* GSL steps plain numbers: quaternions are normalised when they come back. */
 bool trajectory_advance(const struct model *m, struct state *s, double duration,
                         const struct trajectory_options *options, struct arena *scratch,
                         struct trajectory_report *report, struct err *e)

@@ -23,18 +23,21 @@ void work_count_velocities(const struct dynamics *d, struct work *w)
     }
 }
 
+/* One spring a joint at the most. */
 void work_count_springs(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
     for (int i = 0; i < d->nbody; i++) w->flop += d->body[i].has_spring ? BODY_SPRING_FLOP : 0;
 }
 
+/* Only turned bodies compute anything. */
 void work_count_load(const struct dynamics *d, struct work *w)
 {
     if (!w || !d->load) return;
     for (int i = 0; i < d->nbody; i++) w->flop += (uint64_t)body_load_flops(&d->body[i]);
 }
 
+/* rnea_full, term by term in its order. */
 void work_count_rnea(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
@@ -68,6 +71,7 @@ static void count_eliminate(const struct body *b, const struct joint_cost *cost,
     w->flop += (uint64_t)(2 * cost->h + 2 * cost->w + cost->h_transposed + cost->w_transposed);
 }
 
+/* The three sweeps of aba.c. */
 void work_count_aba(const struct dynamics *d, bool moving, struct work *w)
 {
     if (!w) return;
@@ -84,6 +88,7 @@ void work_count_aba(const struct dynamics *d, bool moving, struct work *w)
     }
 }
 
+/* Composites, then each column's walk. */
 void work_count_crba(const struct dynamics *d, struct work *w)
 {
     if (!w) return;

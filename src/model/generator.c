@@ -12,9 +12,12 @@
 /* Parent of body i in the tree that the generator names. */
 static int parent_of(const struct model_spec *spec, int i, struct random *r)
 {
+    /* Two children where nothing is asked. */
     int branch = spec->branch > 0 ? spec->branch : 2;
+    /* The first body hangs at the base in every tree. */
     if (i == 0) return -1;
     switch (spec->generator) {
+    /* A spine with one tooth of branch - 1 bodies at each vertebra. */
     case MODEL_COMB: return i % branch == 0 ? i - branch : i - i % branch;
     case MODEL_STAR: return 0;
     case MODEL_DENDRIMER: return (i - 1) / branch;
@@ -23,6 +26,7 @@ static int parent_of(const struct model_spec *spec, int i, struct random *r)
     }
 }
 
+/* Mixed joints are drawn body by body. */
 static enum model_joint joint_of(const struct model_spec *spec, int i, struct random *r)
 {
     if (i == 0 && spec->base == BASE_FLOATING) return JOINT_FLOATING;
@@ -32,6 +36,7 @@ static enum model_joint joint_of(const struct model_spec *spec, int i, struct ra
 /* A uniform rod along x from the origin. */
 static void rod(struct body_def *b, double length, double radius, double mass)
 {
+    /* A solid cylinder along x, about its centre. */
     b->mass = mass;
     b->com[0] = 0.5 * length;
     b->inertia[0] = 0.5 * mass * radius * radius;
@@ -46,12 +51,14 @@ static void random_body(const struct model_spec *spec, int i, struct body_def *b
     b->mass = spec->mass * pow(spec->mass_ratio, random_uniform(&r, -0.5, 0.5));
     b->com[0] = length * random_uniform(&r, 0.3, 0.7);
     for (int k = 1; k < 3; k++) b->com[k] = 0.1 * length * random_uniform(&r, -1, 1);
+    /* Second moments from which the inertia follows: any sum of outer products is physical. */
     for (int k = 0; k < 3; k++) { /* sum of outer products of three random vectors */
         double x[3];
         for (int j = 0; j < 3; j++) x[j] = 0.3 * length * random_uniform(&r, -1, 1);
         x[k] += 0.2 * length;
         for (int j = 0; j < 9; j++) moment[j / 3][j % 3] += b->mass * x[j / 3] * x[j % 3];
     }
+    /* J = tr(M) U - M for the second moments M. */
     for (int k = 0; k < 3; k++) trace += moment[k][k];
     b->inertia[0] = trace - moment[0][0], b->inertia[3] = trace - moment[1][1], b->inertia[5] = trace - moment[2][2];
     b->inertia[1] = -moment[0][1], b->inertia[2] = -moment[0][2], b->inertia[4] = -moment[1][2];
@@ -67,6 +74,7 @@ static void axes_of(struct body_def *b)
 /* Twisted axes: about the rod for chains, any rotation where bodies branch. */
 static void placement_of(const struct model_spec *spec, struct body_def *b, struct random *r)
 {
+    /* The joint frame sits at the end of the parent's rod. */
     b->placement.quat[3] = 1;
     b->placement.p[0] = b->parent >= 0 ? spec->length : 0;
     if (spec->axes != AXES_TWISTED) return;
@@ -77,20 +85,25 @@ static void placement_of(const struct model_spec *spec, struct body_def *b, stru
     }
 }
 
+/* Springs pull towards the first pose, so that a scene begins at rest in them. */
 static void springs_of(const struct model *m, const struct model_spec *spec, int i, double length, struct body_def *b)
 {
     if (joint_nu(b->joint) != 1 || (spec->stiffness == 0 && spec->damping == 0)) return;
+    /* Settings are in SI; polymers have units of their own. */
     double torque = m->kilogram * m->metre * m->metre / (m->second * m->second);
     b->stiffness = spec->stiffness / torque;
     b->damping = spec->damping / (torque * m->second);
     pose_coordinates(spec, b->joint, i, length, &b->rest);
 }
 
+/* For messages: "body 3". */
 static void name_body(struct body_def *b, int i) { snprintf(b->name, sizeof b->name, "body %d", i); }
 
+/* Chains, combs, stars, trees: they differ in the parent alone. */
 static bool add_rods(struct model *m, const struct model_spec *spec, struct err *e)
 {
     for (int i = 0; i < spec->nbody; i++) {
+        /* A stream for each body, so that n bodies are the first n of n + 1. */
         struct random r = random_make(spec->seed, STREAM_SHAPE, (uint64_t)i);
         struct body_def b = {.parent = parent_of(spec, i, &r)};
         b.joint = joint_of(spec, i, &r);
@@ -126,6 +139,7 @@ static enum model_joint closing_joint(const struct model_spec *spec)
  * first floats. */
 static bool add_ring(struct model *m, const struct model_spec *spec, struct err *e)
 {
+    /* With a floating base the ring is all bodies, else the base is one of its sides. */
     bool floating = spec->base == BASE_FLOATING;
     int n = spec->nbody, sides = floating ? n : n + 1;
     double turn = 2 * PI / sides, length = spec->length;
@@ -143,6 +157,7 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
             rod(&b, length, spec->radius, spec->mass);
         if (model_add_body(m, &b, e) < 0) return false;
     }
+    /* The last side ends where the first begins. */
     struct loop_def loop = {.name = "closure", .body_a = floating ? 0 : -1, .body_b = n - 1};
     loop.joint = closing_joint(spec);
     loop.alpha = loop.beta = spec->stabilisation;
@@ -156,6 +171,7 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
 {
     static const double part[3] = {1, 1.5, 1};
     for (int i = 0; i < 3; i++) {
+        /* Opposite sides are equal: the coupler stays parallel to the ground. */
         double length = part[i] * spec->length;
         struct body_def b = {.parent = i - 1, .joint = JOINT_REVOLUTE};
         name_body(&b, i);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+/* Files give quaternions of any length; zero is the identity, as in complete_frame of model.c. */
 void frame_normalise(struct frame *f)
 {
     double *q = f->quat;
@@ -14,6 +15,7 @@ void frame_normalise(struct frame *f)
         for (int i = 0; i < 4; i++) q[i] /= length;
 }
 
+/* Of a unit quaternion: body into parent components. */
 static void rotation(const double quat[4], double r[9])
 {
     double x = quat[0], y = quat[1], z = quat[2], w = quat[3];
@@ -23,6 +25,7 @@ static void rotation(const double quat[4], double r[9])
     memcpy(r, m, sizeof m);
 }
 
+/* y may be x: the vector is copied first. */
 void frame_turn(const struct frame *f, const double *x, double *y)
 {
     double r[9], t[3] = {x[0], x[1], x[2]};
@@ -30,12 +33,14 @@ void frame_turn(const struct frame *f, const double *x, double *y)
     for (int i = 0; i < 3; i++) y[i] = r[3 * i] * t[0] + r[3 * i + 1] * t[1] + r[3 * i + 2] * t[2];
 }
 
+/* Points move, directions only turn. */
 void frame_apply(const struct frame *f, const double *x, double *y)
 {
     frame_turn(f, x, y);
     for (int i = 0; i < 3; i++) y[i] += f->p[i];
 }
 
+/* Product of quaternions; the inner origin in the outer's parent. */
 struct frame frame_compose(const struct frame *outer, const struct frame *inner)
 {
     const double *a = outer->quat, *b = inner->quat;
@@ -53,6 +58,7 @@ static void tensor_turn(const struct frame *f, const double j[6], double out[6])
 {
     double r[9];
     rotation(f->quat, r);
+    /* First R J, then its product with R^T; one triangle is enough of the result. */
     const double full[9] = {j[0], j[1], j[2], j[1], j[3], j[4], j[2], j[4], j[5]};
     double t[9];
     for (int i = 0; i < 3; i++)
@@ -66,11 +72,14 @@ static void tensor_turn(const struct frame *f, const double j[6], double out[6])
 /* Add the mass of `part`, whose frame is `at` in the whole's frame. */
 static void body_add(struct body_def *whole, const struct body_def *part, const struct frame *at)
 {
+    /* Both in the whole's axes first. */
     double com[3], inertia[6], d[3];
     frame_apply(at, part->com, com);
     tensor_turn(at, part->inertia, inertia);
+    /* Massless parts have no say in the common centre. */
     double m1 = whole->mass, m2 = part->mass, m = m1 + m2, share = m != 0 ? m2 / m : 0;
     for (int i = 0; i < 3; i++) d[i] = com[i] - whole->com[i];
+    /* Parallel axes for both at once: the reduced mass at their distance (Koenig). */
     double reduced = m1 * share, square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     for (int i = 0, n = 0; i < 3; i++)
         for (int k = i; k < 3; k++, n++)
@@ -87,6 +96,7 @@ static struct frame moved(const struct lumped *l, int i, const struct frame *inn
     return i < 0 ? f : frame_compose(&l->at[i], &f);
 }
 
+/* A loop keeps its frames in space: only the bodies under them are others. */
 static bool loops_move(const struct model *m, const struct lumped *l, struct err *e)
 {
     for (int i = 0; i < m->nloop; i++) {
@@ -100,6 +110,7 @@ static bool loops_move(const struct model *m, const struct lumped *l, struct err
     return true;
 }
 
+/* Same units and gravity, no bodies yet. */
 static struct model *model_like(const struct model *m, struct arena *a)
 {
     struct model *n = model_begin(a, m->file);
@@ -110,20 +121,24 @@ static struct model *model_like(const struct model *m, struct arena *a)
     return n;
 }
 
+/* One pass, parents first: where a body has gone is known when its children come. */
 bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, struct lumped *out, struct err *e)
 {
     struct body_def *def = TAKE(a, m->nbody, struct body_def);
     int n = 0;
+    /* For each old body: the new one that has taken it, and where in it. */
     *out = (struct lumped){NULL, TAKE(a, m->nbody, int), TAKE(a, m->nbody, struct frame)};
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *old = &m->body[i];
         int parent = old->parent < 0 ? -1 : out->body[old->parent];
         struct frame placement = moved(out, old->parent, &old->placement);
+        /* A body fixed to the base leaves nothing that moves. */
         if (old->joint == JOINT_FIXED) {
             out->body[i] = parent;
             out->at[i] = placement;
             if (parent >= 0) body_add(&def[parent], old, &placement);
         } else {
+            /* A body that moves keeps its own frame. */
             out->body[i] = n;
             out->at[i] = (struct frame){{0, 0, 0, 1}, {0, 0, 0}};
             def[n] = *old;
@@ -131,6 +146,7 @@ bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, 
             def[n++].placement = placement;
         }
     }
+    /* Nothing moves at all: the caller says so in its own words. */
     if (n == 0) return true;
     out->model = model_like(m, a);
     for (int i = 0; i < n; i++)
@@ -138,6 +154,7 @@ bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, 
     return loops_move(m, out, e) && model_finish(out->model, allow_nonphysical, e);
 }
 
+/* Joints keep their order, so that q, u and tau are the same arrays. */
 struct state *lump_state(const struct lumped *lumped, const struct model *old, const struct state *s, struct arena *a)
 {
     struct state *new = TAKE(a, 1, struct state);
@@ -147,6 +164,7 @@ struct state *lump_state(const struct lumped *lumped, const struct model *old, c
     double *fext = state_fext_need(new, lumped->model, a);
     for (int i = 0; i < old->nbody; i++) {
         if (lumped->body[i] < 0) continue;
+        /* A wrench on a lost body acts on the one that took it up. */
         const struct frame *at = &lumped->at[i];
         double f[3], n[3], *sum = fext + 6 * lumped->body[i];
         frame_turn(at, s->fext + 6 * i, f);

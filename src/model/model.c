@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "linalg/eigen.h"
 
+/* SI until somebody says otherwise. */
 struct model *model_begin(struct arena *a, const char *file)
 {
     struct model *m = TAKE(a, 1, struct model);
@@ -20,9 +21,11 @@ struct model *model_begin(struct arena *a, const char *file)
 /* What is wrong with body `name`, at its line. */
 static bool refuse(const struct model *m, const char *kind, const char *name, int line, struct err *e, const char *why)
 {
+    /* Every message names the body and, if it has one, its line. */
     return err_set_at(e, ERR_DATA, m->file ? m->file : "", line, "%s '%s': %s", kind, name, why);
 }
 
+/* Readers let infinities pass where a number is a number. */
 static bool all_finite(const double *x, int n)
 {
     for (int i = 0; i < n; i++)
@@ -30,6 +33,7 @@ static bool all_finite(const double *x, int n)
     return true;
 }
 
+/* The largest component: no square overflows. */
 static double norm(const double *x, int n)
 {
     double s = 0;
@@ -45,6 +49,7 @@ static void complete_frame(struct frame *f)
 
 static bool frame_finite(const struct frame *f) { return all_finite(f->quat, 4) && all_finite(f->p, 3); }
 
+/* To the rounding of numbers that people type. */
 static bool orthogonal(const double *x, const double *y)
 {
     double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -55,6 +60,7 @@ static bool orthogonal(const double *x, const double *y)
 /* Why the joint of `b` cannot be; NULL when it can. */
 static const char *joint_fault(const struct body_def *b)
 {
+    /* Traits say which axes a type needs (spec/joint_list.h). */
     if (b->joint >= JOINT_MIXED) return "unknown joint type";
     if (!all_finite(b->axis, 3) || !all_finite(b->axis2, 3) || !isfinite(b->pitch)) return "axis or pitch not finite";
     if (joint_has(b->joint, JOINT_AXIS) && norm(b->axis, 3) == 0) return "its joint needs an axis that is not zero";
@@ -68,6 +74,7 @@ static const char *joint_fault(const struct body_def *b)
     return NULL;
 }
 
+/* Checked one by one: the message has the line of the body. */
 int model_add_body(struct model *m, const struct body_def *def, struct err *e)
 {
     const char *fault = joint_fault(def);
@@ -77,8 +84,10 @@ int model_add_body(struct model *m, const struct body_def *def, struct err *e)
         refuse(m, "body", def->name, def->line, e, fault);
         return -1;
     }
+    /* Doubled when full: readers do not know the number beforehand. */
     if (m->nbody == m->body_room) {
         m->body_room = m->body_room ? 2 * m->body_room : 64;
+        /* The old array stays in the arena: at most as much again is lost. */
         struct body_def *more = TAKE(m->arena, m->body_room, struct body_def);
         if (m->nbody) memcpy(more, m->body, (size_t)m->nbody * sizeof *more);
         m->body = more;
@@ -95,10 +104,12 @@ static const char *loop_fault(const struct model *m, const struct loop_def *l)
         return "its bodies must come before it";
     if (l->body_a == l->body_b) return "it must join two different bodies";
     if (!frame_finite(&l->frame_a) || !frame_finite(&l->frame_b)) return "frame not finite";
+    /* Rows and joints are two ways to say it. */
     if (l->nrow < 0 || l->nrow > 6) return "it must have 1 to 6 rows";
     if (l->nrow > 0 && !all_finite(&l->row[0][0], 6 * l->nrow)) return "row not finite";
     for (int i = 0; i < l->nrow; i++)
         if (norm(l->row[i], 6) == 0) return "a row is zero";
+    /* A joint of six degrees of freedom leaves nothing to constrain. */
     if (l->nrow == 0 && (l->joint >= JOINT_MIXED || joint_nu(l->joint) == 6)) return "its joint constrains nothing";
     if (l->nrow == 0 && joint_has(l->joint, JOINT_IN_TREES)) return "a joint of its type cannot close a loop";
     if (!isfinite(l->alpha) || !isfinite(l->beta) || l->alpha < 0 || l->beta < 0)
@@ -106,6 +117,7 @@ static const char *loop_fault(const struct model *m, const struct loop_def *l)
     return NULL;
 }
 
+/* Bodies on both sides must be there already. */
 int model_add_loop(struct model *m, const struct loop_def *def, struct err *e)
 {
     const char *fault = loop_fault(m, def);
@@ -130,10 +142,12 @@ static void principal_moments(const double *inertia, double *w)
 {
     double a[9] = {inertia[0], inertia[1], inertia[2], inertia[1], inertia[3],
                    inertia[4], inertia[2], inertia[4], inertia[5]};
+    /* Scaled to 1, so that tiny and huge units work alike. */
     double scale = norm(a, 9);
     for (int i = 0; scale > 0 && i < 9; i++) a[i] /= scale;
     struct work uncounted = {0};
     eigen_symmetric(3, a, NULL, w, &uncounted);
+    /* Three numbers: sorted by hand. */
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2 - i; j++)
             if (w[j] > w[j + 1]) {
@@ -146,6 +160,7 @@ static void principal_moments(const double *inertia, double *w)
 /* Whether the body has an inverse inertia, as far as doubles can tell. */
 static bool invertible(const struct body_def *b)
 {
+    /* A point mass has no inverse inertia; principal moments tell it in any axes. */
     double w[3];
     principal_moments(b->inertia, w);
     return b->mass > 0 && w[0] > 1e-15 * w[2];
@@ -155,6 +170,7 @@ static bool body_check(const struct model *m, const struct body_def *b, bool all
 {
     if (!isfinite(b->mass) || !all_finite(b->com, 3) || !all_finite(b->inertia, 6))
         return refuse(m, "body", b->name, b->line, e, "mass, centre of mass or inertia is not finite");
+    /* Finite numbers are all that algorithms need in order not to crash. */
     if (allow_nonphysical) return true;
     double w[3];
     principal_moments(b->inertia, w);
@@ -165,6 +181,7 @@ static bool body_check(const struct model *m, const struct body_def *b, bool all
         return err_set_at(e, ERR_DATA, file, b->line,
                           "body '%s': inertia not positive definite (principal moments %g, %g, %g)", b->name, w[0],
                           w[1], w[2]);
+    /* Moments of inertia are sums of two second moments each: none exceeds the other two. */
     if (w[0] + w[1] < w[2] * (1 - 1e-9))
         return err_set_at(e, ERR_DATA, file, b->line,
                           "body '%s': inertia violates the triangle inequality (principal moments %g + %g < %g)",
@@ -177,6 +194,7 @@ static void index_children(struct model *m)
 {
     m->child_at = TAKE(m->arena, m->nbody + 2, int);
     m->child = TAKE(m->arena, m->nbody, int);
+    /* Two passes over the parents, no lists. */
     int *at = m->child_at + 1; /* at[i] becomes the end of i's list while filling */
     for (int i = 0; i < m->nbody; i++)
         if (m->body[i].parent >= 0) at[m->body[i].parent + 1]++;
@@ -185,11 +203,13 @@ static void index_children(struct model *m)
         if (m->body[i].parent >= 0) m->child[at[m->body[i].parent]++] = i;
 }
 
+/* Where each body's numbers begin, and what kind of system it is. */
 static void index_coordinates(struct model *m)
 {
     m->q_at = TAKE(m->arena, m->nbody + 1, int);
     m->u_at = TAKE(m->arena, m->nbody + 1, int);
     m->row_at = TAKE(m->arena, m->nloop + 1, int);
+    /* Properties of the whole: chains and constraint forces have programs of their own. */
     m->is_chain = m->has_phi = true;
     for (int i = 0; i < m->nbody; i++) {
         const struct body_def *b = &m->body[i];
@@ -198,6 +218,7 @@ static void index_coordinates(struct model *m)
         m->is_chain = m->is_chain && b->parent == i - 1;
         m->has_phi = m->has_phi && invertible(b);
     }
+    /* A loop joint constrains what its type does not allow. */
     for (int l = 0; l < m->nloop; l++)
         m->row_at[l + 1] = m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
     m->nq = m->q_at[m->nbody];
@@ -205,6 +226,7 @@ static void index_coordinates(struct model *m)
     m->nrow = m->row_at[m->nloop];
 }
 
+/* From here on nobody writes the model. */
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
 {
     if (m->nbody > MODEL_MAX_BODIES || m->nloop > MODEL_MAX_BODIES)
@@ -214,6 +236,7 @@ bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
         if (!body_check(m, &m->body[i], allow_nonphysical, e)) return false;
     index_children(m);
     index_coordinates(m);
+    /* Their matrix is dense. */
     if (m->nrow > MODEL_MAX_ROWS)
         return err_set_at(e, ERR_DATA, m->file ? m->file : "", 0,
                           "the loops have %d rows together; at most %d: their matrix would take %.3g GB", m->nrow,

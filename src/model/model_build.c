@@ -4,6 +4,7 @@
 #include "model/urdf_model.h"
 #include "model/vector_model.h"
 
+/* One reader or generator for each source of models. */
 struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e)
 {
     switch (spec->generator) {
@@ -13,6 +14,7 @@ struct model *model_build(const struct model_spec *spec, struct arena *a, struct
     }
 }
 
+/* Vectors bring states of their own; all else is seeded. */
 struct state *state_given(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
     if (spec->generator != MODEL_VECTOR) return state_generate(m, spec, a);

@@ -7,6 +7,7 @@
 
 #define PI 3.14159265358979323846
 
+/* Zero is a pose of every joint, but for quaternions. */
 struct state *state_take(const struct model *m, struct arena *a)
 {
     struct state *s = TAKE(a, 1, struct state);
@@ -21,6 +22,7 @@ struct state *state_take(const struct model *m, struct arena *a)
     return s;
 }
 
+/* Six numbers a body, only where some body carries a load. */
 double *state_fext_need(struct state *s, const struct model *m, struct arena *a)
 {
     if (!s->fext) s->fext = TAKE(a, size_product(6, m->nbody), double);
@@ -32,6 +34,7 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
                     double *x)
 {
     for (int i = 0; i < m->nbody; i++) {
+        /* A stream for each body and purpose: what one body draws shifts no other's numbers. */
         struct random r = random_make(seed, stream, (uint64_t)i);
         enum model_joint joint = m->body[i].joint;
         for (int k = 0; k < joint_nu(joint); k++)
@@ -39,6 +42,7 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
     }
 }
 
+/* Force, then moment, in the body's own axes. */
 static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force, double length,
                              double *fext)
 {
@@ -51,25 +55,32 @@ static void scatter_wrenches(const struct model *m, const struct model_spec *spe
 /* The parallelogram's consistent pose and motion. */
 static void pose_four_bar(const struct model_spec *spec, struct state *s)
 {
+    /* Any angle would do; the cut joint's coordinate follows from it. */
     const double angle = 1.1;
+    /* The parallelogram: coupler against crank, rocker against coupler. */
     s->q[0] = angle, s->q[1] = -angle, s->q[2] = angle - PI;
     s->qd[0] = spec->rate, s->qd[1] = -spec->rate, s->qd[2] = spec->rate;
 }
 
+/* Settings are in SI, the state in the model's units. */
 struct state *state_generate(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
     struct state *s = state_take(m, a);
+    /* Lengths and times in the model's units; polymers count in their own bond lengths. */
     double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
     double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;
+    /* A closed chain closes at q = 0, or in a pose of its own. */
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)
         for (int i = 0; i < m->nbody; i++) pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
+    /* Rates, accelerations and forces of linear joints scale with the length of a link. */
     scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
     if (spec->generator == MODEL_FOUR_BAR) pose_four_bar(spec, s);
     scatter(m, spec->seed, STREAM_ACCELERATION, rate * rate, rate * rate * length, s->qdd);
     scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length), s->tau);
     if (spec->external_force > 0)
         scatter_wrenches(m, spec, spec->external_force / force, length, state_fext_need(s, m, a));
+    /* Prescribed motion of the base, without gravity, which the model has. */
     if (spec->base == BASE_MOVING) {
         for (int k = 0; k < 3; k++) {
             s->base_acceleration[k] = spec->base_acceleration[k] * m->second * m->second;

@@ -19,6 +19,7 @@ static const char *const kind_name[URDF_KINDS] = {"fixed", "revolute", "continuo
 
 const char *urdf_kind_name(enum urdf_kind kind) { return kind_name[kind]; }
 
+/* Where a tag stands decides what it means: <origin> of a link's inertia or of a joint. */
 enum where { IN_FILE, IN_ROBOT, IN_LINK, IN_INERTIAL, IN_JOINT, IN_LEAF, IN_SKIPPED };
 
 struct reader {
@@ -33,6 +34,7 @@ struct reader {
     bool has_mass, has_inertia;       /* of the <inertial> being read */
 };
 
+/* expat counts lines itself. */
 static int line_now(const struct reader *r) { return (int)XML_GetCurrentLineNumber(r->parser); }
 
 /* Record an error at the present line and stop. */
@@ -42,6 +44,8 @@ static void refuse(struct reader *r, const char *text)
     XML_StopParser(r->parser, XML_FALSE);
 }
 
+/* The first mistake stops the reader; expat may still report a few tags. Long names are cut: the
+ * line says where. */
 #define REFUSE(r, ...)                                                                                                 \
     do {                                                                                                               \
         char refuse_text[512];                                                                                         \
@@ -59,6 +63,7 @@ static void *grown(struct arena *a, void *array, int count, int *capacity, size_
     return larger;
 }
 
+/* What is left out changes the robot: users are told, the file is read all the same. */
 static void warn(struct reader *r, const char *text)
 {
     struct urdf_robot *robot = r->robot;
@@ -75,6 +80,7 @@ static void warn(struct reader *r, const char *text)
 
 /* --- attributes ------------------------------------------------------------------------------------------------ */
 
+/* expat gives names and values in turns. */
 static const char *attribute(const char **attributes, const char *name)
 {
     for (int i = 0; attributes[i]; i += 2)
@@ -87,8 +93,10 @@ static bool numbers_parse(struct reader *r, const char *tag, const char *name, c
 {
     const char *at = s;
     for (int i = 0; i < n; i++) {
+        /* No locale is ever set: a decimal point is a point. */
         char *end;
         x[i] = strtod(at, &end);
+        /* xacro files look like URDF until their first expression. */
         if (end == at || !isfinite(x[i])) {
             REFUSE(r, "<%s> %s=\"%.60s\": %d finite number%s expected%s", tag, name, s, n, n > 1 ? "s" : "",
                    strstr(s, "${") ? "; expand xacro first" : "");
@@ -108,6 +116,7 @@ static bool numbers_maybe(struct reader *r, const char *tag, const char **attrib
     return !s || numbers_parse(r, tag, name, s, x, n);
 }
 
+/* Required: URDF has no default for it. */
 static bool number_need(struct reader *r, const char *tag, const char **attributes, const char *name, double *x)
 {
     const char *s = attribute(attributes, name);
@@ -115,6 +124,7 @@ static bool number_need(struct reader *r, const char *tag, const char **attribut
     return s && numbers_parse(r, tag, name, s, x, 1);
 }
 
+/* Names outlive the parser. */
 static const char *name_need(struct reader *r, const char *tag, const char **attributes, const char *name)
 {
     const char *s = attribute(attributes, name);
@@ -125,12 +135,14 @@ static const char *name_need(struct reader *r, const char *tag, const char **att
 
 /* --- elements -------------------------------------------------------------------------------------------------- */
 
+/* Elements belong to the link or joint that was opened last. */
 static struct urdf_link *link_now(struct reader *r) { return &r->robot->link[r->robot->nlink - 1]; }
 static struct urdf_joint *joint_now(struct reader *r) { return &r->robot->joint[r->robot->njoint - 1]; }
 
 /* Rotations about the fixed x, y, z axes in this order. */
 static void quat_from_rpy(const double rpy[3], double quat[4])
 {
+    /* Quaternion of Rz(yaw) Ry(pitch) Rx(roll) by half angles. */
     double cr = cos(rpy[0] / 2), sr = sin(rpy[0] / 2), cp = cos(rpy[1] / 2), sp = sin(rpy[1] / 2);
     double cy = cos(rpy[2] / 2), sy = sin(rpy[2] / 2);
     quat[0] = sr * cp * cy - cr * sp * sy;
@@ -139,6 +151,7 @@ static void quat_from_rpy(const double rpy[3], double quat[4])
     quat[3] = cr * cp * cy + sr * sp * sy;
 }
 
+/* Both parts may be left out. */
 static void origin_read(struct reader *r, const char **attributes, double p[3], double quat[4])
 {
     double rpy[3] = {0, 0, 0};
@@ -146,6 +159,7 @@ static void origin_read(struct reader *r, const char **attributes, double p[3], 
         quat_from_rpy(rpy, quat);
 }
 
+/* A link without <inertial> is a frame; its own line stands for the missing one. */
 static void link_read(struct reader *r, const char **attributes)
 {
     struct urdf_robot *robot = r->robot;
@@ -156,6 +170,7 @@ static void link_read(struct reader *r, const char **attributes)
         .name = name, .line = line_now(r), .inertial_line = line_now(r), .quat = {0, 0, 0, 1}, .joint = -1};
 }
 
+/* Mass and inertia may come in any order. */
 static void inertial_read(struct reader *r, const char **attributes)
 {
     (void)attributes;
@@ -166,11 +181,13 @@ static void inertial_read(struct reader *r, const char **attributes)
     r->has_mass = r->has_inertia = false;
 }
 
+/* A negative mass is refused later, with the link's name. */
 static void mass_read(struct reader *r, const char **attributes)
 {
     r->has_mass = number_need(r, "mass", attributes, "value", &link_now(r)->mass);
 }
 
+/* Six numbers about the centre of mass, in the axes of <origin>. */
 static void inertia_read(struct reader *r, const char **attributes)
 {
     static const char *const name[6] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
@@ -179,17 +196,20 @@ static void inertia_read(struct reader *r, const char **attributes)
     r->has_inertia = true;
 }
 
+/* Of <inertial>: place and axes of the inertia. */
 static void link_origin_read(struct reader *r, const char **attributes)
 {
     origin_read(r, attributes, link_now(r)->com, link_now(r)->quat);
 }
 
+/* By its name, with the nearest one. */
 static bool kind_read(struct reader *r, const char *joint, const char *type, enum urdf_kind *kind)
 {
     for (int k = 0; k < URDF_KINDS; k++) {
         *kind = (enum urdf_kind)k;
         if (strcmp(type, kind_name[k]) == 0) return true;
     }
+    /* Types of other formats, such as "hinge", have no near name: then all are listed. */
     const char *nearest = text_nearest(type, kind_name, URDF_KINDS);
     REFUSE(r, "joint '%.100s' has unknown type '%.60s'%s%s%s", joint, type, nearest ? "; did you mean '" : "",
            nearest ? nearest : "; known: fixed, revolute, continuous, prismatic, floating, planar",
@@ -197,6 +217,7 @@ static bool kind_read(struct reader *r, const char *joint, const char *type, enu
     return false;
 }
 
+/* Ends are names until all links are known. */
 static void joint_read(struct reader *r, const char **attributes)
 {
     struct urdf_robot *robot = r->robot;
@@ -204,6 +225,7 @@ static void joint_read(struct reader *r, const char **attributes)
     const char *type = name ? name_need(r, "joint", attributes, "type") : NULL;
     enum urdf_kind kind;
     if (!type || !kind_read(r, name, type, &kind)) return;
+    /* Two arrays grow together: the first must not move the common capacity. */
     int capacity = r->joint_capacity;
     r->names = grown(r->a, r->names, robot->njoint, &capacity, sizeof *r->names);
     robot->joint = grown(r->a, robot->joint, robot->njoint, &r->joint_capacity, sizeof *robot->joint);
@@ -219,38 +241,45 @@ static void joint_read(struct reader *r, const char **attributes)
                                                         .velocity = INFINITY};
 }
 
+/* Of a joint: its frame in the parent link. */
 static void joint_origin_read(struct reader *r, const char **attributes)
 {
     origin_read(r, attributes, joint_now(r)->p, joint_now(r)->quat);
 }
 
+/* Either end once. */
 static void end_read(struct reader *r, const char **attributes, const char *tag, struct urdf_name *end)
 {
     if (end->name) REFUSE(r, "joint '%.100s' has a second <%s>", joint_now(r)->name, tag);
     *end = (struct urdf_name){name_need(r, tag, attributes, "link"), line_now(r)};
 }
 
+/* The joint that is open. */
 static void parent_read(struct reader *r, const char **attributes)
 {
     end_read(r, attributes, "parent", &r->names[r->robot->njoint - 1].parent);
 }
 
+/* Likewise. */
 static void child_read(struct reader *r, const char **attributes)
 {
     end_read(r, attributes, "child", &r->names[r->robot->njoint - 1].child);
 }
 
+/* URDF's default is x; given axes are made unit. */
 static void axis_read(struct reader *r, const char **attributes)
 {
     struct urdf_joint *joint = joint_now(r);
     double x[3] = {1, 0, 0};
     if (!numbers_maybe(r, "axis", attributes, "xyz", x, 3)) return;
     double length = hypot(hypot(x[0], x[1]), x[2]);
+    /* Fixed and floating joints have none. */
     bool needed = joint->kind != URDF_FIXED && joint->kind != URDF_FLOATING;
     if (needed && !(length > 1e-100)) REFUSE(r, "the axis of joint '%.100s' has length zero", joint->name);
     for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] = x[i] / length;
 }
 
+/* Kept for those who draw motions; the dynamics has no stops. */
 static void limit_read(struct reader *r, const char **attributes)
 {
     struct urdf_joint *joint = joint_now(r);
@@ -262,6 +291,7 @@ static void limit_read(struct reader *r, const char **attributes)
         !numbers_maybe(r, "limit", attributes, "effort", &joint->effort, 1) ||
         !numbers_maybe(r, "limit", attributes, "velocity", &joint->velocity, 1))
         return;
+    /* Continuous joints give effort and velocity alone. */
     if (!sliding || !range) return;
     if (lower > upper) REFUSE(r, "joint '%.100s': lower limit %g above upper limit %g", joint->name, lower, upper);
     joint->has_limit = true;
@@ -269,6 +299,7 @@ static void limit_read(struct reader *r, const char **attributes)
     joint->upper = upper;
 }
 
+/* Viscous damping acts, dry friction does not. */
 static void dynamics_read(struct reader *r, const char **attributes)
 {
     struct urdf_joint *joint = joint_now(r);
@@ -280,6 +311,7 @@ static void dynamics_read(struct reader *r, const char **attributes)
     if (friction != 0) WARN(r, "joint '%.100s': dry friction is not supported; ignored", joint->name);
 }
 
+/* A mimic joint would be a constraint between coordinates. */
 static void mimic_read(struct reader *r, const char **attributes)
 {
     const char *other = attribute(attributes, "joint");
@@ -296,6 +328,7 @@ struct element {
     const char *attribute[8];       /* known ones, for misspellings; none: not checked */
 };
 
+/* Place, then tag: the same tag has several rows. */
 static const struct element element_table[] = {
     {"link", IN_ROBOT, IN_LINK, link_read, false, {"name", "type"}},
     {"joint", IN_ROBOT, IN_JOINT, joint_read, false, {"name", "type"}},
@@ -321,6 +354,7 @@ static const struct element element_table[] = {
 };
 enum { ELEMENTS = sizeof element_table / sizeof *element_table };
 
+/* A misspelled attribute would be a missing one. */
 static void attributes_check(struct reader *r, const struct element *element, const char **attributes)
 {
     int known = 0;
@@ -328,6 +362,7 @@ static void attributes_check(struct reader *r, const struct element *element, co
     for (int i = 0; known > 0 && attributes[i]; i += 2) {
         bool found = false;
         for (int k = 0; k < known; k++) found = found || strcmp(attributes[i], element->attribute[k]) == 0;
+        /* What is like a known name is a mistake, what is like none an extension. */
         const char *nearest = found ? NULL : text_nearest(attributes[i], element->attribute, known);
         if (nearest)
             REFUSE(r, "<%s> has an unknown attribute '%.60s'; did you mean '%s'?", element->tag, attributes[i],
@@ -337,8 +372,10 @@ static void attributes_check(struct reader *r, const struct element *element, co
     }
 }
 
+/* Extensions of other programs are skipped, misspellings refused. */
 static enum where element_unknown(struct reader *r, const char *tag, enum where in)
 {
+    /* The tags that this place knows. */
     const char *known[ELEMENTS];
     int n = 0;
     for (int i = 0; i < ELEMENTS; i++)
@@ -351,6 +388,7 @@ static enum where element_unknown(struct reader *r, const char *tag, enum where 
     return IN_SKIPPED;
 }
 
+/* The row of this tag in this place. */
 static enum where element_read(struct reader *r, const char *tag, enum where in, const char **attributes)
 {
     for (int i = 0; i < ELEMENTS; i++) {
@@ -364,15 +402,18 @@ static enum where element_read(struct reader *r, const char *tag, enum where in,
     return element_unknown(r, tag, in);
 }
 
+/* Called by expat for each opening tag. */
 static void XMLCALL on_start(void *context, const char *tag, const char **attributes)
 {
     struct reader *r = context;
     if (r->e->kind != ERR_NONE) return;
+    /* Real robots nest five elements deep. */
     if (r->depth == MAX_DEPTH) {
         REFUSE(r, "nested deeper than %d elements", MAX_DEPTH);
         return;
     }
     enum where in = r->depth > 0 ? r->where[r->depth - 1] : IN_FILE, opens = IN_SKIPPED;
+    /* Only <robot> makes a file URDF. */
     if (in == IN_FILE) {
         if (strcmp(tag, "robot") != 0) REFUSE(r, "not a URDF file: its root is <%.60s>, not <robot>", tag);
         const char *name = attribute(attributes, "name");
@@ -381,9 +422,11 @@ static void XMLCALL on_start(void *context, const char *tag, const char **attrib
     } else if (in != IN_SKIPPED) {
         opens = element_read(r, tag, in, attributes);
     }
+    /* Also what is skipped is counted, so that its end is found. */
     r->where[r->depth++] = opens;
 }
 
+/* What an element lacks is known when it closes. */
 static void XMLCALL on_end(void *context, const char *tag)
 {
     struct reader *r = context;
@@ -397,10 +440,12 @@ static void XMLCALL on_end(void *context, const char *tag)
 
 /* --- the file -------------------------------------------------------------------------------------------------- */
 
+/* In one piece: files are small. */
 static bool xml_parse(struct reader *r, const struct text *text)
 {
     XML_SetUserData(r->parser, r);
     XML_SetElementHandler(r->parser, on_start, on_end);
+    /* Handlers stop the parser themselves; then our own message stands. */
     bool good = XML_Parse(r->parser, text->s ? text->s : "", (int)text->length, XML_TRUE) == XML_STATUS_OK;
     if (!good && r->e->kind == ERR_NONE)
         err_set_at(r->e, ERR_DATA, r->robot->path, line_now(r), "XML: %s",
@@ -408,12 +453,14 @@ static bool xml_parse(struct reader *r, const struct text *text)
     return good && r->e->kind == ERR_NONE;
 }
 
+/* Elements first, then the tree that their names make. */
 bool urdf_read(const char *path, struct urdf_robot *robot, struct arena *a, struct err *e)
 {
     struct text text = {0};
     *robot = (struct urdf_robot){.path = arena_text(a, path)};
     struct reader r = {.a = a, .e = e, .robot = robot};
     if (e->kind != ERR_NONE || !text_read_file(&text, path, e)) return false;
+    /* Before expat, which takes lengths as int. */
     bool good = text.length <= MAX_BYTES || err_set_at(e, ERR_DATA, path, 0, "larger than %d bytes", MAX_BYTES);
     if (good) {
         r.parser = XML_ParserCreate(NULL);

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "model/lump.h"
 
+/* Continuous joints are revolute ones without limits, and limits do not act here. */
 static enum model_joint joint_from(enum urdf_kind kind)
 {
     switch (kind) {
@@ -21,6 +22,7 @@ static enum model_joint joint_from(enum urdf_kind kind)
 /* Link axes from inertial axes: J_link = R J R^T, as a lump of one part. */
 static void inertia_from(const struct urdf_link *link, struct body_def *def)
 {
+    /* URDF gives inertia in axes of its own, turned against the link's. */
     struct frame f;
     memcpy(f.quat, link->quat, sizeof f.quat);
     memset(f.p, 0, sizeof f.p);
@@ -35,10 +37,12 @@ static void inertia_from(const struct urdf_link *link, struct body_def *def)
     }
     const double out[6] = {full[0][0], (full[0][1] + full[1][0]) / 2, (full[0][2] + full[2][0]) / 2,
                            full[1][1], (full[1][2] + full[2][1]) / 2, full[2][2]};
+    /* Bits as in the file where nothing has to be turned. */
     bool turned = link->quat[0] != 0 || link->quat[1] != 0 || link->quat[2] != 0;
     memcpy(def->inertia, turned ? out : j, sizeof out);
 }
 
+/* A link and the joint that carries it are one body here. */
 static struct body_def body_from(const struct urdf_robot *robot, int link_index)
 {
     const struct urdf_link *link = &robot->link[link_index];
@@ -46,6 +50,7 @@ static struct body_def body_from(const struct urdf_robot *robot, int link_index)
     text_copy(def.name, sizeof def.name, link->name);
     memcpy(def.com, link->com, sizeof def.com);
     inertia_from(link, &def);
+    /* The root has no joint; a floating one gets it from the caller. */
     if (link->joint < 0) return def;
     const struct urdf_joint *joint = &robot->joint[link->joint];
     def.joint = joint_from(joint->kind);
@@ -62,6 +67,7 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
                        struct err *e)
 {
     const struct urdf_link *link = &robot->link[i];
+    /* Frames of tools and sensors: no mass, no inertia. */
     bool frame_only = link->mass == 0;
     for (int k = 0; k < 6; k++) frame_only = frame_only && link->inertia[k] == 0;
     if (link->mass < 0)
@@ -69,9 +75,11 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
                           link->name, link->mass);
     bool is_base = link->joint < 0 && !o->floating;
     if (o->allow_nonphysical || (frame_only && (is_base || !o->keep_fixed))) return true;
+    /* Such a link may be fixed to another one, but not move by itself. */
     if (!link->has_inertial)
         return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass",
                           link->name);
+    /* Checked as a model of one body, so that the message names link and line. */
     struct arena_mark mark = arena_mark(a);
     struct model *alone = model_begin(a, robot->path);
     struct body_def def = body_from(robot, i);
@@ -81,11 +89,13 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
     return good;
 }
 
-/* A body for every link; the root is body 0 of a floating robot and no body of a fixed one. */
+/* A body for every link; the root is body 0 of a floating robot and no body of a fixed one.
+ * In the order of the tree: parents first. */
 static struct model *every_link(const struct urdf_robot *robot, const struct urdf_options *o, bool allow,
                                 struct arena *a, struct err *e)
 {
     struct model *m = model_begin(a, robot->path);
+    /* Links by their number in the file, bodies by that in the tree. */
     int *body = TAKE(a, robot->nlink, int);
     memcpy(m->gravity, o->gravity, sizeof m->gravity);
     for (int k = 0; k < robot->nlink; k++) {
@@ -94,6 +104,7 @@ static struct model *every_link(const struct urdf_robot *robot, const struct urd
         if (!link_check(robot, i, o, a, e)) return NULL;
         struct body_def def = body_from(robot, i);
         body[i] = -1;
+        /* The root of a fixed robot is the base itself. */
         if (k == 0 && !o->floating) continue;
         def.parent = k == 0 ? -1 : body[robot->joint[link->joint].parent];
         if (k == 0) def.joint = JOINT_FLOATING;
@@ -107,6 +118,7 @@ static struct model *every_link(const struct urdf_robot *robot, const struct urd
     return model_finish(m, allow, e) ? m : NULL;
 }
 
+/* Links on fixed joints are lumped unless somebody wants to see them. */
 struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_options *o, struct arena *a, struct err *e)
 {
     struct lumped lumped;
@@ -117,6 +129,7 @@ struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_optio
     return lumped.model;
 }
 
+/* As a scenario asks for it: base and gravity are settings. */
 struct model *urdf_model_build(const struct model_spec *spec, struct arena *a, struct err *e)
 {
     struct urdf_robot robot;

@@ -11,6 +11,7 @@
 
 enum { MAX_BODIES = 1000000, JOINT_KINDS = 5 };
 
+/* The format's own types, with its words. */
 static const struct {
     const char *name;
     int nq, nv;
@@ -21,17 +22,20 @@ const char *vector_joint_name(enum vector_joint joint) { return joint_table[join
 int vector_joint_nq(enum vector_joint joint) { return joint_table[joint].nq; }
 int vector_joint_nv(enum vector_joint joint) { return joint_table[joint].nv; }
 
+/* What every reader below needs besides its node. */
 struct reader {
     const char *path;
     struct arena *a;
     struct err *e;
 };
 
+/* A message at a node's line. */
 static bool fail(struct reader *r, const struct node *at, const char *text)
 {
     return err_set_at(r->e, ERR_DATA, r->path, at ? at->line : 0, "%s", text);
 }
 
+/* A short name: most keys are lists of numbers. */
 static bool numbers(struct reader *r, const struct node *map, const char *key, double *x, int n)
 {
     return document_numbers(map, key, r->path, x, n, r->e);
@@ -62,23 +66,28 @@ static bool array_maybe(struct reader *r, const struct node *map, const char *ke
     return *x != NULL;
 }
 
+/* p, quat and R, of which R is a check. */
 static bool frame_read(struct reader *r, const struct node *map, const char *key, struct vector_frame *f)
 {
     const struct node *node = document_need(map, key, r->path, r->e);
     if (!node || !numbers(r, node, "p", f->p, 3) || !numbers(r, node, "quat", f->quat, 4) ||
         !numbers(r, node, "R", f->R, 9))
         return false;
+    /* A length that is off by more than rounding is a mistake of the writer. */
     double square = 0;
     for (int i = 0; i < 4; i++) square += f->quat[i] * f->quat[i];
     if (!(fabs(square - 1) < 1e-6)) return fail(r, node, "'quat' is no unit quaternion");
     return vector_check_frame(f, node, r->path, r->e);
 }
 
+/* Type and, for two of them, an axis. */
 static bool joint_read(struct reader *r, const struct node *body, struct vector_body *b)
 {
     const struct node *joint = document_need(body, "joint", r->path, r->e);
+    /* The type decides what else belongs to it. */
     if (!joint) return false;
     const char *type = document_text(joint, "type");
+    /* Five words. */
     int k = 0;
     while (k < JOINT_KINDS && strcmp(type, joint_table[k].name) != 0) k++;
     if (k == JOINT_KINDS)
@@ -87,10 +96,12 @@ static bool joint_read(struct reader *r, const struct node *body, struct vector_
     b->joint = (enum vector_joint)k;
     if (b->joint != VECTOR_REVOLUTE && b->joint != VECTOR_PRISMATIC) return true;
     if (!numbers(r, joint, "axis", b->axis, 3)) return false;
+    /* Unit to the digits of a file. */
     double square = b->axis[0] * b->axis[0] + b->axis[1] * b->axis[1] + b->axis[2] * b->axis[2];
     return fabs(square - 1) < 1e-6 || fail(r, joint, "'axis' is no unit vector");
 }
 
+/* Parents before children: i - 1 is the last that may be one. */
 static bool body_read(struct reader *r, const struct node *node, int i, struct vector_body *b)
 {
     b->line = node->line;
@@ -100,10 +111,12 @@ static bool body_read(struct reader *r, const struct node *node, int i, struct v
            numbers(r, node, "com", b->com, 3) && numbers(r, node, "inertia_com", b->inertia, 6);
 }
 
+/* Coordinates are numbered on the way. */
 static bool bodies_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_need(root, "bodies", r->path, r->e);
     if (!list) return false;
+    /* The limit is far above any reference, below what would exhaust memory. */
     if (list->kind != NODE_LIST || list->count < 1 || list->count > MAX_BODIES)
         return fail(r, list, "'bodies' must be a list of 1 to 1000000 bodies");
     c->nbody = list->count;
@@ -120,6 +133,7 @@ static bool bodies_read(struct reader *r, const struct node *root, struct vector
     return true;
 }
 
+/* nq and nv are redundant, so they must agree. */
 static bool counts_check(struct reader *r, const struct node *root, const struct vector_case *c)
 {
     int nq, nv;
@@ -131,11 +145,14 @@ static bool counts_check(struct reader *r, const struct node *root, const struct
                       nq, nv, c->nq, c->nv);
 }
 
+/* Rows are flat lists or pairs of vectors. */
 static bool loop_read(struct reader *r, const struct node *node, int nbody, struct vector_loop *loop)
 {
     const struct node *rows = document_need(node, "rows", r->path, r->e);
     if (!rows) return false;
+    /* Six rows fix a body. */
     if (rows->kind != NODE_LIST || rows->count < 1 || rows->count > 6) return fail(r, rows, "a loop has 1 to 6 rows");
+    /* For messages of room model. */
     loop->line = node->line;
     loop->nrow = rows->count;
     int k = 0;
@@ -146,32 +163,39 @@ static bool loop_read(struct reader *r, const struct node *node, int nbody, stru
            frame_read(r, node, "frame_a", &loop->frame_a) && frame_read(r, node, "frame_b", &loop->frame_b);
 }
 
+/* Most files have none. */
 static bool loops_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_find(root, "loops");
     if (!list) return true;
     if (list->kind != NODE_LIST) return fail(r, list, "'loops' must be a list");
+    /* As many as the list has: nothing grows. */
     c->loop = TAKE(r->a, list->count, struct vector_loop);
     for (const struct node *node = list->child; node; node = node->next) {
         if (!loop_read(r, node, c->nbody, &c->loop[c->nloop])) return false;
+        /* Rows of all loops together: lambda has as many. */
         c->nrow += c->loop[c->nloop++].nrow;
     }
     return true;
 }
 
+/* q and qd are always there, the others by what is asked. */
 static bool state_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
+    /* In the order of the format's description. */
     bool good = (c->q = array_need(r, root, "q", c->nq)) && (c->qd = array_need(r, root, "qd", c->nv)) &&
                 array_maybe(r, root, "qdd", c->nv, &c->qdd) && array_maybe(r, root, "tau", c->nv, &c->tau) &&
                 array_maybe(r, root, "f_ext", 6 * c->nbody, &c->external) &&
                 array_maybe(r, root, "joint_spring", c->nv, &c->spring) &&
                 array_maybe(r, root, "joint_spring_q0", c->nv, &c->spring_q0) &&
                 array_maybe(r, root, "joint_damping", c->nv, &c->damping);
+    /* Springs need all three arrays. */
     if (good && (c->spring || c->damping) && !(c->spring && c->spring_q0 && c->damping && c->nq == c->nv))
         return fail(r, root, "springs need joint_spring, joint_spring_q0 and joint_damping, and 1-DOF joints only");
     return good;
 }
 
+/* Some or all bodies. */
 static bool poses_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_find(root, "fk");
@@ -179,6 +203,7 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
     if (list->kind != NODE_LIST) return fail(r, list, "'fk' must be a list");
     c->pose = TAKE(r->a, list->count, struct vector_pose);
     for (const struct node *node = list->child; node; node = node->next) {
+        /* Everything of a body at one instant, in the base's frame. */
         struct vector_pose *p = &c->pose[c->npose++];
         if (!document_integer(node, "body", r->path, 0, c->nbody - 1, &p->body, r->e) ||
             !numbers(r, node, "R", p->R, 9) || !numbers(r, node, "p", p->p, 3) || !numbers(r, node, "v", p->v, 3) ||
@@ -189,9 +214,11 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
     return true;
 }
 
+/* Each group as a whole, or not at all. */
 static bool totals_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *energy = document_find(root, "energy"), *momentum = document_find(root, "momentum");
+    /* Presence is told apart from zero. */
     c->has_energy = energy != NULL;
     c->has_momentum = momentum != NULL;
     c->has_com = document_find(root, "com_world") != NULL;
@@ -205,6 +232,7 @@ static bool totals_read(struct reader *r, const struct node *root, struct vector
                            document_number(root, "total_mass", r->path, &c->total_mass, r->e));
 }
 
+/* Missing and null are the same: no answer. */
 static double number_or_nan(const struct node *map, const char *key)
 {
     const struct node *node = document_find(map, key);
@@ -217,16 +245,20 @@ static void peer_compete(struct vector_peer *best, double error, const char *nam
     if (isfinite(error) && !(error >= best->error)) *best = (struct vector_peer){error, name};
 }
 
+/* How well other libraries do in double: for people who compare. */
 static void peers_read(const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_find(root, "peers"), *floor = document_find(root, "input_rounding_floor");
+    /* How much rounding of the inputs alone changes the answers. */
     c->floor_id = number_or_nan(floor, "tau_id");
     c->floor_fd = number_or_nan(floor, "qdd_fd");
     c->peer_id = c->peer_fd = (struct vector_peer){NAN, ""};
     if (!list || list->kind != NODE_LIST) return;
     for (const struct node *node = list->child; node; node = node->next) {
         const struct node *diff = document_find(node, "max_rel_diff");
+        /* Those are references, not peers. */
         if (strstr(document_text(node, "version"), "113-bit")) continue;
+        /* The best of them for each question. */
         const char *name = document_text(node, "name");
         peer_compete(&c->peer_id, number_or_nan(diff, "tau_id"), name);
         peer_compete(&c->peer_fd, number_or_nan(diff, "qdd_fd"), name);
@@ -234,9 +266,11 @@ static void peers_read(const struct node *root, struct vector_case *c)
     }
 }
 
+/* One state of a trajectory with its conserved quantities. */
 static bool instant_read(struct reader *r, const struct node *node, const struct vector_case *c,
                          struct vector_instant *t)
 {
+    /* All of them: a state without its energy cannot be judged. */
     const struct node *energy = document_need(node, "energy", r->path, r->e);
     const struct node *momentum = energy ? document_need(node, "momentum", r->path, r->e) : NULL;
     return momentum && document_number(energy, "kinetic", r->path, &t->energy[0], r->e) &&
@@ -254,9 +288,12 @@ static bool digits_read(struct reader *r, const struct node *root, struct vector
     if (!list) return true;
     if (list->kind != NODE_LIST || list->count != c->ninstant)
         return fail(r, list, "'states_45_digits' must have as many states as 'trajectory'");
+    /* q, then qd, in one list. */
     int k = 0, n = c->nq + c->nv;
     for (const struct node *state = list->child; state; state = state->next, k++) {
+        /* Nearest doubles: what remains is beyond their digits. */
         double *x = TAKE(r->a, (size_t)n + 1, double);
+        /* Otherwise a shifted list would be compared number by number. */
         if (state->kind != NODE_LIST || state->count != n)
             return fail(r, state, "a state of 'states_45_digits' must hold all numbers of q and qd");
         int i = 0;
@@ -271,6 +308,7 @@ static bool digits_read(struct reader *r, const struct node *root, struct vector
     return true;
 }
 
+/* States at increasing times, each with what is known of its accuracy. */
 static bool trajectory_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *trajectory = document_find(root, "trajectory");
@@ -280,6 +318,7 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
     int n = states->count, k = 0;
     if (states->kind != NODE_LIST || n < 1) return fail(r, states, "'states' must be a list of states");
     const double *time = array_need(r, trajectory, "times", n);
+    /* Both may be missing; then they are not a number. */
     const double *accuracy, *sensitivity;
     if (!time || !array_maybe(r, trajectory, "verified_accuracy_max_abs_diff", n, &accuracy) ||
         !array_maybe(r, trajectory, "sensitivity_to_initial_state", n, &sensitivity))
@@ -290,11 +329,13 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
         c->instant[k] = (struct vector_instant){.time = time[k], .accuracy = accuracy ? accuracy[k] : NAN,
                                                 .sensitivity = sensitivity ? sensitivity[k] : NAN};
         if (!instant_read(r, node, c, &c->instant[k])) return false;
+        /* Integrators go forward. */
         if (k > 0 && !(time[k] > time[k - 1])) return fail(r, trajectory, "'times' must increase");
     }
     return digits_read(r, root, c);
 }
 
+/* All of them may be missing; vector_check.c says which should not. */
 static bool answers_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     return array_maybe(r, root, "tau_id", c->nv, &c->tau_id) && array_maybe(r, root, "qdd_fd", c->nv, &c->qdd_fd) &&
@@ -305,8 +346,10 @@ static bool answers_read(struct reader *r, const struct node *root, struct vecto
            poses_read(r, root, c) && trajectory_read(r, root, c);
 }
 
+/* An answer without its question cannot be checked. */
 static bool complete_check(struct reader *r, const struct node *root, const struct vector_case *c)
 {
+    /* A trajectory is an answer by itself. */
     if (c->ninstant > 0) return true;
     if (c->tau_id && !c->qdd) return fail(r, root, "'tau_id' is given without 'qdd'");
     if (c->qdd_fd && !c->tau) return fail(r, root, "'qdd_fd' is given without 'tau'");
@@ -314,6 +357,7 @@ static bool complete_check(struct reader *r, const struct node *root, const stru
            fail(r, root, "neither 'tau_id', 'qdd_fd' nor 'trajectory': nothing to compare with");
 }
 
+/* Keys first, since a misspelled one explains most other mistakes. */
 bool vector_read(const char *path, struct vector_case *c, struct arena *a, struct err *e)
 {
     struct reader r = {arena_text(a, path), a, e};
@@ -321,11 +365,13 @@ bool vector_read(const char *path, struct vector_case *c, struct arena *a, struc
     if (!root) return false;
     if (strcmp(document_text(root, "format"), "dynref-1") != 0)
         return fail(&r, root, "not a reference vector: 'format' must be \"dynref-1\"");
+    /* Texts may be missing; numbers have readers of their own. */
     *c = (struct vector_case){.path = r.path,
                               .name = document_text(root, "name"),
                               .group = document_text(root, "group"),
                               .urdf = document_text(root, "urdf"),
                               .declared = document_find(root, "answers")};
+    /* The line is for the message about a file that is not there. */
     const struct node *urdf = document_find(root, "urdf");
     if (urdf) c->urdf_line = urdf->line;
     bool good = vector_check_keys(root, r.path, e) && numbers(&r, root, "gravity", c->gravity, 3) &&

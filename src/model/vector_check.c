@@ -8,6 +8,7 @@
 
 /* --- known keys -------------------------------------------------------------------------------------------------- */
 
+/* Every key of the format, read or not: what is not here is a mistake. */
 static const char *const file_keys[] = {
     "format", "name", "group", "note", "comment", "source", "seed", "answers", "urdf", "gravity", "nq", "nv", "bodies",
     "loops", "q", "qd", "qdd", "tau", "f_ext", "joint_spring", "joint_spring_q0", "joint_damping", "tau_id", "qdd_fd",
@@ -28,6 +29,7 @@ static const char *const trajectory_keys[] = {"method", "times", "states", "veri
                                               NULL};
 static const char *const state_keys[] = {"q", "qd", "energy", "momentum", NULL};
 
+/* Up to the NULL at the end. */
 static int count(const char *const *name)
 {
     int n = 0;
@@ -45,9 +47,11 @@ static bool known(const struct checker *c, const struct node *map, const char *c
 {
     if (!map || map->kind != NODE_MAP) return true;
     for (const struct node *x = map->child; x; x = x->next) {
+        /* A handful of names: no need to sort them. */
         int k = 0;
         while (name[k] && strcmp(name[k], x->key) != 0) k++;
         if (name[k]) continue;
+        /* Misspelled answers would otherwise be answers that nobody checks. */
         const char *near = text_nearest(x->key, name, count(name));
         return err_set_at(c->e, ERR_DATA, c->path, x->line, "unknown key '%.80s'%s%s%s", x->key,
                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
@@ -55,6 +59,7 @@ static bool known(const struct checker *c, const struct node *map, const char *c
     return true;
 }
 
+/* Body by body: the line of the first mistake. */
 static bool bodies_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next)
@@ -64,6 +69,7 @@ static bool bodies_known(const struct checker *c, const struct node *list)
     return true;
 }
 
+/* Loops and their two frames. */
 static bool loops_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next)
@@ -73,12 +79,14 @@ static bool loops_known(const struct checker *c, const struct node *list)
     return true;
 }
 
+/* The same keys in the file and in each state of a trajectory. */
 static bool totals_known(const struct checker *c, const struct node *map)
 {
     return known(c, document_find(map, "energy"), energy_keys) &&
            known(c, document_find(map, "momentum"), momentum_keys);
 }
 
+/* All states, then the trajectory's own keys. */
 static bool trajectory_known(const struct checker *c, const struct node *map)
 {
     const struct node *states = document_find(map, "states");
@@ -91,12 +99,14 @@ static bool trajectory_known(const struct checker *c, const struct node *map)
 static bool answers_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next) {
+        /* A made-up mapping with that key, for the same message. */
         struct node key = {.kind = NODE_MAP, .child = &(struct node){.line = x->line, .key = x->text ? x->text : ""}};
         if (!known(c, &key, file_keys)) return false;
     }
     return true;
 }
 
+/* Outer keys last: a mistake inside is the more precise message. */
 bool vector_check_keys(const struct node *root, const char *path, struct err *e)
 {
     const struct checker c = {path, e};
@@ -111,14 +121,17 @@ bool vector_check_keys(const struct node *root, const char *path, struct err *e)
 
 /* --- what is given twice ----------------------------------------------------------------------------------------- */
 
+/* R is there for readers without quaternions; both must be the same rotation. */
 bool vector_check_frame(const struct vector_frame *f, const struct node *at, const char *path, struct err *e)
 {
     const double x = f->quat[0], y = f->quat[1], z = f->quat[2], w = f->quat[3];
+    /* In double: R of the file is rounded to double, too. */
     const double s = 2 / (x * x + y * y + z * z + w * w), few = 1e-15;
     const double R[9] = {1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
                          s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),
                          s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)};
     for (int k = 0; k < 9; k++) {
+        /* Numbers as they would be written, so that the difference is seen. */
         char is[32], turned[32];
         if (fabs(R[k] - f->R[k]) <= few) continue;
         text_real(is, f->R[k]);
@@ -135,14 +148,18 @@ bool vector_check_frame(const struct vector_frame *f, const struct node *at, con
 static bool left_out(const struct vector_case *c, const char *key)
 {
     if (!c->declared) return false;
+    /* The list names what the file does have. */
     for (const struct node *x = c->declared->child; x; x = x->next)
         if (x->kind == NODE_TEXT && strcmp(x->text, key) == 0) return false;
     return true;
 }
 
+/* A missing answer must be said, so that no check disappears silently. */
 bool vector_complete(const struct vector_case *c, struct err *e)
 {
+    /* Larger cases leave out what would make the file too large. */
     enum { FULL_MATRIX = 24, FULL_WRENCHES = 64 };
+    /* Trajectories have states instead of answers at one instant. */
     const bool still = c->ninstant == 0;
     const struct { const char *key; bool needed, given; } answer[] = {
         {"tau_id", still, c->tau_id != NULL},
@@ -160,6 +177,7 @@ bool vector_complete(const struct vector_case *c, struct err *e)
     enum { ANSWERS = sizeof answer / sizeof *answer };
     for (int k = 0; k < ANSWERS; k++) {
         bool absent = left_out(c, answer[k].key);
+        /* Given, but not declared: one of the two is a mistake. */
         if (answer[k].given && absent)
             return err_set_at(e, ERR_DATA, c->path, c->declared->line, "'%s' is given, but not in the list 'answers'",
                               answer[k].key);

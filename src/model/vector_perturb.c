@@ -4,11 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+/* How much, relative, and which stream of random numbers. */
 struct shaker {
     double size;
     struct random *r;
 };
 
+/* The largest component stands for a vector's length. */
 static double length_of(const double *x, int n)
 {
     double largest = 0;
@@ -22,13 +24,16 @@ static void shake_by(const struct shaker *s, double *x, int n, double scale)
     for (int i = 0; i < n; i++) x[i] += s->size * scale * random_uniform(s->r, -1, 1);
 }
 
+/* A vector's components share one scale: its direction is as uncertain as its length. */
 static void shake_vector(const struct shaker *s, double *x, int n) { shake_by(s, x, n, length_of(x, n)); }
 
+/* Numbers that have nothing to do with each other. */
 static void shake_numbers(const struct shaker *s, double *x, int n)
 {
     for (int i = 0; i < n; i++) shake_vector(s, x + i, 1);
 }
 
+/* Quaternions need not stay of length 1: readers normalise. */
 static void shake_frame(const struct shaker *s, struct vector_frame *f)
 {
     shake_vector(s, f->p, 3);
@@ -38,11 +43,13 @@ static void shake_frame(const struct shaker *s, struct vector_frame *f)
 /* xx xy xz yy yz zz: what is no diagonal entry moves by the root of its row's and its column's. */
 static void shake_inertia(const struct shaker *s, double *i)
 {
+    /* So that a positive definite matrix stays one. */
     const double root[3] = {sqrt(fabs(i[0])), sqrt(fabs(i[3])), sqrt(fabs(i[5]))};
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int k = 0; k < 6; k++) shake_by(s, i + k, 1, root[row[k]] * root[column[k]]);
 }
 
+/* The original stays as it is: many perturbed ones are made of it. */
 static void *copied(struct arena *a, const void *x, size_t bytes)
 {
     void *y = arena_take(a, bytes + 1);
@@ -50,6 +57,7 @@ static void *copied(struct arena *a, const void *x, size_t bytes)
     return y;
 }
 
+/* What the file leaves out stays left out. */
 static double *copied_numbers(struct arena *a, const double *x, int n)
 {
     return x ? copied(a, x, (size_t)n * sizeof *x) : NULL;
@@ -59,6 +67,7 @@ static double *copied_numbers(struct arena *a, const double *x, int n)
 static const double *shaken_joints(const struct shaker *s, const struct vector_case *c, const double *x,
                                    struct arena *a)
 {
+    /* A floating joint has two vectors of three, others one of all. */
     double *y = copied_numbers(a, x, c->nv);
     for (int i = 0; y && i < c->nbody; i++) {
         int n = vector_joint_nv(c->body[i].joint), part = n < 3 ? n : 3;
@@ -67,6 +76,7 @@ static const double *shaken_joints(const struct shaker *s, const struct vector_c
     return y;
 }
 
+/* A floating joint's place and turn have scales of their own. */
 static const double *shaken_coordinates(const struct shaker *s, const struct vector_case *c, struct arena *a)
 {
     double *q = copied_numbers(a, c->q, c->nq);
@@ -78,10 +88,12 @@ static const double *shaken_coordinates(const struct shaker *s, const struct vec
     return q;
 }
 
+/* Axes of one-degree joints, frames, masses. */
 static void shake_bodies(const struct shaker *s, struct vector_case *c)
 {
     for (int i = 0; i < c->nbody; i++) {
         struct vector_body *b = &c->body[i];
+        /* Others have no axis. */
         if (vector_joint_nv(b->joint) == 1) shake_vector(s, b->axis, 3);
         shake_frame(s, &b->placement);
         shake_vector(s, &b->mass, 1);
@@ -90,6 +102,7 @@ static void shake_bodies(const struct shaker *s, struct vector_case *c)
     }
 }
 
+/* Rows as pairs of vectors, linear and angular. */
 static void shake_loops(const struct shaker *s, struct vector_case *c)
 {
     for (int i = 0; i < c->nloop; i++) {
@@ -100,6 +113,7 @@ static void shake_loops(const struct shaker *s, struct vector_case *c)
     }
 }
 
+/* Deep where something changes, shared elsewhere. */
 static struct vector_case *copy_with_bodies(const struct vector_case *c, struct arena *a)
 {
     struct vector_case *x = copied(a, c, sizeof *c);
@@ -108,9 +122,11 @@ static struct vector_case *copy_with_bodies(const struct vector_case *c, struct 
     return x;
 }
 
+/* Every input, none of the answers. */
 struct vector_case *vector_perturb(const struct vector_case *c, double size, struct random *r, struct arena *a)
 {
     const struct shaker s = {size, r};
+    /* Bodies and loops are our own copies now. */
     struct vector_case *x = copy_with_bodies(c, a);
     shake_vector(&s, x->gravity, 3);
     shake_bodies(&s, x);
@@ -119,6 +135,7 @@ struct vector_case *vector_perturb(const struct vector_case *c, double size, str
     x->qd = shaken_joints(&s, c, c->qd, a);
     x->qdd = shaken_joints(&s, c, c->qdd, a);
     x->tau = shaken_joints(&s, c, c->tau, a);
+    /* Force and moment apart: their scales differ. */
     double *external = copied_numbers(a, c->external, 6 * c->nbody);
     for (int i = 0; external && i < 2 * c->nbody; i++) shake_vector(&s, external + 3 * i, 3);
     x->external = external;
@@ -131,15 +148,19 @@ struct vector_case *vector_perturb(const struct vector_case *c, double size, str
     return x;
 }
 
+/* The same joints and motion with masses that are kind to every algorithm. */
 struct vector_case *vector_even(const struct vector_case *c, struct arena *a)
 {
     struct vector_case *x = copy_with_bodies(c, a);
+    /* The length that masses act at: centre or next joint, whichever is farther. */
     double link = 0;
     for (int i = 0; i < c->nbody; i++)
         link += fmax(length_of(c->body[i].com, 3), length_of(c->body[i].placement.p, 3)) / c->nbody;
+    /* That of a rod of the mean length, about all axes. */
     const double moment = link > 0 ? 0.4 * link * link : 1;
     for (int i = 0; i < c->nbody; i++) {
         struct vector_body *b = &x->body[i];
+        /* Every mass alike: no ratio is left that could cost digits. */
         b->mass = 1;
         memset(b->inertia, 0, sizeof b->inertia);
         b->inertia[0] = b->inertia[3] = b->inertia[5] = moment;
