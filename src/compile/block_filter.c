@@ -421,6 +421,7 @@ bool block_filter(const struct text *in, const struct block_source *source, stru
                           "compiled by clang, which cannot keep a register free; "
                           "`mimdsim cc` works with gcc");
     /* .ident has quotes. */
+    if (fine && f.entries != NULL) entries_end(f.entries, out);
     if (fine && f.compiler.n > 2) block_note(source, f.compiler.s + 1, f.compiler.n - 2, out);
     else if (fine) block_note(source, "assembly", 8, out);
     text_free(&f.table);

@@ -24,6 +24,9 @@ struct entries {
     struct span function;      /* the one that is being read */
     struct frame frame, kept;  /* kept: by .cfi_remember_state */
     bool in_group;
+    bool throws; /* C++: exceptions may pass */
+    bool refers; /* the file has the reference to the C++ library that these need */
+    int written; /* entries so far */
 };
 
 /* --- what is known of functions --- */
@@ -112,6 +115,8 @@ static void take_statement(struct entries *t, const struct asm_statement *s)
     if (s->kind == ASM_LABEL && !span_starts(s->word, ".L")) {
         t->function = s->word;
         if (t->in_group) label_set_put(t->grouped, s->word);
+        if (span_starts(s->word, "_Z")) t->throws = true;
+        if (span_is(s->word, "DW.ref.__gxx_personality_v0")) t->refers = true;
     } else if (s->kind == ASM_DIRECTIVE) take_directive(t, s);
     else if (s->kind == ASM_INSTRUCTION) {
         if (!is_call(s->word)) put_names(t->taken, s->operands);
@@ -153,30 +158,79 @@ bool entries_direct(const struct entries *t, struct span name)
 
 /* --- the entry --- */
 
-void entries_write(const struct entries *t, struct span name, struct text *out)
+/* What code does at the end of an entry: hand over the count. %r11 is free between functions. */
+#define HAND_OVER "\tmovq mimdsim_pending@GOTPCREL(%rip), %r11\n\taddq %r15, (%r11)\n"
+
+/* An exception that passes through hands the count over, too: a landing pad of the call. The table
+ * is that of the Itanium C++ ABI's exception handling, section 7: offsets from the function's
+ * beginning, one row for the call, one without a landing pad for the rest. */
+static void write_landing_pad(int n, struct text *out)
+{
+    text_add(out, ".Lmimdsim_p%d:\n", n);
+    text_add_bytes(out, HAND_OVER, sizeof HAND_OVER - 1);
+    text_add(out, "\tmovq %%rax, %%rdi\n\tcall _Unwind_Resume@PLT\n.Lmimdsim_q%d:\n", n);
+    text_add(out,
+             "\t.pushsection .gcc_except_table,\"a?\",@progbits\n"
+             ".Lmimdsim_l%d:\n\t.byte 0xff, 0xff, 1\n\t.uleb128 .Lmimdsim_z%d-.Lmimdsim_y%d\n"
+             ".Lmimdsim_y%d:\n",
+             n, n, n, n);
+    text_add(out,
+             "\t.uleb128 .Lmimdsim_b%d-.Lmimdsim_f%d\n\t.uleb128 .Lmimdsim_e%d-.Lmimdsim_b%d\n"
+             "\t.uleb128 .Lmimdsim_p%d-.Lmimdsim_f%d\n\t.uleb128 0\n",
+             n, n, n, n, n, n);
+    text_add(out,
+             "\t.uleb128 .Lmimdsim_e%d-.Lmimdsim_f%d\n\t.uleb128 .Lmimdsim_q%d-.Lmimdsim_e%d\n"
+             "\t.uleb128 0\n\t.uleb128 0\n.Lmimdsim_z%d:\n\t.popsection\n",
+             n, n, n, n, n);
+}
+
+static void write_code(const struct entries *t, struct span name, int n, struct text *out)
+{
+    text_add(out, "%.*s:\n\t.cfi_startproc\n", name.n, name.s);
+    if (t->throws)
+        text_add(out,
+                 "\t.cfi_personality 0x9b,DW.ref.__gxx_personality_v0\n"
+                 "\t.cfi_lsda 0x1b,.Lmimdsim_l%d\n",
+                 n);
+    /* The push also aligns the stack for the call. */
+    text_add(out,
+             ".Lmimdsim_f%d:\n\tpushq %%r15\n\t.cfi_def_cfa_offset 16\n\t.cfi_offset 15, -16\n"
+             "\txorl %%r15d, %%r15d\n"
+             ".Lmimdsim_b%d:\n\tcall mimdsim_body.%.*s\n.Lmimdsim_e%d:\n",
+             n, n, name.n, name.s, n);
+    text_add_bytes(out, HAND_OVER, sizeof HAND_OVER - 1);
+    text_add(out, "\t.cfi_remember_state\n\tpopq %%r15\n\t.cfi_restore 15\n"
+                  "\t.cfi_def_cfa_offset 8\n\tret\n\t.cfi_restore_state\n");
+    if (t->throws) write_landing_pad(n, out);
+    text_add(out, "\t.cfi_endproc\n\t.size %.*s, .-%.*s\n", name.n, name.s, name.n, name.s);
+}
+
+void entries_write(struct entries *t, struct span name, struct text *out)
 {
     const int n = name.n;
     const char *s = name.s;
     const bool weak = label_set_has(t->weak, name), known = weak || label_set_has(t->global, name);
-    text_add(
-        out,
-        "\t.type mimdsim_body.%.*s, @function\n\t.size mimdsim_body.%.*s, .-mimdsim_body.%.*s\n", n,
-        s, n, s, n, s);
+    text_add(out,
+             "\t.type mimdsim_body.%.*s, @function\n"
+             "\t.size mimdsim_body.%.*s, .-mimdsim_body.%.*s\n",
+             n, s, n, s, n, s);
     /* The body of a function that several files define is the same in all of them, as the function
      * is. */
     if (known)
         text_add(out, "\t.%s mimdsim_body.%.*s\n\t.hidden mimdsim_body.%.*s\n",
                  weak ? "weak" : "globl", n, s, n, s);
-    /* The push also aligns the stack for the call. %r11 is free between functions. */
+    write_code(t, name, ++t->written, out);
+}
+
+void entries_end(const struct entries *t, struct text *out)
+{
+    static const char reference[] = "DW.ref.__gxx_personality_v0";
+    if (t->written == 0 || !t->throws || t->refers) return;
+    /* As the compiler writes it in files that catch; weak, as a program may be without them. */
     text_add(out,
-             "%.*s:\n\t.cfi_startproc\n"
-             "\tpushq %%r15\n\t.cfi_def_cfa_offset 16\n\t.cfi_offset 15, -16\n"
-             "\txorl %%r15d, %%r15d\n"
-             "\tcall mimdsim_body.%.*s\n"
-             "\tmovq mimdsim_pending@GOTPCREL(%%rip), %%r11\n"
-             "\taddq %%r15, (%%r11)\n"
-             "\tpopq %%r15\n\t.cfi_restore 15\n\t.cfi_def_cfa_offset 8\n"
-             "\tret\n\t.cfi_endproc\n"
-             "\t.size %.*s, .-%.*s\n",
-             n, s, n, s, n, s, n, s);
+             "\t.hidden %s\n\t.weak %s\n"
+             "\t.section .data.rel.local.%s,\"awG\",@progbits,%s,comdat\n\t.align 8\n"
+             "\t.type %s, @object\n\t.size %s, 8\n%s:\n\t.quad __gxx_personality_v0\n"
+             "\t.weak __gxx_personality_v0\n",
+             reference, reference, reference, reference, reference, reference, reference);
 }

@@ -8,9 +8,8 @@
  * the same file go to the body; calls from other files and through pointers go through the entry,
  * so that a function has one address.
  *
- * Exceptions that leave f restore r15, too (the entry's unwind information); what f counted is then
- * lost. A function with arguments on the stack cannot have an entry: nothing may come between them
- * and its return address. */
+ * Exceptions of C++ that leave f hand the count over as they pass. A function with arguments on the
+ * stack cannot have an entry: nothing may come between them and its return address. */
 #ifndef COMPILE_ENTRIES_H
 #define COMPILE_ENTRIES_H
 
@@ -36,6 +35,9 @@ bool entries_direct(const struct entries *t, struct span name);
 
 /* entries_write: append the entry of a guarded function, to stand behind its body in the same
  * section. */
-void entries_write(const struct entries *t, struct span name, struct text *out);
+void entries_write(struct entries *t, struct span name, struct text *out);
+
+/* entries_end: append what the entries need at the end of the file. */
+void entries_end(const struct entries *t, struct text *out);
 
 #endif
