@@ -40,6 +40,24 @@ static void every_mode_brings_the_data(void **state)
     for (int n = 1; n <= 5; n++) mpi_ok(n, modes, NULL);
 }
 
+/* Rank 0 sends tags 1 and 2; rank 1 takes 2 first. */
+static void out_of_order(void *context)
+{
+    (void)context;
+    for (int tag = 1; tag <= 2; tag++) {
+        int value = 0;
+        if (own_rank() == 0) MPI_Send(&tag, 1, MPI_INT, 1, tag, MPI_COMM_WORLD);
+        else MPI_Recv(&value, 1, MPI_INT, 0, 3 - tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        if (own_rank() == 1) assert_int_equal(value, 3 - tag);
+    }
+}
+
+static void tags_choose_the_message(void **state)
+{
+    (void)state;
+    mpi_ok(2, out_of_order, NULL);
+}
+
 /* --- persistent requests, waits of all kinds --- */
 
 static void persistent(void *context)
@@ -268,6 +286,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_mode_brings_the_data),
+        cmocka_unit_test(tags_choose_the_message),
         cmocka_unit_test(persistent_requests_start_again),
         cmocka_unit_test(requests_complete_by_every_call),
         cmocka_unit_test(wildcards_and_probes_find_everything_in_order),

@@ -84,6 +84,15 @@ static void refused(void *context)
     (void)context;
     MPI_File_open(MPI_COMM_WORLD, "x", MPI_MODE_RDONLY, MPI_INFO_NULL, &f);
 }
+static void outside_of_grid(void *context)
+{
+    const int size = 2, not_periodic = 0, at = 2;
+    int rank;
+    MPI_Comm line;
+    (void)context;
+    MPI_Cart_create(MPI_COMM_WORLD, 1, &size, &not_periodic, 0, &line);
+    MPI_Cart_rank(line, &at, &rank);
+}
 static void late(void *context)
 {
     (void)context;
@@ -118,6 +127,7 @@ static void mistakes_are_told(void **state)
         {unfinished, "MPI_Finalize: 1 request was started and neither completed nor freed"},
         {aborts, "the program ends the run with code 42"},
         {refused, "MPI_File_open: this function is not supported: MPI-IO"},
+        {outside_of_grid, "the coordinates are outside of a dimension that is not periodic"},
         {late, "MPI_Barrier: called after MPI_Finalize"},
         {too_large_for_buffer, "16 bytes do not fit in the attached buffer of 4"},
     };

@@ -230,6 +230,13 @@ static void attributes(void *context)
     MPI_Comm_get_attr(MPI_COMM_WORLD, keyval, &found, &flag);
     assert_false(flag);
     MPI_Comm_free_keyval(&keyval);
+    MPI_Comm_create_keyval(MPI_COMM_DUP_FN, MPI_COMM_NULL_DELETE_FN, &keyval, NULL);
+    MPI_Comm_set_attr(MPI_COMM_WORLD, keyval, place);
+    MPI_Comm_dup(MPI_COMM_WORLD, &dup);
+    MPI_Comm_get_attr(dup, keyval, &found, &flag);
+    assert_true(flag && found == place);
+    MPI_Comm_free(&dup);
+    MPI_Comm_free_keyval(&keyval);
     MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_TAG_UB, &last, &flag);
     assert_true(flag && *last >= 32767);
     MPI_Info_create(&info);
