@@ -2,8 +2,14 @@
  * from one, constants are variables, and older functions have addresses of four bytes. */
 #include "mpi_fortran.h"
 
-int mimdsim_mpi_bottom_, mimdsim_mpi_in_place_, mimdsim_mpi_status_ignore_[8],
-    mimdsim_mpi_statuses_ignore_[8], mimdsim_mpi_unweighted_[1], mimdsim_mpi_weights_empty_[1];
+/* Aligned as the largest common block may be. */
+#define SIGN int __attribute__((aligned(32)))
+SIGN mimdsim_mpi_bottom_;
+SIGN mimdsim_mpi_in_place_;
+SIGN mimdsim_mpi_status_ignore_[8];
+SIGN mimdsim_mpi_statuses_ignore_[8];
+SIGN mimdsim_mpi_unweighted_[1];
+SIGN mimdsim_mpi_weights_empty_[1];
 
 #define HANDLE(type, p) ((type)(intptr_t) * (p))
 #define BACK(p, handle) (*(p) = (MPI_Fint)(intptr_t)(handle))

@@ -36,6 +36,7 @@ static const char *const forced[] = {"-ffixed-r15",
                                      "-fPIC",
                                      "-fno-semantic-interposition",
                                      "-fno-lto",
+                                     "-fno-ipa-ra", /* entries use what bodies leave alone */
                                      "-masm=att",
                                      "-mstringop-strategy=libcall",
                                      "-fstack-clash-protection",
