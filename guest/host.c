@@ -39,7 +39,6 @@ _Noreturn void guest_fail(const void *place, const char *format, ...)
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    guest_account(place);
     guest_flush();
     mimdsim_host->runtime->fail(mimdsim_host, place, text);
     __builtin_unreachable();

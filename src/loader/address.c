@@ -1,4 +1,6 @@
 /* address.c - which rank, file and line an address in some rank's copy of a program belongs to. */
+#include <stdio.h>
+
 #include "loader/crash.h"
 #include "loader/template.h"
 
@@ -28,4 +30,50 @@ bool loader_find_address(const struct loader_template *t, const void *address, i
         return true;
     }
     return false;
+}
+
+/* A call stands before it: E8, or FF /2 with its shorter forms (Intel SDM 2, CALL). */
+bool loader_is_return(const struct loader_instance *i, const void *address)
+{
+    const struct loader_template *t = i->t;
+    const uint64_t pc = (uint64_t)(uintptr_t)address;
+    const uint64_t place = pc - (uint64_t)(uintptr_t)i->base;
+    for (int k = 0; k < t->nfile; k++) {
+        const struct loader_file *f = &t->file[k];
+        if (place < f->begin + 8 || place >= f->data || !image_code(&f->elf, place - f->place - 8))
+            continue;
+        const unsigned char *p = (const unsigned char *)(uintptr_t)pc;
+        return p[-5] == 0xe8 || (p[-6] == 0xff && p[-5] == 0x15) ||
+               (p[-2] == 0xff && (p[-1] & 0x38) == 0x10) ||
+               (p[-3] == 0xff && (p[-2] & 0x38) == 0x10) || (p[-3] == 0x41 && p[-2] == 0xff);
+    }
+    return false;
+}
+
+/* Places without a line are those of libraries: the one to blame is the next one up that has a
+ * line. */
+bool loader_place_text(const struct loader_instance *i, const void *place, const void *stack,
+                       char *buffer, int size)
+{
+    enum { WORDS = 4096, TRIES = 12 };
+    const char *file;
+    uint64_t at;
+    char other[512];
+    void *const *word = stack;
+    const bool there =
+        place && loader_find_address(i->t, (const char *)place - 1, NULL, &file, &at);
+    if (there && place_text(file, at, buffer, size)) return true;
+    /* Callers stand behind the place itself. */
+    for (int k = 0; there && k < WORDS && word[0] != place && (uintptr_t)word < i->stack; k++)
+        word++;
+    for (int k = 0, tries = 0; k < WORDS && tries < TRIES && (uintptr_t)&word[k] < i->stack; k++) {
+        if (!loader_is_return(i, word[k]) ||
+            !loader_find_address(i->t, (const char *)word[k] - 1, NULL, &file, &at))
+            continue;
+        tries++;
+        if (!place_text(file, at, other, (int)sizeof other)) continue;
+        snprintf(buffer, (size_t)size, "%s", other);
+        return true;
+    }
+    return there;
 }

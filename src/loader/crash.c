@@ -79,41 +79,23 @@ static bool add_frame(struct crash_record *r, const struct loader_template *t, u
     return true;
 }
 
-/* Whether `pc` is where a call of the rank's program returns to: it is program text, and a call
- * stands before it (E8, or FF /2 with its shorter forms; Intel SDM 2, CALL). */
-static bool is_return(const struct loader_instance *i, uint64_t pc)
-{
-    const struct loader_template *t = i->t;
-    const uint64_t place = pc - (uint64_t)(uintptr_t)i->base;
-    for (int k = 0; k < t->nfile; k++) {
-        const struct loader_file *f = &t->file[k];
-        if (place < f->begin + 8 || place >= f->data || !image_code(&f->elf, place - f->place - 8))
-            continue;
-        const unsigned char *p = (const unsigned char *)(uintptr_t)pc;
-        return p[-5] == 0xe8 || (p[-6] == 0xff && p[-5] == 0x15) ||
-               (p[-2] == 0xff && (p[-1] & 0x38) == 0x10) ||
-               (p[-3] == 0xff && (p[-2] & 0x38) == 0x10) || (p[-3] == 0x41 && p[-2] == 0xff);
-    }
-    return false;
-}
-
-/* The place in the program: where it is itself, or where it called the C library or the simulator
- * from. Their frames are known to the unwinder, which stops at the first one of the program: that
- * is the place. Where it finds nothing (a call to an address that is no code), the first word of
- * the stack that looks like a return address is. */
+/* Places in the program, innermost first: where it is itself, or where it called the C library or
+ * the simulator from. Their frames are known to the unwinder, which stops at the first one of the
+ * program. Behind it come words of the stack that look like return addresses: they count only where
+ * the first place has no line, as in a library. */
 __attribute__((no_sanitize("address"))) static void
 note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc, uintptr_t sp)
 {
     void *frame[64];
-    if (add_frame(r, i->t, pc)) return;
-    const int n = backtrace(frame, 64);
-    for (int k = 0; k < n; k++)
-        if (is_return(i, (uint64_t)(uintptr_t)frame[k]) &&
-            add_frame(r, i->t, (uint64_t)(uintptr_t)frame[k] - 1))
-            return;
-    const uint64_t *word = (const uint64_t *)((sp + 7) / 8 * 8);
+    if (!add_frame(r, i->t, pc)) {
+        const int n = backtrace(frame, 64);
+        for (int k = 0; k < n && r->nframe == 0; k++)
+            if (loader_is_return(i, frame[k]))
+                add_frame(r, i->t, (uint64_t)(uintptr_t)frame[k] - 1);
+    }
+    void *const *word = (void *const *)((sp + 7) / 8 * 8);
     for (int k = 0; k < SCAN_WORDS && (uintptr_t)&word[k] < i->stack; k++)
-        if (is_return(i, word[k]) && add_frame(r, i->t, word[k] - 1)) return;
+        if (loader_is_return(i, word[k])) add_frame(r, i->t, (uint64_t)(uintptr_t)word[k] - 1);
 }
 
 /* An access near the stack pointer, far below the stack's beginning, to what is protected or not

@@ -57,8 +57,8 @@ void crash_limit(double seconds);
 /* crash_text: the sentence for a record; false when nothing was recorded. Starts addr2line. */
 bool crash_text(const struct crash_record *r, char *buffer, int size);
 
-/* place_text: "function (file.c:12)" for `address` of the ELF file `file` by addr2line; "file+0x1c"
- * where it knows nothing. */
-void place_text(const char *file, uint64_t address, char *buffer, int size);
+/* place_text: "function (file.c:12)" for `address` of the ELF file `file` by addr2line, true;
+ * "file+0x1c" or what else it knows, false. */
+bool place_text(const char *file, uint64_t address, char *buffer, int size);
 
 #endif

@@ -65,16 +65,25 @@ static void describe(const struct crash_record *r, char *buffer, size_t size)
     }
 }
 
+/* The innermost place that has a line; those without are of libraries. None has one: the innermost.
+ */
+static void place_of(const struct crash_record *r, char *buffer, size_t size)
+{
+    char text[480], first[480] = "";
+    for (int k = 0; k < r->nframe; k++) {
+        const bool line = place_text(r->frame[k].file, r->frame[k].address, text, (int)sizeof text);
+        if (k == 0 || line) snprintf(first, sizeof first, "%s", text);
+        if (line) break;
+    }
+    if (first[0]) snprintf(buffer, size, " in %s", first);
+}
+
 bool crash_text(const struct crash_record *r, char *buffer, int size)
 {
     char what[256], where[512] = "", when[64] = "";
     if (atomic_load(&r->kind) == CRASH_NONE) return false;
     describe(r, what, sizeof what);
-    if (r->nframe > 0) {
-        char text[480];
-        place_text(r->frame[0].file, r->frame[0].address, text, (int)sizeof text);
-        snprintf(where, sizeof where, " in %s", text);
-    }
+    place_of(r, where, sizeof where);
     if (r->now_ps >= 0)
         snprintf(when, sizeof when, " after %.9g s of simulated time", 1e-12 * (double)r->now_ps);
     if (r->rank >= 0) snprintf(buffer, (size_t)size, "rank %d%s: %s%s", r->rank, where, what, when);

@@ -10,14 +10,14 @@
 #include "base/text.h"
 #include "loader/crash.h"
 
-/* Start `addr2line -f -C -s -e FILE ADDRESS` with its output in a pipe; returns the reading end,
+/* Start `addr2line -f -C -i -e FILE ADDRESS` with its output in a pipe; returns the reading end,
  * NULL: not to be had. */
 static FILE *start_addr2line(const char *file, uint64_t address, pid_t *pid)
 {
     char hex[32];
     int fd[2];
     snprintf(hex, sizeof hex, "0x%llx", (unsigned long long)address);
-    const char *const argument[] = {"addr2line", "-f", "-C", "-s", "-e", file, hex, NULL};
+    const char *const argument[] = {"addr2line", "-f", "-C", "-i", "-e", file, hex, NULL};
     if (pipe(fd) != 0) return NULL;
     /* Its complaints about files without debug information are no news to anybody. */
     posix_spawn_file_actions_t a;
@@ -33,32 +33,40 @@ static FILE *start_addr2line(const char *file, uint64_t address, pid_t *pid)
     return in;
 }
 
-/* One line without its end; what is behind a blank in the second line is of the compiler
- * ("(discriminator 2)"). */
-static bool take_line(FILE *in, char *line, int size, bool first_word)
+/* Lines of the system's headers are not the program's: they stand for calls that the compiler has
+ * put in place. */
+static bool is_own_line(const char *line)
 {
-    if (!fgets(line, size, in)) return false;
-    line[strcspn(line, first_word ? " \n" : "\n")] = '\0';
-    return line[0] && line[0] != '?';
+    return line[0] && strncmp(line, "/usr/", 5) != 0 && !strstr(line, ":?") && !strstr(line, ":0");
 }
 
-void place_text(const char *file, uint64_t address, char *buffer, int size)
+static const char *name_of(const char *path)
 {
-    char function[256] = "", line[256] = "";
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+bool place_text(const char *file, uint64_t address, char *buffer, int size)
+{
+    char function[4096] = "", line[4096] = "", first[256] = "";
     pid_t pid;
+    bool found = false;
     FILE *in = start_addr2line(file, address, &pid);
-    bool have_function = in && take_line(in, function, (int)sizeof function, false);
-    bool have_line = in && take_line(in, line, (int)sizeof line, true) && !strstr(line, ":?") &&
-                     !strstr(line, ":0");
+    /* Two lines for each function that the compiler has put into another, innermost first. */
+    while (in && !found && fgets(function, (int)sizeof function, in) &&
+           fgets(line, (int)sizeof line, in)) {
+        function[strcspn(function, "\n")] = '\0';
+        line[strcspn(line, " \n")] = '\0';
+        if (!first[0] && function[0] != '?') snprintf(first, sizeof first, "%.200s", function);
+        found = is_own_line(line);
+    }
     if (in) {
         fclose(in);
         waitpid(pid, NULL, 0);
     }
-    const char *slash = strrchr(file, '/');
-    const char *name = slash ? slash + 1 : file;
-    if (have_function && have_line) snprintf(buffer, (size_t)size, "%s (%s)", function, line);
-    else if (have_function)
-        snprintf(buffer, (size_t)size, "%s (%s+0x%llx)", function, name,
-                 (unsigned long long)address);
-    else snprintf(buffer, (size_t)size, "%s+0x%llx", name, (unsigned long long)address);
+    const unsigned long long at = address;
+    if (found) snprintf(buffer, (size_t)size, "%.200s (%s)", function, name_of(line));
+    else if (first[0]) snprintf(buffer, (size_t)size, "%s (%s+0x%llx)", first, name_of(file), at);
+    else snprintf(buffer, (size_t)size, "%s+0x%llx", name_of(file), at);
+    return found;
 }

@@ -73,7 +73,7 @@ static void fail(struct mimdsim_host *host, const void *place, const char *text)
 {
     struct loader_instance *i = instance_of(host);
     char where[512], whole[1024];
-    if (place && loader_address_text(i->t, (const char *)place - 1, where, (int)sizeof where))
+    if (loader_place_text(i, place, __builtin_frame_address(0), where, (int)sizeof where))
         snprintf(whole, sizeof whole, "%s: %s", where, text);
     else snprintf(whole, sizeof whole, "%s", text);
     if (i->t->hooks->fail) i->t->hooks->fail(i->context, whole);

@@ -101,7 +101,7 @@ void image_give_back(struct loader_template *t);
  * not zeroed memory. */
 bool image_writable(const struct loader_file *f, uint64_t place, uint64_t size);
 
-/* image_code: whether the file's `address` lies in a segment of program text. */
+/* image_code: whether the file's `address` lies in program text. */
 bool image_code(const struct elf_file *f, uint64_t address);
 
 /* A symbol that was found: in a file of the program (symbol), or in the host (address); neither: a
@@ -116,7 +116,6 @@ struct found {
  */
 bool symbols_make(struct loader_template *t, struct err *e);
 void symbols_give_back(struct loader_template *t);
-
 /* symbols_defined: the first file that defines `name`; file NULL: none. */
 struct found symbols_defined(const struct loader_template *t, const char *name);
 
@@ -131,6 +130,16 @@ bool relocate_all(struct loader_template *t, struct err *e);
  * rank's copy; false: none. Fit for signal handlers (loader.c). */
 bool loader_find_address(const struct loader_template *t, const void *address, int *rank,
                          const char **file, uint64_t *at);
+
+/* loader_is_return: whether `address` is where a call of the rank's program returns to: it is
+ * program text, and a call stands before it. Fit for signal handlers (address.c). */
+bool loader_is_return(const struct loader_instance *i, const void *address);
+
+/* loader_place_text: function and line of the call that returns to `place`; where that has no line,
+ * of the nearest caller on the stack from `stack` on that has one. False: no place of the program.
+ */
+bool loader_place_text(const struct loader_instance *i, const void *place, const void *stack,
+                       char *buffer, int size);
 
 /* loader_finish: run the termination functions of all files of a rank (enter.c). */
 void loader_finish(struct loader_instance *i);
