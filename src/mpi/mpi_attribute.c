@@ -4,6 +4,8 @@
 
 #include "mpi/mpi_internal.h"
 
+/* MPI 5.0, section 7.7 (Caching), has the rules; one table serves all three kinds of
+ * object. */
 /* Keyvals of the program stand above those of the standard. */
 enum { KEYVAL_FIRST = 0x1000 };
 
@@ -16,6 +18,8 @@ struct mpi_attribute {
     void *value;
 };
 
+/* Returns the link that leads to the entry, so that a caller may take it out; the end of
+ * the list when there is none. */
 static struct mpi_attribute **find(struct mpi_rank *r, enum mpi_kind kind, const void *object,
                                    const struct mpi_keyval *keyval)
 {
@@ -32,6 +36,9 @@ static void *handle_of(struct mpi_rank *r, enum mpi_kind kind, const void *objec
     return kind == KIND_TYPE ? (void *)mpi_type_handle(object) : mpi_handle(object);
 }
 
+/* The program's function may refuse: then the value stays and its code is the call's
+ * result (section 7.7.2). It may also attach, delete or free other things, so nothing
+ * found before the call is trusted after it. */
 static int delete_one(struct mpi_rank *r, struct mpi_attribute **at)
 {
     struct mpi_attribute *a = *at;
@@ -45,6 +52,8 @@ static int delete_one(struct mpi_rank *r, struct mpi_attribute **at)
         at = find(r, a->kind, a->object, k); /* the function may have changed the list */
         if (*at != a) return MPI_SUCCESS;
     }
+    /* An entry without a keyval is a name, whose text belongs to this list. A keyval that
+     * the program has freed ends with its last value. */
     *at = a->next;
     if (!k) mpi_give(r->world, a->value);
     else if (--k->o.uses == 0) mpi_handle_end(r, k);
@@ -52,6 +61,8 @@ static int delete_one(struct mpi_rank *r, struct mpi_attribute **at)
     return MPI_SUCCESS;
 }
 
+/* One deletion may change the list anywhere, so the search begins again after each. The
+ * first refusal stops it: the caller keeps the object. */
 /* The newest first, as the standard asks of the end of MPI_COMM_SELF. */
 int mpi_attributes_end(struct mpi_rank *r, enum mpi_kind kind, const void *object)
 {
@@ -67,6 +78,7 @@ int mpi_attributes_end(struct mpi_rank *r, enum mpi_kind kind, const void *objec
     return MPI_SUCCESS;
 }
 
+/* The list holds one use of the keyval for each value. */
 static void attach(struct mpi_rank *r, enum mpi_kind kind, const void *object, struct mpi_keyval *k,
                    void *value)
 {
@@ -76,7 +88,9 @@ static void attach(struct mpi_rank *r, enum mpi_kind kind, const void *object, s
     if (k) k->o.uses++;
 }
 
-/* copied: whether the value goes over to the copy, by the keyval's function. */
+/* copied: whether the value goes over to the copy, by the keyval's function. Without a
+ * function nothing is copied (MPI_COMM_NULL_COPY_FN is 0 in the ABI); 1 stands for the
+ * function that always copies, for which no call into the program is needed. */
 static int copied(struct mpi_rank *r, const struct mpi_attribute *a, void **value, int *flag)
 {
     struct mpi_keyval *k = a->keyval;
@@ -95,6 +109,7 @@ static int copied(struct mpi_rank *r, const struct mpi_attribute *a, void **valu
     return (int)mpi_call_program(r, k->copy, argument);
 }
 
+/* Names are not attributes and stay behind. */
 /* Oldest first, so that the copy's list has the same order. */
 static int copy_from(struct mpi_rank *r, const struct mpi_attribute *a, enum mpi_kind kind,
                      const void *from, const void *to)
@@ -115,6 +130,8 @@ int mpi_attributes_copy(struct mpi_rank *r, enum mpi_kind kind, const void *from
 
 /* --- keyvals --- */
 
+/* A keyval is an integer and no handle, so its kind is checked at the object. Odd table
+ * entries are free slots (mpi_handle.c). */
 static struct mpi_keyval *keyval_of(struct mpi_rank *r, int keyval)
 {
     int i = keyval - KEYVAL_FIRST;
@@ -125,6 +142,8 @@ static struct mpi_keyval *keyval_of(struct mpi_rank *r, int keyval)
     return NULL;
 }
 
+/* The functions may be those for communicators, types or windows: all have the same
+ * shape, and the object's handle fits one word. */
 int mpi_keyval_make(struct mpi_rank *r, void *copy, void *remove, int *keyval, void *extra)
 {
     struct mpi_keyval *k = mpi_take_zero(r->world, sizeof *k);
@@ -136,6 +155,7 @@ int mpi_keyval_make(struct mpi_rank *r, void *copy, void *remove, int *keyval, v
     return MPI_SUCCESS;
 }
 
+/* The program's own use ends once, however often it frees: `freed` says so. */
 /* Values that were attached keep the keyval. */
 int mpi_keyval_end(struct mpi_rank *r, int *keyval)
 {
@@ -147,6 +167,8 @@ int mpi_keyval_end(struct mpi_rank *r, int *keyval)
     return MPI_SUCCESS;
 }
 
+/* A value that is replaced is deleted first, by the program's function, as section 7.7.2
+ * asks; if that refuses, the old value stays. */
 int mpi_attribute_set(struct mpi_rank *r, enum mpi_kind kind, const void *object, int keyval,
                       void *value)
 {
@@ -161,6 +183,7 @@ int mpi_attribute_set(struct mpi_rank *r, enum mpi_kind kind, const void *object
     return MPI_SUCCESS;
 }
 
+/* `value` is where the program wants a void *: the standard types it as void * itself. */
 int mpi_attribute_get(struct mpi_rank *r, enum mpi_kind kind, const void *object, int keyval,
                       void *value, int *flag)
 {
@@ -184,6 +207,8 @@ int mpi_attribute_delete(struct mpi_rank *r, enum mpi_kind kind, const void *obj
 
 /* --- names of types and windows --- */
 
+/* A name is an entry without a keyval: few objects have one, so none of them pays for the
+ * room. */
 const char *mpi_name_given(struct mpi_rank *r, enum mpi_kind kind, const void *object,
                            const char *else_)
 {

@@ -1,6 +1,9 @@
 /* mpi_attribute_calls.c - the functions of keyvals and attributes. */
 #include "mpi/mpi_window.h"
 
+/* The four pairs differ in the types of their functions alone, which the standard gives
+ * for each kind of object (sections 7.7.2 to 7.7.4); MPI_Keyval_create is the deprecated
+ * name of the first. */
 #define KEYVALS(create_name, free_name, copy_type, delete_type, a, b, c)                           \
     int create_name(struct mpi_rank *self, copy_type *a, delete_type *b, int *c,                   \
                     void *extra_state)                                                             \
@@ -24,6 +27,8 @@ int mpi_comm_set_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, voi
     return mpi_attribute_set(self, KIND_COMM, mpi_comm_of(self, comm), comm_keyval, attribute_val);
 }
 
+/* Section 9.1.2 asks for pointers to integers that the program must not change, so these
+ * stand in constants, or in the rank's state where they differ between runs. */
 int mpi_comm_get_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, void *attribute_val,
                       int *flag)
 {
@@ -31,6 +36,8 @@ int mpi_comm_get_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, voi
     struct mpi_comm *c = mpi_comm_of(self, comm);
     const int *fixed = NULL;
     if (!c) return self->code;
+    /* MPI_LASTUSEDCODE moves when the program adds codes: it is brought up to date at
+     * each look. */
     self->last_code = mpi_last_code(self);
     if (comm_keyval == MPI_TAG_UB) fixed = &tag_last;
     if (comm_keyval == MPI_IO || comm_keyval == MPI_HOST) fixed = &none;
@@ -39,6 +46,8 @@ int mpi_comm_get_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval, voi
     if (comm_keyval == MPI_UNIVERSE_SIZE) fixed = &self->size;
     if (comm_keyval == MPI_LASTUSEDCODE) fixed = &self->last_code;
     if (!fixed) return mpi_attribute_get(self, KIND_COMM, c, comm_keyval, attribute_val, flag);
+    /* Attributes of the standard cannot be set or deleted: they never reach the list of
+     * values. */
     *flag = 1;
     *(const void **)attribute_val = fixed;
     return MPI_SUCCESS;
@@ -49,6 +58,7 @@ int mpi_comm_delete_attr(struct mpi_rank *self, MPI_Comm comm, int comm_keyval)
     return mpi_attribute_delete(self, KIND_COMM, mpi_comm_of(self, comm), comm_keyval);
 }
 
+/* Deprecated since MPI 2.0 under these names; old programs still use them. */
 int mpi_attr_put(struct mpi_rank *self, MPI_Comm comm, int keyval, void *attribute_val)
 {
     return mpi_comm_set_attr(self, comm, keyval, attribute_val);
@@ -92,6 +102,8 @@ int mpi_win_set_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *a
     return mpi_attribute_set(self, KIND_WIN, mpi_window_of(self, win), win_keyval, attribute_val);
 }
 
+/* The window's own attributes first: MPI_WIN_BASE is the address itself, the others are
+ * pointers (section 12.2.7). */
 int mpi_win_get_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val,
                      int *flag)
 {

@@ -2,6 +2,9 @@
  * matter: a message that a real library could not have buffered is an error here too. */
 #include "mpi/mpi_internal.h"
 
+/* One buffer at a time for the rank, and one for each communicator (MPI 4.1 added those),
+ * so a second is an error (section 3.6). The memory stays the program's and is never
+ * written. */
 static int attach(struct mpi_rank *r, struct mpi_comm *c, void **at, int64_t *bytes, void *buffer,
                   int64_t size)
 {
@@ -14,6 +17,8 @@ static int attach(struct mpi_rank *r, struct mpi_comm *c, void **at, int64_t *by
     return MPI_SUCCESS;
 }
 
+/* A real library waits here until all buffered messages have left. comm.h has taken its
+ * copies when a send returns, so nothing is pending. */
 static int detach(void **at, int64_t *bytes, void *buffer_addr, MPI_Count *size)
 {
     *(void **)buffer_addr = *at;
@@ -33,6 +38,7 @@ int mpi_buffer_detach(struct mpi_rank *self, void *buffer_addr, MPI_Count *size)
     return detach(&self->buffer, &self->buffer_bytes, buffer_addr, size);
 }
 
+/* For the same reason a flush has nothing to wait for. */
 int mpi_buffer_flush(struct mpi_rank *self)
 {
     (void)self;
@@ -45,6 +51,8 @@ int mpi_buffer_iflush(struct mpi_rank *self, MPI_Request *request)
     return MPI_SUCCESS;
 }
 
+/* A communicator's own buffer takes precedence over the rank's (buffered_room in
+ * mpi_message.c). */
 int mpi_comm_attach_buffer(struct mpi_rank *self, MPI_Comm comm, void *buffer, MPI_Count size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -62,6 +70,7 @@ int mpi_comm_flush_buffer(struct mpi_rank *self, MPI_Comm comm)
     return mpi_comm_of(self, comm) ? MPI_SUCCESS : self->code;
 }
 
+/* The request is complete from the start: the program still has to wait or test for it. */
 int mpi_comm_iflush_buffer(struct mpi_rank *self, MPI_Comm comm, MPI_Request *request)
 {
     if (!mpi_comm_of(self, comm)) return self->code;

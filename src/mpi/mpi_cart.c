@@ -1,5 +1,10 @@
 /* mpi_cart.c - Cartesian topologies. Ranks are never reordered: places are counted with the last
- * dimension fastest. */
+ * dimension fastest.
+ *
+ * Section 8.5. A library may place ranks so that neighbours of the grid are near in the
+ * machine (`reorder`); here the machine's placement decides that, so that a program's
+ * ranks mean the same under every setting and a study of placements compares like with
+ * like. */
 #include <stdlib.h>
 
 #include "mpi/mpi_topology.h"
@@ -14,6 +19,8 @@ int mpi_topo_test(struct mpi_rank *self, MPI_Comm comm, int *status)
 
 /* --- places --- */
 
+/* Row-major order, as section 8.2 has it. In C the remainder of a negative number is
+ * negative, hence the second step. */
 int mpi_cart_rank_of(const struct mpi_topology *t, const int *coordinate)
 {
     int rank = 0;
@@ -28,6 +35,7 @@ int mpi_cart_rank_of(const struct mpi_topology *t, const int *coordinate)
     return rank;
 }
 
+/* The inverse: the last dimension is the fastest. */
 static void place_of(int ndim, const int *dim, int rank, int *coordinate)
 {
     for (int d = ndim - 1; d >= 0; d--) {
@@ -36,6 +44,9 @@ static void place_of(int ndim, const int *dim, int rank, int *coordinate)
     }
 }
 
+/* One dimension changes, so the rank moves by the number of places that lie in one step
+ * of it. Coordinates are not looked at again: halo exchanges call this once for each
+ * neighbour. */
 int mpi_cart_shifted(const struct mpi_topology *t, int d, int by)
 {
     int below = 1, n = t->dim[d], at = t->coordinate[d] + by;
@@ -51,6 +62,8 @@ int mpi_cart_shifted(const struct mpi_topology *t, int d, int by)
 
 /* --- making --- */
 
+/* A grid may be smaller than the communicator, never larger (section 8.5.1). 64 bits,
+ * because a product of dimensions may pass an int before it is refused. */
 static int grid_size(struct mpi_rank *r, struct mpi_comm *c, int ndims, const int *dims,
                      int64_t *size)
 {
@@ -66,6 +79,8 @@ static int grid_size(struct mpi_rank *r, struct mpi_comm *c, int ndims, const in
                      c->size);
 }
 
+/* Periods are kept as 0 or 1, whatever the program gives. One element more than needed: a
+ * grid of no dimensions is legal and still needs an array. */
 static struct mpi_topology *grid(struct mpi_rank *r, int ndims, const int *dims, const int *periods,
                                  int rank)
 {
@@ -79,6 +94,8 @@ static struct mpi_topology *grid(struct mpi_rank *r, int ndims, const int *dims,
     return t;
 }
 
+/* Ranks behind the grid get MPI_COMM_NULL, but take part in agreeing on the context: the
+ * call is collective over the old communicator. */
 int mpi_cart_create(struct mpi_rank *self, MPI_Comm comm_old, int ndims, const int dims[],
                     const int periods[], int reorder, MPI_Comm *comm_cart)
 {
@@ -88,6 +105,8 @@ int mpi_cart_create(struct mpi_rank *self, MPI_Comm comm_old, int ndims, const i
     (void)reorder;
     if (!c) return self->code;
     if (c->remote) return mpi_error(self, c, MPI_ERR_COMM, "an intercommunicator has no topology");
+    /* The program may pass NULL for arrays without elements, which grid() must not copy
+     * from. */
     if (ndims == 0) dims = periods = &nothing;
     int code = grid_size(self, c, ndims, dims, &size);
     if (code != MPI_SUCCESS) return code;
@@ -104,6 +123,8 @@ int mpi_cart_sub(struct mpi_rank *self, MPI_Comm comm, const int remain_dims[], 
     struct mpi_comm *c;
     struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
     if (!t) return self->code;
+    /* MPI_Comm_split does the rest (section 8.5.7): ranks with equal coordinates in all
+     * dropped dimensions form one part, in row-major order of those that remain. */
     /* dropped dimensions say which part, remaining ones the place in it */
     int color = 0, key = 0, n = 0;
     int *dims = mpi_take(self->world, 2 * (t->ndim + 1) * (int64_t)sizeof *dims),
@@ -133,6 +154,7 @@ int mpi_cartdim_get(struct mpi_rank *self, MPI_Comm comm, int *ndims)
     return MPI_SUCCESS;
 }
 
+/* `maxdims` limits what is written, not what is known: fewer is no error. */
 int mpi_cart_get(struct mpi_rank *self, MPI_Comm comm, int maxdims, int dims[], int periods[],
                  int coords[])
 {
@@ -147,6 +169,8 @@ int mpi_cart_get(struct mpi_rank *self, MPI_Comm comm, int maxdims, int dims[], 
     return MPI_SUCCESS;
 }
 
+/* Coordinates outside of a dimension that is not periodic are erroneous (section 8.5.5),
+ * unlike those of a shift, which lead to MPI_PROC_NULL. */
 int mpi_cart_rank(struct mpi_rank *self, MPI_Comm comm, const int coords[], int *rank)
 {
     struct mpi_comm *c;
@@ -171,6 +195,8 @@ int mpi_cart_coords(struct mpi_rank *self, MPI_Comm comm, int rank, int maxdims,
     return MPI_SUCCESS;
 }
 
+/* Both directions from the own place. At an edge the rank is MPI_PROC_NULL, to which
+ * messages go without effect, so that programs need no special case there. */
 int mpi_cart_shift(struct mpi_rank *self, MPI_Comm comm, int direction, int disp, int *rank_source,
                    int *rank_dest)
 {
@@ -185,6 +211,7 @@ int mpi_cart_shift(struct mpi_rank *self, MPI_Comm comm, int direction, int disp
     return MPI_SUCCESS;
 }
 
+/* What a good placement would be: the identity, as nothing is reordered. */
 int mpi_cart_map(struct mpi_rank *self, MPI_Comm comm, int ndims, const int dims[],
                  const int periods[], int *newrank)
 {
@@ -209,6 +236,9 @@ static bool balance(int nodes, int n, int *out)
         out[0] = nodes;
         return true;
     }
+    /* All divisors from the root upwards: at most `nodes` steps, once in a program.
+     * Products are compared as doubles, exact far beyond any number of ranks. The last
+     * try is `nodes` itself with ones behind it, so there is always an answer. */
     /* try first factors from the n-th root upwards; the rest must not exceed it */
     for (int first = 1; first <= nodes; first++) {
         if (nodes % first) continue;
@@ -222,6 +252,8 @@ static bool balance(int nodes, int n, int *out)
     return true;
 }
 
+/* Dimensions that the program has set stay; what they leave is shared by the others, the
+ * largest first (section 8.5.2). */
 int mpi_dims_create(struct mpi_rank *self, int nnodes, int ndims, int dims[])
 {
     int left = nnodes, n = 0;
@@ -239,6 +271,8 @@ int mpi_dims_create(struct mpi_rank *self, int nnodes, int ndims, int dims[])
     if (n == 0 && left != 1)
         return mpi_error(self, NULL, MPI_ERR_DIMS, "the dimensions do not have %d nodes together",
                          nnodes);
+    /* The free dimensions get the numbers in order, so that they do not increase with the
+     * index. */
     int *chosen = mpi_take(self->world, (n + 1) * (int64_t)sizeof *chosen), at = 0;
     balance(left, n, chosen);
     for (int d = 0; d < ndims; d++)

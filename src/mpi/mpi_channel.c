@@ -5,9 +5,12 @@
  * Everything else is the rank's own comm. */
 #include "mpi/mpi_internal.h"
 
+/* The comm is the channel's first member, so that its address is the channel's. */
 static struct mpi_channel *channel_of(struct comm *c) { return (struct mpi_channel *)c; }
 static struct comm *world_of(struct comm *c) { return channel_of(c)->self->comm; }
 
+/* The rank's own comm charges the software's time and launches the message: a message of
+ * a collective costs what any other costs. */
 static void channel_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
                           struct comm_request *r)
 {
@@ -35,6 +38,7 @@ static int64_t channel_now(struct comm *c) { return comm_now_ps(world_of(c)); }
 static void channel_elapse(struct comm *c, int64_t ps) { comm_elapse(world_of(c), ps); }
 static void channel_fail(struct comm *c, const char *text) { comm_fail(world_of(c), text); }
 
+/* Without wildcards, probes and tests: algorithms do not use them. */
 static const struct comm_type channel_type = {
     .name = "communicator",
     .isend = channel_isend,
@@ -48,6 +52,10 @@ static const struct comm_type channel_type = {
     .end_run = channel_fail,
 };
 
+/* One number of comm.h carries three: context in the highest bits, then the plane (two
+ * bits), then the tag in 32 bits. MPI_ANY_TAG becomes a mask that leaves the lower 32
+ * bits open, and no receive of one communicator can take a message of another (section
+ * 7.4: safe communication space). LAST_CONTEXT keeps the sum within 63 bits. */
 int64_t mpi_tag(int context, enum mpi_plane plane, int64_t tag)
 {
     return ((int64_t)context * 4 + (int)plane) * (INT64_C(1) << 32) + tag;

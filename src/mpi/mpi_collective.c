@@ -23,17 +23,22 @@ struct blocks {
     struct mpi_counts counts, places;
 };
 
+/* An array of counts is there for the calls with a v in their names. */
 static int64_t block_elements(const struct blocks *b, int i)
 {
     return b->counts.at ? mpi_count_at(b->counts, i) : b->count;
 }
 
+/* Places count extents of the type, not bytes (sections 6.5 to 6.8). Regular blocks
+ * follow each other. */
 static char *block_memory(const struct blocks *b, int i)
 {
     int64_t place = b->places.at ? mpi_count_at(b->places, i) : i * b->count;
     return (char *)b->memory + place * b->type->extent;
 }
 
+/* One block between the program's memory and packed bytes; the copy is charged as memory
+ * traffic, as a library's would take time. */
 static void block_move(struct mpi_rank *r, const struct blocks *b, struct side *s, int i, bool out)
 {
     int64_t n = block_elements(b, i), bytes = n * b->type->size;
@@ -47,9 +52,13 @@ static void block_move(struct mpi_rank *r, const struct blocks *b, struct side *
  * there. */
 static void side_make(struct mpi_rank *r, const struct blocks *b, struct side *s, bool fill)
 {
+    /* A dense type's elements are bytes already: the algorithm works in the program's
+     * memory, without a copy. Any other is packed into one run, in which places are sums
+     * of sizes. */
     bool dense = b->type->dense;
     int64_t total = 0;
     *s = (struct side){.at = b->memory, .each = b->count * b->type->size};
+    /* The algorithm wants sizes and places in bytes; the program gave them in elements. */
     if (b->counts.at) {
         s->size = mpi_take(r->world, 2 * (int64_t)sizeof *s->size * (b->n + 1));
         s->place = s->size + b->n;
@@ -74,6 +83,8 @@ static void side_end(struct mpi_rank *r, const struct blocks *b, struct side *s,
     mpi_give(r->world, s->size);
 }
 
+/* The cast takes const away for a struct that serves both directions: blocks to send are
+ * only read. */
 static struct blocks send_blocks(const struct mpi_collective *x, int n)
 {
     return (struct blocks){
@@ -84,6 +95,8 @@ static struct blocks recv_blocks(const struct mpi_collective *x, int n)
     return (struct blocks){n, x->recv, x->recv_count, x->recv_type, x->recv_counts, x->recv_places};
 }
 
+/* The channel counts ranks of the communicator, so that the algorithm never sees ranks of
+ * the world. */
 static struct collective_call call_of(const struct mpi_collective *x, enum collective_kind kind,
                                       unsigned sequence)
 {
@@ -95,6 +108,8 @@ static struct collective_call call_of(const struct mpi_collective *x, enum colle
 
 /* --- data --- */
 
+/* Only the root's buffer holds data at the beginning, and only the others' change: each
+ * side packs or unpacks what it needs. */
 static void broadcast(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
 {
     struct collective_call k = call_of(x, COLLECTIVE_BROADCAST, sequence);
@@ -114,12 +129,16 @@ static void gather(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
 {
     struct collective_call k =
         call_of(x, everywhere ? COLLECTIVE_ALLGATHER : COLLECTIVE_GATHER, sequence);
+    /* With MPI_IN_PLACE the own block is among those received. In packed form it must be
+     * brought there first, and must not be written back over itself. */
     bool all = everywhere || x->comm->rank == x->root, place = x->send == MPI_IN_PLACE;
     struct blocks out = send_blocks(x, 1), in = recv_blocks(x, x->comm->size);
     struct side from = {0}, to = {0};
     if (all) side_make(r, &in, &to, false);
     if (!place) side_make(r, &out, &from, true);
     else if (to.packed) block_move(r, &in, &to, x->comm->rank, false);
+    /* Counts and places matter to ranks that receive; `count` is the size of the own
+     * block in any case. */
     k.recv = to.at;
     k.counts = to.size;
     k.places = to.place;
@@ -131,6 +150,8 @@ static void gather(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
     if (all) side_end(r, &in, &to, true, place ? x->comm->rank : -1);
 }
 
+/* The mirror of a gather: the root's own block stays where it is under MPI_IN_PLACE
+ * (section 6.6). */
 static void scatter(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
 {
     struct collective_call k = call_of(x, COLLECTIVE_SCATTER, sequence);
@@ -149,6 +170,8 @@ static void scatter(struct mpi_rank *r, const struct mpi_collective *x, unsigned
     if (!place) side_end(r, &in, &to, true, -1);
 }
 
+/* Under MPI_IN_PLACE the blocks received replace those sent, count for count (section
+ * 6.8), so what is sent needs memory of its own. */
 static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
 {
     struct collective_call k = call_of(x, COLLECTIVE_ALLTOALL, sequence);
@@ -161,6 +184,7 @@ static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigne
     /* in place: what goes out is copied first, packed or as it lies */
     void *copy = NULL;
     if (place && !from.packed) {
+        /* Irregular blocks may lie anywhere: the copy reaches to the end of the last one. */
         int64_t end = from.each * out.n;
         for (int i = 0; from.place && i < out.n; i++)
             if (from.place[i] + from.size[i] > end) end = from.place[i] + from.size[i];
@@ -183,6 +207,9 @@ static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigne
 
 /* --- combining --- */
 
+/* Elements cannot be cut: the algorithm moves whole ones of `element` bytes, from the
+ * type's first byte on (true lower bound). Types stay as they lie, without packing,
+ * because the operation expects them so. */
 static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence,
                    enum collective_kind kind, bool exclusive)
 {
@@ -198,6 +225,8 @@ static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
     mpi_collective_call(r, &k, false);
 }
 
+/* Each rank receives the reduction of its own block (section 6.10). Both calls end here:
+ * with counts and without. */
 static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
 {
     struct collective_call k = call_of(x, COLLECTIVE_REDUCE_SCATTER, sequence);
@@ -207,6 +236,8 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x, u
     mpi_reduction_make(r, &op, x->op, x->recv_type, x->comm);
     if (x->recv_counts.at) {
         counts = mpi_take(r->world, 2 * (int64_t)sizeof *counts * (size + 1));
+        /* Blocks follow each other in the order of ranks; there are no displacements in
+         * this call. */
         int64_t *places = counts + size;
         total = 0;
         for (int i = 0; i < size; i++) {
@@ -241,12 +272,17 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x, u
  * copies. */
 static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence)
 {
+    /* At distance d each rank sends to the d-th behind it and receives from the d-th
+     * before it, so every rank is the target of one message at each distance. Bytes count
+     * as displacements here, not elements: each block has a type of its own (section
+     * 6.8). */
     int size = x->comm->size, rank = x->comm->rank;
     bool place = x->send == MPI_IN_PLACE;
     struct mpi_part *in = mpi_take(r->world, 2 * size * (int64_t)sizeof *in), *out = in + size;
     void **copy = mpi_take_zero(r->world, size * (int64_t)sizeof *copy);
     for (int d = 0; d < size; d++) {
         int from = (rank - d + size) % size, to = (rank + d) % size;
+        /* Types are looked up only here: the call itself checked no more than counts. */
         in[d] = (struct mpi_part){from, (char *)x->recv + mpi_count_at(x->recv_places, from),
                                   mpi_count_at(x->recv_counts, from),
                                   mpi_type_of(r, x->recv_types[from])};
@@ -256,12 +292,15 @@ static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsign
                 mpi_count_at(x->send_counts, to), mpi_type_of(r, x->send_types[to])};
             continue;
         }
+        /* In place: the block for `to` is what the program has in the place of what comes
+         * from it. Receives would overwrite it, so it goes out of a packed copy. */
         struct mpi_type *t = mpi_type_of(r, x->recv_types[to]);
         int64_t n = mpi_count_at(x->recv_counts, to), bytes = n * t->size;
         copy[d] = mpi_take(r->world, bytes + 1);
         mpi_pack_bytes(copy[d], (char *)x->recv + mpi_count_at(x->recv_places, to), n, t);
         out[d] = (struct mpi_part){to, copy[d], bytes, mpi_type_basic(MPI_BYTE)};
     }
+    /* The own block is at distance 0 and needs no message. */
     mpi_copy_typed(r, in[0].buffer, in[0].count, in[0].type, out[0].buffer, out[0].count,
                    out[0].type);
     mpi_exchange(r, x->comm, sequence, size - 1, in + 1, size - 1, out + 1);
@@ -270,6 +309,8 @@ static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsign
     mpi_give(r->world, in);
 }
 
+/* Written once for blocking, non-blocking and persistent calls: it runs on the rank's
+ * stack or on that of an operation in progress, and does not know which. */
 void mpi_collective_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
     const unsigned sequence = x->sequence;
@@ -290,6 +331,9 @@ void mpi_collective_run(struct mpi_rank *r, const struct mpi_collective *x)
     else reduce_scatter(r, x, sequence);
 }
 
+/* Sequences keep operations apart that are in progress on one communicator at the same
+ * time. All ranks call collectives of a communicator in the same order (section 6.14), so
+ * they count alike. */
 void mpi_collective_now(struct mpi_rank *r, struct mpi_collective *x)
 {
     x->sequence = x->comm->sequence++;

@@ -1,5 +1,8 @@
 /* mpi_collective_calls.c - the collective functions: their arguments checked and put into one form.
- */
+ *
+ * The same struct describes every call; what a call does not have is zero. Checks come
+ * before anything is sent, so that a wrong argument leaves the communicator as it was.
+ * Sections are those of chapter 6 of MPI 5.0. */
 #include "mpi/mpi_collective.h"
 
 /* What a started operation holds on to until it is completed for good. */
@@ -32,6 +35,7 @@ static int count_error(struct mpi_rank *r, struct mpi_comm *c, int64_t n)
     return mpi_error(r, c, MPI_ERR_COUNT, "count %lld is negative", (long long)n);
 }
 
+/* Displacements are not checked: any place that the program can reach is legal. */
 static int check_counts(struct mpi_rank *r, struct mpi_comm *c, struct mpi_counts counts, int n)
 {
     for (int i = 0; counts.at && i < n; i++)
@@ -50,6 +54,7 @@ static int check_root(struct mpi_rank *r, const struct mpi_collective *x)
                      n);
 }
 
+/* Neighbours' counts are as many as there are edges, which is not known here. */
 /* operate: check what all have in common, then run or start. */
 static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x)
 {
@@ -62,11 +67,15 @@ static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
         if (code == MPI_SUCCESS) code = check_counts(r, x->comm, x->recv_counts, peers);
         if (code != MPI_SUCCESS) return code;
     }
+    /* The sequence is taken by the call and not when the operation runs: ranks may start
+     * several, and these may go on in another order on each rank. */
     x->sequence = x->comm->sequence++;
     if (start.mode == MPI_BLOCKING) {
         run(r, x);
         return MPI_SUCCESS;
     }
+    /* The program may free types and operations while it goes on (sections 5.1.9, 6.9.5):
+     * the request keeps them. */
     hold(x);
     code = mpi_request_task(r, x->comm, run, x, sizeof *x, -1, start);
     mpi_request_release(r, *start.request, release);
@@ -79,6 +88,7 @@ static bool comm_of(struct mpi_rank *r, MPI_Comm comm, struct mpi_collective *x)
     return (x->comm = mpi_comm_of(r, comm)) != NULL;
 }
 
+/* Only committed types may be used in communication (section 5.1.9). */
 static bool type_of(struct mpi_rank *r, MPI_Datatype handle, struct mpi_type **t,
                     const struct mpi_collective *x)
 {
@@ -94,6 +104,8 @@ static bool is_root(const struct mpi_collective *x)
 {
     return x->comm->remote ? x->root == MPI_ROOT : x->comm->rank == x->root;
 }
+/* Of an intercommunicator the root's side only receives or only sends, and of it only the
+ * root acts. */
 static bool is_leaf(const struct mpi_collective *x) { return !x->comm->remote || x->root >= 0; }
 
 int mpi_barrier(struct mpi_rank *self, struct mpi_start start, MPI_Comm comm)
@@ -114,6 +126,8 @@ int mpi_bcast(struct mpi_rank *self, struct mpi_start start, void *buffer, MPI_C
 
 /* --- gather and scatter --- */
 
+/* Arguments that are significant at the root alone are not looked at elsewhere: programs
+ * pass anything there, often uninitialized variables (section 6.5). */
 static int gather(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                   MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
@@ -128,7 +142,8 @@ static int gather(struct mpi_rank *r, struct mpi_start start, struct mpi_collect
     return operate(r, start, x);
 }
 
-/* Whether a call is of the kind with counts must be known where they are not read too. */
+/* Whether a call is of the kind with counts must be known where they are not read too.
+ * All ranks must choose one algorithm, also those to which the counts mean nothing. */
 static const int none_here;
 static struct mpi_counts places_of(const int *places)
 {
@@ -159,6 +174,7 @@ int mpi_gatherv(struct mpi_rank *self, struct mpi_start start, const void *sendb
     return gather(self, start, &x, sendtype, recvtype, comm);
 }
 
+/* As gather, with the sides changed over. */
 static int scatter(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                    MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
@@ -197,6 +213,8 @@ int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *send
 
 /* --- everybody to everybody --- */
 
+/* MPI_IN_PLACE takes data and counts from the receiving side; what is given for the
+ * sending side is not looked at. */
 static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                      MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
@@ -209,6 +227,7 @@ static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_coll
     return operate(r, start, x);
 }
 
+/* One size for all blocks. */
 #define REGULAR(name, what_)                                                                       \
     int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
              MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount,       \
@@ -224,6 +243,7 @@ REGULAR(mpi_alltoall, WHAT_ALLTOALL)
 REGULAR(mpi_neighbor_allgather, WHAT_NEIGHBOR_ALLGATHER)
 REGULAR(mpi_neighbor_alltoall, WHAT_NEIGHBOR_ALLTOALL)
 
+/* One block sent to everybody, of another size from each rank. */
 #define GATHER_V(name, what_)                                                                      \
     int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
              MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf,                            \
@@ -239,6 +259,7 @@ REGULAR(mpi_neighbor_alltoall, WHAT_NEIGHBOR_ALLTOALL)
 GATHER_V(mpi_allgatherv, WHAT_ALLGATHER)
 GATHER_V(mpi_neighbor_allgatherv, WHAT_NEIGHBOR_ALLGATHER)
 
+/* Blocks of any size both ways. */
 #define ALL_V(name, what_)                                                                         \
     int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
              struct mpi_counts sendcounts, struct mpi_counts sdispls, MPI_Datatype sendtype,       \
@@ -255,6 +276,8 @@ GATHER_V(mpi_neighbor_allgatherv, WHAT_NEIGHBOR_ALLGATHER)
 ALL_V(mpi_alltoallv, WHAT_ALLTOALL)
 ALL_V(mpi_neighbor_alltoallv, WHAT_NEIGHBOR_ALLTOALL)
 
+/* Types come as arrays and are looked up when the exchange begins: the arrays must last
+ * until then, which the standard asks for (section 6.12). */
 int mpi_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
                   struct mpi_counts sendcounts, struct mpi_counts sdispls,
                   const MPI_Datatype sendtypes[], void *recvbuf, struct mpi_counts recvcounts,
@@ -271,6 +294,8 @@ int mpi_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sen
     return operate(self, start, &x);
 }
 
+/* Displacements are addresses [B] in every form of this call, counts are not: hence the
+ * two widths (section 8.6). */
 int mpi_neighbor_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
                            struct mpi_counts sendcounts, const MPI_Aint sdispls[],
                            const MPI_Datatype sendtypes[], void *recvbuf,
@@ -290,6 +315,8 @@ int mpi_neighbor_alltoallw(struct mpi_rank *self, struct mpi_start start, const 
 
 /* --- combining --- */
 
+/* Whether the operation is defined on the type is asked before anything is sent: an error
+ * half-way would leave other ranks waiting. */
 static int combine(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                    MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)
 {
@@ -310,6 +337,7 @@ int mpi_reduce(struct mpi_rank *self, struct mpi_start start, const void *sendbu
     return combine(self, start, &x, datatype, op, comm);
 }
 
+/* These have no root; they differ in whether counts come as a number or as an array. */
 #define ALL_COMBINE(name, what_, argument, counts, member)                                         \
     int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, void *recvbuf,    \
              counts argument, MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)                     \
