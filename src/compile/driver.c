@@ -29,9 +29,10 @@ struct driver {
 /* Behind the user's options, so that they win. Register 15 counts; what follows it keeps code in
  * assembly of one syntax, as position-independent as a shared image needs, without the interposing
  * of functions that nobody asked for. String instructions that repeat would hide how much they
- * move, so that these are calls. Unwind tables tell where
- * arguments are. Frames larger than a page touch each page, so that they meet the
- * guard page of their stack. */
+ * move, so that these are calls. A caller must not know which
+ * registers a function leaves alone, as its entry (entries.h) takes one more. Unwind tables tell
+ * where arguments are. Frames larger than a page touch each page, so that they meet the guard page
+ * of their stack. */
 static const char *const forced[] = {"-ffixed-r15",
                                      "-fPIC",
                                      "-fno-semantic-interposition",
@@ -40,7 +41,8 @@ static const char *const forced[] = {"-ffixed-r15",
                                      "-masm=att",
                                      "-mstringop-strategy=libcall",
                                      "-fstack-clash-protection",
-                                     "-fasynchronous-unwind-tables"};
+                                     "-fasynchronous-unwind-tables",
+                                     "-fno-ipa-ra"};
 enum { FORCED = sizeof forced / sizeof forced[0] };
 
 static struct words new_words(struct driver *d)

@@ -144,7 +144,7 @@ static void build(const struct program *p, const char *dir, bool counted)
     const char *root = getenv("MIMDSIM_SRCDIR") ? getenv("MIMDSIM_SRCDIR") : ".";
     char objects[512] = "";
     for (int k = 0; k < 2 && p->file[k] != NULL; k++) {
-        shell("%s -S -fPIC -ffixed-r15 -mstringop-strategy=libcall %s -o %s/%d.s "
+        shell("%s -S -fPIC -ffixed-r15 -mstringop-strategy=libcall -fno-ipa-ra %s -o %s/%d.s "
               "%s/tests/compile/programs/%s",
               compiler_of(p->file[k]), p->flags, dir, k, root, p->file[k]);
         assemble(dir, k, counted, strcmp(compiler_of(p->file[k]), "gfortran") != 0);
