@@ -135,26 +135,18 @@ static void estimate(const struct run_spec *spec, const struct model *model,
     out->rank_bytes = 3.0 * (double)spec->kernel.message_bytes + 16;
 }
 
-const struct kernel_type ring_kernel = {
-    .name = "ring",
-    .title = "every rank sends to both its neighbours in a ring",
-    .rank = {1, stage_name, workspace_bytes, NULL, run},
-    .accepts = accepts,
-    .prepare = prepare,
-    .estimate = estimate,
-};
+/* Two programs that differ in the order of the ring alone. */
+#define RING(stem, word, prepare_, text)                                                           \
+    const struct kernel_type stem##_kernel = {                                                     \
+        .name = word,                                                                              \
+        .title = text,                                                                             \
+        .rank = {1, stage_name, workspace_bytes, NULL, run},                                       \
+        .accepts = accepts,                                                                        \
+        .prepare = prepare_,                                                                       \
+        .estimate = estimate,                                                                      \
+    };                                                                                             \
+    const struct program_type stem##_program = MICRO_PROGRAM(stem, word, text)
 
-const struct kernel_type random_ring_kernel = {
-    .name = "random-ring",
-    .title = "every rank sends to both its neighbours in a ring of random order",
-    .rank = {1, stage_name, workspace_bytes, NULL, run},
-    .accepts = accepts,
-    .prepare = prepare_random,
-    .estimate = estimate,
-};
-
-const struct program_type ring_program =
-    MICRO_PROGRAM(ring, "ring", "every rank sends to both its neighbours in a ring");
-const struct program_type random_ring_program =
-    MICRO_PROGRAM(random_ring, "random-ring",
-                  "every rank sends to both its neighbours in a ring of random order");
+RING(ring, "ring", prepare, "every rank sends to both its neighbours in a ring");
+RING(random_ring, "random-ring", prepare_random,
+     "every rank sends to both its neighbours in a ring of random order");

@@ -40,21 +40,6 @@ INLINE bool factor_block(const int c, const real *restrict A, real *restrict G)
     return true;
 }
 
-/* project: v = Y_i^T y for the n columns of Y from `first`. */
-INLINE void project(const int c, const int n, const int first, const int width, const int m,
-                    const real *restrict Y, const real *restrict y, real *restrict v)
-{
-    for (int i = 0; i < n; i++)
-        for (int l = 0; l < m; l++) {
-            real sum = 0;
-            for (int k = 0; k < c; k++) {
-                const real product = Y[k * width + first + i] * y[k * m + l];
-                sum = k > 0 ? sum + product : product;
-            }
-            v[i * m + l] = sum;
-        }
-}
-
 /* products: S = Y_i^T Z_i (packed) and v = Y_i^T y for the `n` columns of Y from `first`; Z = D'^-1
  * Y. Only the lower triangle of S: half the products (physics 5.1). */
 INLINE void products(const int c, const int n, const int first, const int width, const int m,
@@ -75,7 +60,16 @@ INLINE void products(const int c, const int n, const int first, const int width,
         }
         for (int j = 0; j <= i; j++) out[packed_index(i, j)] = sum[j];
     }
-    project(c, n, first, width, m, Y, y, v);
+    /* Written out here and again in project below: behind a call gcc 12 makes it 2 % slower. */
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < m; l++) {
+            real sum = 0;
+            for (int k = 0; k < c; k++) {
+                const real product = Y[k * width + first + i] * y[k * m + l];
+                sum = k > 0 ? sum + product : product;
+            }
+            v[i * m + l] = sum;
+        }
 }
 
 /* eliminate: block_row_eliminate without the account.
@@ -170,6 +164,21 @@ bool block_row_eliminate(int c, int nl, int nu, int m, const real *D, const real
     if (m == 1 && c == 3 && nl == 3 && nu == 3)
         return eliminate_333(D, L, U, r, factor, y, to_a, to_b);
     return eliminate(c, nl, nu, m, D, L, U, r, factor, y, to_a, to_b);
+}
+
+/* project: v = Y_i^T y for the n columns of Y from `first`. */
+static void project(int c, int n, int first, int width, int m, const real *Y, const real *y,
+                    real *v)
+{
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < m; l++) {
+            real sum = 0;
+            for (int k = 0; k < c; k++) {
+                const real product = Y[k * width + first + i] * y[k * m + l];
+                sum = k > 0 ? sum + product : product;
+            }
+            v[i * m + l] = sum;
+        }
 }
 
 void block_row_reduce(int c, int nl, int nu, int m, const real *factor, const real *r, real *y, real *v_a, real *v_b,
