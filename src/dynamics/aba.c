@@ -106,7 +106,7 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
 }
 
 /* moving: with velocity terms.
- * The body alone: its own inertia, P less the loads (physics 1.10). */
+ * The body alone: its own inertia, P less the loads (1.10). */
 static void start(const struct dynamics *d, int i, bool moving, struct articulated *b)
 {
     sym6_from_inertia(&b->inertia, &d->body[i].inertia);

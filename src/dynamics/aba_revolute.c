@@ -32,6 +32,8 @@ static inline void start(const struct revolute *b, real u, const real *wp, real 
     mat3_mul_vec_transposed(w, l->r, wp);
     l->bx = w[1] * u, l->by = -w[0] * u;
     w[2] += u;
+    /* b of (1.9); a turn has v_J = 0. The centripetal part is formed in parent axes, where the
+     * joint's place is a constant. */
     vec3_cross(t, wp, b->t);
     vec3_cross(t, wp, t);
     mat3_mul_vec_transposed(l->bl, l->r, t);
@@ -67,10 +69,12 @@ static inline bool eliminate(struct link *l, bool at_rest, real tau)
 {
     real *a = l->a, *b = l->b, *c = l->c, d = a[5];
     if (!(d > 0)) return false;
+    /* (2.6) with H = z: D is one number, Q is row z of the inertia. One division, then products. */
     real inverse = 1 / d, e = tau - l->n[2];
     real kx = a[2] * inverse, ky = a[4] * inverse, k0 = b[6] * inverse, k1 = b[7] * inverse, k2 = b[8] * inverse;
     l->kx = kx, l->ky = ky, l->kl[0] = k0, l->kl[1] = k1, l->kl[2] = k2;
     l->ez = e * inverse;
+    /* Q D^-1 Q^T lowers what is not in row z; that row is zero now, and nobody reads it. */
     a[0] -= kx * a[2], a[1] -= kx * a[4], a[3] -= ky * a[4];
     for (int j = 0; j < 3; j++) b[j] -= kx * b[6 + j], b[3 + j] -= ky * b[6 + j];
     c[0] -= k0 * b[6], c[1] -= k0 * b[7], c[2] -= k0 * b[8];
@@ -132,6 +136,7 @@ static inline void hand_down(const struct revolute *body, const struct link *l, 
     a[5] += ra[5] + ((d[7] + b[7]) * p[0] - (d[6] + b[6]) * p[1]);
     for (int i = 0; i < 9; i++) parent->b[i] += d[i];
     for (int i = 0; i < 6; i++) parent->c[i] += c[i];
+    /* X F of physics 1.2: the lever arm acts on the force in parent axes. */
     mat3_mul_vec(f, l->r, l->f);
     mat3_mul_vec(n, l->r, l->n);
     vec3_add(parent->f, f);
@@ -156,6 +161,8 @@ static inline real accelerate(const struct revolute *body, const struct link *l,
         vec3_add(v, l->bl);
         al[0] += l->bx, al[1] += l->by;
     }
+    /* (2.7). Q_z / D is 1, so z is the whole acceleration about the axis, and u' is what the
+     * parent does not bring along. */
     real z = l->ez - (l->kx * al[0] + l->ky * al[1] + (l->kl[0] * v[0] + l->kl[1] * v[1] + l->kl[2] * v[2]));
     vec3_set(m->w, al[0], al[1], z);
     vec3_copy(m->v, v);
@@ -183,11 +190,13 @@ static inline bool sweep(struct dynamics *d, bool at_rest, const real *q, const 
             vec3_sub(l->f, d->load + 6 * i + 3);
         }
     }
+    /* Tip to base: a body has all its children's parts before it gives way itself. */
     for (int i = n - 1; i >= 0; i--) {
         const struct revolute *b = &d->revolute[i];
         if (!eliminate(&link[i], at_rest, tau[i])) return false;
         if (b->parent >= 0) hand_down(b, &link[i], &link[b->parent]);
     }
+    /* From here on `motion` holds accelerations, and that of the base contains -g (physics 1.6). */
     vec3_copy(base.w, d->base);
     vec3_copy(base.v, d->base + 3);
     for (int i = 0; i < n; i++) {

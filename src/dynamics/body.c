@@ -65,7 +65,7 @@ const struct body *bodies_make(const struct model *m, struct arena *a)
     return b;
 }
 
-/* Gravity is an acceleration of the base (physics 1.10). */
+/* Gravity is an acceleration of the base (physics 1.6). */
 void base_motion(const struct model *m, const struct state *s, real *a)
 {
     for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);

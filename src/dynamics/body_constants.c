@@ -130,7 +130,7 @@ static void phi_of(struct body_constants *c, quad mass)
     /* Massless bodies and point masses have none; the constraint force algorithm refuses them. */
     if (!(mass > 0) || !invert(inverse, c->jc)) return;
     for (int i = 0; i < 6; i++) c->phi_a[i] = inverse[i];
-    /* physics 1.3: Phi about the body's origin. */
+    /* (1.8), about the body's origin. */
     sym3_expand(full, inverse);
     mat3_skew(skew, c->s);
     mat3_mul(t, full, skew);

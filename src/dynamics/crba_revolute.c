@@ -42,8 +42,10 @@ static void outward(struct dynamics *d, const real *q, struct axes *a)
             xform_compose(w, &a->world[b->parent], x);
         } else {
             *w = *x;
+            /* Differences of places alone: a scene far from the origin keeps its digits. */
             vec3_sub(w->p, d->revolute[0].t);
         }
+        /* S = [z; o x z]: what the joint moves, seen from the common origin. */
         real z[3] = {w->r[2], w->r[5], w->r[8]}, v[3];
         vec3_cross(v, w->p, z);
         for (int k = 0; k < 3; k++) a->s[k][i] = z[k], a->s[3 + k][i] = v[k];
@@ -130,6 +132,7 @@ void crba_revolute(struct dynamics *d, const real *q, real *mass, struct work *w
             chain_row(&a, i, moment, force, mass + (size_t)i * n);
         else
             tree_row(d, &a, i, moment, force, mass);
+        /* Composites move from joint to joint in body axes, never through the common origin. */
         inertia_move(&moved, &a.x[i], &a.composite[i]);
         inertia_add(&a.composite[parent], &moved);
     }

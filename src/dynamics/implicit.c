@@ -36,6 +36,7 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     struct work small = {0}; /* its calls are part of the body's one */
     *ia = b->inertia;
     screw_copy(pa, b->p);
+    /* Q, D and e of (2.6), where D carries the resistance s of (9.0) on its diagonal. */
     for (int k = 0; k < s->d; k++) {
         subspace_column(s, k, h + 6 * k);
         sym6_mul(u + 6 * k, &b->inertia, h + 6 * k);
@@ -45,14 +46,17 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
         screw_copy(b->y + 6 * k, u + 6 * k);
         w->flop += (uint64_t)(SYM6_MUL_FLOP + SCREW_DOT_FLOP * (k + 1) + 1 + SCREW_DOT_FLOP + 1);
     }
+    /* One factor of D for both right-hand sides: x = D^-1 e and Y = D^-1 Q^T. */
     if (s->d > 0 && !dense_factor(s->d, g, g, &small)) return false;
     if (s->d > 0) dense_solve(s->d, 1, g, b->x, &small);
     if (s->d > 0) dense_solve(s->d, 6, g, b->y, &small);
     for (int k = 0; k < s->d; k++) {
+        /* I_a = I - Q Y and p_a = p + Q x + I_a b of (2.6). */
         lower(ia, u + 6 * k, b->y + 6 * k);
         for (int i = 0; i < 6; i++) pa[i] += u[6 * k + i] * b->x[k];
         w->flop += LOWER_FLOP + SCREW_AXPY_FLOP;
     }
+    /* b meets what is left of the inertia, so it comes last. */
     sym6_mul(t, ia, bias);
     screw_add(pa, t);
     w->flop += small.flop + SYM6_MUL_FLOP + SCREW_ADD_FLOP;
@@ -60,6 +64,7 @@ static bool eliminate(const struct subspace *s, const real *bias, const real *ta
     return true;
 }
 
+/* (2.7): with Y and x kept, u' is one dot product a freedom. */
 static void accelerate(struct dynamics *d, int i, const struct resisting *b, real *ud, struct work *w)
 {
     const struct subspace *s = &d->pose[i].s;
@@ -102,6 +107,7 @@ bool implicit_forward(struct dynamics *d, real h, const real *q, const real *u, 
         resistance[body->u_at] = h * (body->damping + h * body->stiffness);
         own.flop += 3 + 3; /* less h k u; h (c + h k) */
     }
+    /* Tip to base as in aba.c: a spring resists at its own joint and couples no bodies. */
     for (int i = d->nbody - 1; i >= 0 && good; i--) {
         const struct body *body = &d->body[i];
         struct sym6 ia, moved;

@@ -63,6 +63,7 @@ static bool step_semi_implicit(struct integrator *it)
 static bool step_linearly_implicit(struct integrator *it)
 {
     it->evaluations++;
+    /* The linearised spring is in the tree's sweeps; loops have no such form here. */
     if (it->d->model->nloop > 0 || !implicit_forward(it->d, it->h, it->q, it->u, it->tau, it->a, &it->work))
         return false;
     combine(it, it->d->nu, it->u, it->h, it->a, it->u);
@@ -75,6 +76,7 @@ static bool step_kdk(struct integrator *it)
 {
     int n = it->d->nu;
     const real half = (real)0.5 * it->h;
+    /* The second kick of the last step left this acceleration: one evaluation a step. */
     if (!it->has_a && !accelerate(it, it->q, it->u, it->a)) return false;
     struct arena_mark mark = arena_mark(it->d->arena);
     real *predicted = TAKE(it->d->arena, n, real);
@@ -130,6 +132,7 @@ static bool step_rk4(struct integrator *it)
     bool good = true;
     /* Stage s starts from the derivatives of the stage before. */
     for (int s = 0; s < 4 && good; s++) {
+        /* at[0] is 0: the first stage is the state itself. */
         const real h = at[s] * it->h;
         combine(it, nq, it->q, h, kq, q);
         combine(it, nu, it->u, h, ku, u);

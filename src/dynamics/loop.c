@@ -67,6 +67,7 @@ static bool moves_with_a(const struct loop *l) { return joint_has(l->joint, JOIN
 /* Constraint columns in frame b for joints; r: frame b -> frame a. */
 static void joint_columns(const struct loop *l, const real *r, struct loop_pose *p)
 {
+    /* The joint's own W (physics 1.3): its columns are fixed in frame b, whatever q. */
     struct body free = {.joint = l->joint, .d = 6 - l->c};
     struct subspace s;
     /* The constrained directions lie in frame a: columns of W are rows of r. */
@@ -84,8 +85,7 @@ enum { PROJECT_FLOP = 2 * SCREW_DOT_FLOP + 5 };
 static void project(const struct loop *l, const real *error, const real *relative, struct loop_pose *p)
 {
     for (int k = 0; k < l->c; k++) {
-        /* Position and velocity of the constraint, and Baumgarte's terms for both (physics
-         * 7.6). */
+        /* Position and velocity of the constraint, and Baumgarte's terms for both (7.2). */
         p->g[k] = screw_dot(p->w + 6 * k, error);
         p->rho[k] = screw_dot(p->w + 6 * k, relative);
         p->stabilise[k] = 2 * l->alpha * p->rho[k] + l->beta * l->beta * p->g[k];
@@ -109,18 +109,20 @@ static void place_rows(const struct loop *l, const struct xform *xa, const struc
     /* Both bodies' forces in axes of frame a, each at its own point. */
     mat3_transposed_mul(p->tb.r, xb->r, wa.r);
     vec3_copy(p->tb.p, l->b.p);
+    /* The rows are the columns of W as they stand: both are in axes of frame a. */
     for (int k = 0; k < 6 * l->c; k++) p->w[k] = l->row[k];
     xform_motion(a, &p->ta, va);
     xform_motion(b, &p->tb, vb);
     for (int k = 0; k < 6; k++) relative[k] = b[k] - a[k];
     real ca[3], cb[3];
-    /* gamma: what the points' accelerations are at zero joint accelerations (physics 7.3). */
+    /* gamma: what the points' accelerations are at zero joint accelerations (7.3). */
     centripetal(va, l->a.p, ca);
     centripetal(vb, l->b.p, cb);
     mat3_mul_vec_transposed(ca, p->ta.r, ca);
     mat3_mul_vec_transposed(cb, p->tb.r, cb);
     screw_zero(p->gamma);
     for (int k = 0; k < 3; k++) p->gamma[3 + k] = cb[k] - ca[k];
+    /* g of (7.2): rotation vector and distance from frame a to frame b. */
     between(&rel, &wa, &wb);
     small_angle(rel.r, error);
     vec3_copy(error + 3, rel.p);
@@ -149,6 +151,7 @@ static void place_joint(const struct loop *l, const struct xform *xa, const stru
     xform_motion(a, &p->ta, va);
     xform_motion(b, &p->tb, vb);
     for (int k = 0; k < 6; k++) relative[k] = b[k] - a[k];
+    /* omega_J and v_J of (7.1). */
     const real *turn = relative, *slip = relative + 3;
     mat3_mul_vec_transposed(pa, p->ta.r, p->ta.p);
     mat3_mul_vec_transposed(pb, p->tb.r, p->tb.p);
@@ -189,6 +192,7 @@ int loop_place_flops(const struct loop *l)
 /* Equal and opposite on the two bodies, each moved to its origin. */
 void loop_force(const struct loop_pose *p, const real *lambda, real *fa, real *fb)
 {
+    /* W lambda acts on b, its reaction on a; X of physics 1.2 takes it to the bodies' origins. */
     real f[6], t[6];
     screw_zero(f);
     for (int k = 0; k < p->c; k++) screw_axpy(f, lambda[k], p->w + 6 * k);
@@ -211,7 +215,7 @@ void loop_column(const struct loop_pose *p, bool side_b, real *out)
     }
 }
 
-/* W^T (T_b^T a_b - T_a^T a_a + gamma) + stabilisation (physics 7.2). */
+/* W^T (T_b^T a_b - T_a^T a_a + gamma) + stabilisation (7.2). */
 void loop_residual(const struct loop_pose *p, const real *aa, const real *ab, real *r)
 {
     real a[6], b[6];

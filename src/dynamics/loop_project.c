@@ -19,6 +19,7 @@ static bool correction(struct dynamics *d, const real *q, const real *u, bool po
     real *response = TAKE(d->arena, size_product(m, n), real), *s = TAKE(d->arena, size_product(m, m), real);
     real *x = TAKE(d->arena, m, real), *reference = TAKE(d->arena, m, real);
     real *room = TAKE(d->arena, size_product(m, m + 2), real);
+    /* S and M^-1 J^T come from the same responses; M itself is never formed. */
     bool good = loops_respond(d, &l, response, (size_t)n, s, w);
     for (int k = 0; k < l.nloop; k++)
         for (int i = 0; i < l.pose[k].c; i++)

@@ -63,7 +63,7 @@ void loops_residual(const struct loops *l, const real *a, const real *base, bool
     for (int k = 0; k < l->nloop; k++) {
         struct loop_pose p = l->pose[k];
         int ba = l->loop[k].body_a, bb = l->loop[k].body_b;
-        /* Responses to forces alone have no velocity terms (physics 7.2). */
+        /* Responses to forces alone have no velocity terms (7.2). */
         if (homogeneous) {
             screw_zero(p.gamma);
             screw_zero(p.stabilise);
@@ -90,6 +90,7 @@ static real side_reference(const struct dynamics *d, int body, const real *colum
     if (!(m > 0)) return 0;
     w->flop += VEC3_DOT_FLOP;
     w->div++;
+    /* f^T f / m, as if all of the mass were at the origin. */
     return vec3_dot(column + 3, column + 3) / m;
 }
 

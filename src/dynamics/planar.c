@@ -24,6 +24,7 @@ static void axis_in_base(const struct model *m, int i, quad *x)
 {
     quad r[9];
     direction_unit(m->body[i].axis, x);
+    /* From joint frame to joint frame up to the base: at q = 0 a body's frame is its joint's. */
     for (; i >= 0; i = m->body[i].parent) {
         rotation_of(&m->body[i].placement, r);
         mat3_mul_vec(x, r, x);
@@ -86,12 +87,14 @@ static bool settle(const struct body_def *b, quad tolerance, quad *n)
     direction_unit(b->axis, axis);
     if (slides(b->joint)) {
         if (!(fabsq(vec3_dot(axis, n)) <= tolerance)) return false;
+        /* A slide fixes no normal: the present one, made exactly orthogonal to its axis. */
         direction_orthonormalise(n, axis);
         return true;
     }
     /* The sine of the angle between axis and normal. */
     vec3_cross(tilt, axis, n);
     if (!turns(b->joint) || !(vec3_norm(tilt) <= tolerance)) return false;
+    /* An axis against the normal is as good: the joint is flipped then (planar_body.c). */
     vec3_scale(n, vec3_dot(axis, n) < 0 ? -1 : 1, axis);
     return true;
 }
@@ -165,6 +168,7 @@ void planar_frame(const struct model *m, int i, const quad *normal, quad *rows)
         direction_orthonormalise(x, normal);
     } else if (i >= 0 && joint_plane(m->body[i].joint) == PLANE_MOVES) {
         struct body_constants c;
+        /* x as the joint in space has it, so that its two displacements mean the same. */
         body_constants_place(m, i, &c);
         for (int k = 0; k < 3; k++) x[k] = c.user[3 * k];
         direction_orthonormalise(x, normal);
@@ -181,6 +185,7 @@ void planar_placement(const quad *outer, const quad *inner, const struct frame *
     const quad c = vec3_dot(outer + 3, axis), s = vec3_dot(outer + 6, axis), length = sqrtq(c * c + s * s);
     /* A tilt within the tolerance shortens the projection: made unit again. */
     x[0] = c / length, x[1] = s / length;
+    /* The shift along the normal is lost on purpose: nothing in the plane depends on it. */
     x[2] = vec3_dot(outer + 3, p), x[3] = vec3_dot(outer + 6, p);
 }
 

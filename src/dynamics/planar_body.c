@@ -31,6 +31,7 @@ static void make_inertia(const struct model *m, int i, const quad *normal, struc
     const struct body_def *def = &m->body[i];
     quad own[9], jc = 0, jo, mass = def->mass;
     planar_frame(m, i, normal + 3 * (i + 1), own);
+    /* j = n^T J n. */
     for (int j = 0; j < 9; j++) jc += own[j / 3] * def->inertia[at[j]] * own[j % 3];
     b->m = (real)mass;
     b->jc = (real)jc;
@@ -100,6 +101,7 @@ void base_motion(const struct model *m, const struct state *s, real *a)
     quad rows[9];
     planar_frame(m, -1, normals_of(m, scratch), rows);
     arena_destroy(scratch);
+    /* Rows: the normal takes the angular part, x and y take a - g (physics 1.6). */
     for (int k = 0; k < 3; k++) {
         quad sum = 0;
         for (int j = 0; j < 3; j++)
@@ -170,6 +172,7 @@ void body_bias(const struct body *b, const struct body_pose *pose, const real *v
 {
     (void)u;
     const struct xform *x = &pose->x;
+    /* omega* of (1.9), the parent's rate; p* is the joint's place in own axes. */
     const real w = v[0] - h[0], pull = -(w * w);
     bias[0] = 0;
     bias[1] = pull * (x->c * x->p[0] + x->s * x->p[1]);

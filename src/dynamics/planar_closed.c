@@ -54,6 +54,7 @@ static void closing_force(const struct scene *x, const struct closing *c, const 
         const int body = side % 2 ? l->body_b : l->body_a;
         real column[6 * SPACE];
         if (body < 0) continue;
+        /* Equal and opposite on the two bodies: loop_column has the sign. */
         loop_column(&c->pose[side / 2], side % 2, column);
         for (int k = 0; k < l->c; k++) screw_axpy(c->load + SPACE * body, lambda[l->row_at + k], column + SPACE * k);
         w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + SCREW_AXPY_FLOP));
@@ -114,6 +115,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
     real *reference = TAKE(scratch, n, real), *lambda = TAKE(scratch, n, real), *r = TAKE(scratch, n, real);
     const double *none = TAKE(scratch, x->model->nu, double);
     struct moving *at_rest = TAKE(scratch, x->model->nbody, struct moving), *moving = x->moving;
+    /* (7.7) scales by A_ll, not by S: the diagonal of S may be zero but for rounding. */
     closing_reference(x, &c, reference, w);
     /* Same poses, no bias. */
     memcpy(at_rest, moving, (size_t)x->model->nbody * sizeof *at_rest);
@@ -125,6 +127,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
     response.load = c.load;
     screw_zero(response.base);
     bool good = true;
+    /* J M^-1 J^T, one unit of force a column, is the S of (7.5). */
     for (int k = 0; k < n && good; k++) {
         for (int j = 0; j < n; j++) r[j] = j == k;
         closing_force(x, &c, r, w);
@@ -132,6 +135,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
         closing_residual(&response, &c, r, w);
         for (int j = 0; j < n; j++) S[j * n + k] = r[j];
     }
+    /* Symmetric but for rounding; the solver gets a matrix that is exactly so. */
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++) S[i * n + k] = S[k * n + i] = (real)0.5 * (S[i * n + k] + S[k * n + i]);
     w->flop += (uint64_t)(n * (n - 1));
@@ -139,6 +143,7 @@ static bool closed_forward(struct scene *x, const double *tau, double *ud, struc
     /* The second pass removes what rounding left of the first. */
     for (int pass = 0; pass < 2 && good; pass++) {
         closing_residual(x, &c, r, w);
+        /* The solver overwrites its matrix. */
         for (int k = 0; k < n * n; k++) copy[k] = S[k];
         for (int k = 0; k < n; k++) r[k] = -r[k];
         least_norm_solve(n, reference, copy, r, room, w);
@@ -163,6 +168,7 @@ bool planar_forward(const struct model *model, const struct state *s, struct are
         const struct body *b = &x.body[i];
         planar_start(&x, i, w);
         if (!b->has_spring) continue;
+        /* -k (q - q0) - c u; only joints of one freedom have springs (model.h). */
         const real q = (real)s->q[b->q_at], u = (real)s->qd[b->u_at];
         tau[b->u_at] = (double)((real)tau[b->u_at] - (b->stiffness * (q - b->rest) + b->damping * u));
         w->flop += BODY_SPRING_FLOP;

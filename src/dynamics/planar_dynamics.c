@@ -139,6 +139,7 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
         real h[SPACE], moved[SPACE], inertial[SPACE];
         planar_start(&x, i, w);
         planar_joint_motion(b, s->qdd + b->u_at, h);
+        /* (2.2): the parent's acceleration, b and H u'. */
         xform_motion(moved, &m->pose.x, b->parent < 0 ? x.base : x.moving[b->parent].a);
         screw_copy(m->a, moved);
         m->a[1] += m->bias[1], m->a[2] += m->bias[2];
@@ -152,6 +153,7 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
     for (int i = model->nbody - 1; i >= 0; i--) {
         const struct body *b = &x.body[i];
         real moved[SPACE];
+        /* (2.5), then (2.4): all children have added their forces by now. */
         joint_part(b, x.moving[i].f, tau + b->u_at);
         if (b->parent < 0) continue;
         xform_force(moved, &x.moving[i].pose.x, x.moving[i].f);
@@ -174,9 +176,11 @@ static void symmetric_multiply(const real *s, const real *x, real *y)
  * mixed part, 6; shifting by (-py, px), 8 + 6; adding, 6. `bare`: S has a linear block alone: 10 + 6 + 3 + 6. */
 static void hand_inertia(const struct xform *x, const real *s, bool bare, real *into, struct work *w)
 {
+    /* With xx - (s t) and yy + (s t) the trace stays as it was: 10 flops, where r C r^T takes 21. */
     const real t = x->s * (s[3] - s[5]) + (x->c + x->c) * s[4];
     const real st = x->s * t, xx = s[3] - st, yy = s[5] + st, xy = x->c * t - s[4], jx = -x->p[1], jy = x->p[0];
     real shifted_x = xx * jx + xy * jy, shifted_y = xy * jx + yy * jy;
+    /* Eliminating a turn empties the row of the normal: no moment, no mixed part. */
     if (bare) {
         into[0] += jx * shifted_x + jy * shifted_y;
     } else {
@@ -209,6 +213,7 @@ static bool give_way(struct moving *m, int k, real tau, real *left, struct work 
 {
     static const signed char row[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, others[2][2] = {{1, 2}, {0, 2}};
     const real *s = m->inertia, d = s[row[k][k]];
+    /* The two components that stay. */
     const int i = others[k][0], j = others[k][1];
     if (!(d > 0)) return false;
     /* physics (2.6) for one column: D is a number. */
@@ -247,6 +252,7 @@ static bool articulate(const struct scene *x, int i, const double *tau, struct w
     case PLANE_MOVES:
         break;
     default:
+        /* A fixed joint does not give way: I_a = I_A and p_a = p + I_a b of (2.6). */
         for (int k = 0; k < 6; k++) left[k] = m->inertia[k];
         symmetric_multiply(left, m->bias, shifted);
         screw_add(m->f, shifted);
@@ -302,6 +308,7 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
         w->flop += 3 * SCREW_ADD_FLOP;
     } else if (b->d == 1) {
         const int k = b->plane == PLANE_TURNS ? 0 : 1;
+        /* (2.7): u' = D^-1 (e - Q^T a). `inertia` is still I_A, and Q its row k. */
         real along = m->inertia[row[k][0]] * carried[0], y[SPACE] = {0};
         for (int j = 1; j < 3; j++) along += m->inertia[row[k][j]] * carried[j];
         y[k] = m->per * (m->rest - along);

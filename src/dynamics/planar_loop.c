@@ -137,6 +137,7 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
         p->tb = l->b;
         between(&p->ta, xa, &wb);
     }
+    /* rho of (7.1). */
     xform_motion(a, &p->ta, va);
     xform_motion(b, &p->tb, vb);
     /* Velocities of both frames, in the loop's axes; then gamma (physics 7.3). */
@@ -160,6 +161,7 @@ void loop_place(const struct loop *l, const struct xform *xa, const struct xform
     for (int k = 0; k < l->c; k++) {
         const real *w = l->w + SPACE * k;
         screw_copy(p->w + SPACE * k, w);
+        /* (7.2): 2 alpha W^T rho + beta^2 g. */
         p->stabilise[k] = 2 * l->alpha * screw_dot(w, relative) + l->beta * l->beta * screw_dot(w, error);
     }
 }

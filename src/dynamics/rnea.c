@@ -10,7 +10,7 @@ static void outward_at_rest(struct dynamics *d, const real *ud)
         const struct body *b = &d->body[i];
         const struct body_pose *pose = &d->pose[i];
         real carried[6], *a = d->a + 6 * i, *f = d->f + 6 * i;
-        /* No velocities: neither bias nor P. Gravity enters at the base (physics 1.10). */
+        /* No velocities: neither bias nor P. Gravity enters at the base (physics 1.6). */
         screw_zero(a);
         subspace_h(&pose->s, ud + b->u_at, a);
         xform_motion(carried, &pose->x, b->parent >= 0 ? d->a + 6 * b->parent : d->base);

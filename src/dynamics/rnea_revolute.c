@@ -38,7 +38,9 @@ static inline void carry(const struct revolute *b, const real *r, real u, real u
     real g[3], w[3], al[3];
     mat3_mul_vec_transposed(w, r, p->w);
     mat3_mul_vec_transposed(al, r, p->al);
+    /* The origin accelerates as a point of the parent: a + K t, in parent axes. */
     for (int i = 0; i < 3; i++) g[i] = p->a[i] + (k[3 * i] * t[0] + k[3 * i + 1] * t[1] + k[3 * i + 2] * t[2]);
+    /* (1.9) with H = z: the angular part of b is w* x z u; the linear one is in K t. */
     vec3_set(c->w, w[0], w[1], w[2] + u);
     vec3_set(c->al, al[0] + w[1] * u, al[1] - w[0] * u, al[2] + ud);
     mat3_mul_vec_transposed(c->a, r, g);
@@ -51,6 +53,8 @@ static inline void newton_euler(const struct revolute *b, const struct motion *c
 {
     const real *s = b->s, *S = b->second, *k = c->k;
     for (int i = 0; i < 3; i++) f[i] = b->m * (c->a[i] + (k[3 * i] * s[0] + k[3 * i + 1] * s[1] + k[3 * i + 2] * s[2]));
+    /* The moment of K r r^T dm over the body, summed by its second moments S about the centre:
+     * the same as J w' + w x J w, and K is there already. */
     n[0] = (k[6] * S[1] + k[7] * S[3] + k[8] * S[4]) - (k[3] * S[2] + k[4] * S[4] + k[5] * S[5]);
     n[1] = (k[0] * S[2] + k[1] * S[4] + k[2] * S[5]) - (k[6] * S[0] + k[7] * S[1] + k[8] * S[2]);
     n[2] = (k[3] * S[0] + k[4] * S[1] + k[5] * S[2]) - (k[0] * S[1] + k[1] * S[3] + k[2] * S[4]);
@@ -110,6 +114,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
     real *sine = d->scratch, *cosine = sine + n;
     struct load *load = (struct load *)(cosine + n);
     struct motion *motion = (struct motion *)(load + n);
+    /* The base has no velocity, only an acceleration with -g in it (physics 1.6). */
     vec3_copy(base.al, d->base);
     vec3_copy(base.a, d->base + 3);
     if (!at_rest) mat3_skew(base.k, base.al);
@@ -132,6 +137,7 @@ static inline void sweep(struct dynamics *d, bool at_rest, const real *q, const 
             vec3_sub(load[i].f, d->load + 6 * i + 3);
         }
     }
+    /* (2.4), (2.5): tip to base; the joint takes the moment about its z. */
     for (int i = n - 1; i >= 0; i--) {
         const struct revolute *b = &d->revolute[i];
         tau[i] = load[i].n[2];

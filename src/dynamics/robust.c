@@ -19,6 +19,7 @@ static void refine(struct dynamics *d, const real *q, const real *u, const real 
         d->load = NULL;
         bool good = aba_response(d, rest, more, w);
         d->load = given;
+        /* Corrections that shrink no more are rounding: the last good answer stays. */
         double size = relative_size(d->nu, more, ud);
         if (!good || !(size < before)) break;
         for (int k = 0; k < d->nu; k++) ud[k] += more[k];

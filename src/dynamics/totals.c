@@ -22,6 +22,7 @@ static void add_body(const struct dynamics *d, int i, const struct xform *x, str
     mat3_mul_vec(linear, x->r, linear);
     mat3_mul_vec(spin, x->r, spin);
     vec3_add(t->linear, linear);
+    /* About the base's origin: spin plus c x m v. */
     vec3_add(t->angular, spin);
     vec3_cross_add(t->angular, c, linear);
     t->mass += b->m;
@@ -47,6 +48,7 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
         const struct body *b = &d->body[i];
         add_body(d, i, &x[i], t);
         /* Springs store energy, dampers do not. */
+        /* k (q - rest)^2 / 2. */
         real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
         t->potential += b->stiffness * stretch * stretch / 2;
     }
@@ -67,6 +69,7 @@ void forward_kinematics(struct dynamics *d, const real *q, const real *u, const 
         /* As in rnea.c, but without gravity: these are accelerations that an observer sees. */
         screw_copy(a, d->bias + 6 * i);
         subspace_h(&d->pose[i].s, ud + b->u_at, a);
+        /* The base stands still here even when the state moves it. */
         xform_motion(carried, &d->pose[i].x, b->parent >= 0 ? d->a + 6 * b->parent : still);
         screw_add(a, carried);
         struct body_motion *o = &out[i];

@@ -55,6 +55,7 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
     for (int i = 0; i < n; i++) f->shifted[i] = y[i], dfdt[i] = 0;
     /* A step that balances rounding against the third derivative: the cube root of eps. */
     for (int j = 0; j < n; j++) {
+        /* Coordinates near zero are taken as a hundredth, so that h does not vanish. */
         double h = 6e-6 * fmax(fabs(y[j]), 1e-2);
         f->shifted[j] = y[j] + h;
         int bad = derivative(t, f->shifted, f->change, f);
@@ -141,6 +142,7 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     f.most = options->most_evaluations > 0 ? options->most_evaluations : 10000000;
     dynamics_load(f.d, s);
     double *y = TAKE(scratch, n, double);
+    /* q first, then u; the state itself stays as it is until the end is known to be good. */
     memcpy(y, s->q, (size_t)m->nq * sizeof *y);
     memcpy(y + m->nq, s->qd, (size_t)m->nu * sizeof *y);
     double first = options->first_step > 0 ? options->first_step : duration / 1000;
@@ -155,6 +157,7 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     /* A step may end in overflow without GSL noticing. */
     bool finite = true;
     for (size_t i = 0; i < n; i++) finite = finite && isfinite(y[i]);
+    /* All or nothing: a failed run leaves the state where it began. */
     if (steps >= 0 && finite) state_from(f.d, y, s);
     if (report) *report = (struct trajectory_report){steps < 0 ? 0 : steps, f.evaluations};
     arena_release(scratch, mark);

@@ -27,6 +27,7 @@ void work_count_velocities(const struct dynamics *d, struct work *w)
 void work_count_springs(const struct dynamics *d, struct work *w)
 {
     if (!w) return;
+    /* Stiffness and damper are counted together, also where one is zero. */
     for (int i = 0; i < d->nbody; i++) w->flop += d->body[i].has_spring ? BODY_SPRING_FLOP : 0;
 }
 
@@ -62,6 +63,7 @@ void work_count_rnea(const struct dynamics *d, struct work *w)
 static void count_eliminate(const struct body *b, const struct joint_cost *cost, struct work *w)
 {
     uint64_t d = (uint64_t)b->d, c = 6 - d;
+    /* chol(d) of (2.9); d of its operations are divisions, which are counted below. */
     w->flop += d * (d + 1) * (2 * d + 1) / 6 - d + (2 * d * d - d) + d * (d - 1) * c; /* factor, solve, forward */
     w->flop += d + c * (c + 1) / 2 * 3 * d + 2 * c * d;                               /* e, Schur, p */
     w->div += d;
@@ -80,6 +82,7 @@ void work_count_aba(const struct dynamics *d, bool moving, struct work *w)
         w->call += 1;
         w->flop += XFORM_MOTION_FLOP;
         if (d->load) w->flop += SCREW_ADD_FLOP;
+        /* P, I_a b, and the bias on both ways. */
         if (moving && !d->at_rest)
             w->flop += (uint64_t)(BODY_GYRO_FLOP + SYM6_MUL_FLOP + SCREW_ADD_FLOP + SCREW_ADD_FLOP);
         if (b->parent >= 0)
