@@ -6,17 +6,25 @@ struct mpi_comm *mpi_comm_make(struct mpi_rank *r, struct mpi_group *g, int cont
 {
     struct mpi_comm *c = mpi_take_zero(r->world, sizeof *c);
     mpi_handle_make(r, c, KIND_COMM);
+    /* One group serves all communicators made of the same ranks, and the program's
+     * handles of it: whoever lets go last frees it. */
     c->group = g; /* the caller's use of it */
     c->rank = g->rank;
     c->size = g->size;
     c->context = context;
+    /* Known once, because a hardware barrier is asked for at each barrier
+     * (mpi_algorithm.c). */
     c->whole = !g->list && g->first == 0 && g->step == 1 && g->size == r->size;
+    /* Section 9.3: a new communicator has the error handler of the one it was made from. */
     c->handler = like ? like->handler : NULL;
     mpi_errhandler_use(c->handler);
     mpi_channel_make(&c->channel, r, g, context, PLANE_COLLECTIVE);
     return c;
 }
 
+/* Uses are the program's handle and each request that is not complete (section 7.4.3): a
+ * communicator that the program has freed lives until these are done. Drops of parts
+ * accept NULL. */
 void mpi_comm_drop(struct mpi_rank *r, struct mpi_comm *c)
 {
     if (!c || --c->o.uses > 0) return;

@@ -5,6 +5,7 @@
 
 /* --- queries --- */
 
+/* Of an intercommunicator, here and in the next, the own side (section 7.6.1). */
 int mpi_comm_size(struct mpi_rank *self, MPI_Comm comm, int *size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -37,6 +38,9 @@ int mpi_comm_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group *group)
     return MPI_SUCCESS;
 }
 
+/* Section 7.4.1: identical handles, then the same ranks in the same order (congruent), in
+ * another order (similar), or other ranks. An intercommunicator is as equal as its less
+ * equal side. */
 int mpi_comm_compare(struct mpi_rank *self, MPI_Comm comm1, MPI_Comm comm2, int *result)
 {
     struct mpi_comm *a = mpi_comm_of(self, comm1), *b = a ? mpi_comm_of(self, comm2) : NULL;
@@ -52,6 +56,7 @@ int mpi_comm_compare(struct mpi_rank *self, MPI_Comm comm1, MPI_Comm comm2, int 
     return MPI_SUCCESS;
 }
 
+/* No program starts others here (chapter 11), so none has a parent. */
 int mpi_comm_get_parent(struct mpi_rank *self, MPI_Comm *parent)
 {
     (void)self;
@@ -64,6 +69,9 @@ int mpi_comm_get_parent(struct mpi_rank *self, MPI_Comm *parent)
 int mpi_comm_get_name(struct mpi_rank *self, MPI_Comm comm, char *comm_name, int *resultlen)
 {
     struct mpi_comm *c = comm == MPI_COMM_NULL ? NULL : mpi_comm_of(self, comm);
+    /* Section 7.8: the three that the standard provides have names from the start, and
+     * the program may give others. A new communicator's name is empty, also a
+     * duplicate's. */
     const char *name = "MPI_COMM_NULL";
     if (!c && comm != MPI_COMM_NULL) return self->code;
     if (c) name = c->name ? c->name : "";
@@ -73,6 +81,7 @@ int mpi_comm_get_name(struct mpi_rank *self, MPI_Comm comm, char *comm_name, int
     return MPI_SUCCESS;
 }
 
+/* The text is copied: the program may use its memory again. */
 int mpi_comm_set_name(struct mpi_rank *self, MPI_Comm comm, const char *comm_name)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -89,6 +98,7 @@ int mpi_comm_set_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info info)
     return mpi_comm_of(self, comm) ? MPI_SUCCESS : self->code;
 }
 
+/* The program frees what it gets, so each call makes one, without keys. */
 int mpi_comm_get_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info *info_used)
 {
     return mpi_comm_of(self, comm) ? mpi_info_create(self, info_used) : self->code;
@@ -99,6 +109,9 @@ int mpi_comm_get_info(struct mpi_rank *self, MPI_Comm comm, MPI_Info *info_used)
 /* dup: with the context that its ranks have agreed on, for as long as it takes. */
 static int dup(struct mpi_rank *r, struct mpi_comm *c, int context, MPI_Comm *newcomm)
 {
+    /* Ranks, topology and attributes go over, messages under way do not: the context is
+     * new. A refusal by a copy function undoes it all (section 7.7.2), on this rank
+     * alone. */
     c->group->o.uses++;
     struct mpi_comm *made = mpi_comm_make(r, c->group, context, c);
     mpi_topology_copy(r, c, made);
@@ -110,6 +123,8 @@ static int dup(struct mpi_rank *r, struct mpi_comm *c, int context, MPI_Comm *ne
     return code;
 }
 
+/* Agreeing on the context is a broadcast over the old communicator: duplicating costs
+ * simulated time, as it does on a machine. */
 int mpi_comm_dup(struct mpi_rank *self, MPI_Comm comm, MPI_Comm *newcomm)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -131,6 +146,8 @@ struct idup {
     unsigned sequence;
 };
 
+/* The handle is written when the operation is over; until then the program must not look
+ * at it (section 7.4.2). */
 static void run_idup(struct mpi_rank *r, void *argument)
 {
     const struct idup *x = argument;
@@ -166,6 +183,9 @@ int mpi_comm_create(struct mpi_rank *self, MPI_Comm comm, MPI_Group group, MPI_C
     struct mpi_comm *c = mpi_comm_of(self, comm);
     struct mpi_group *g = c ? mpi_group_of(self, group) : NULL;
     if (!g) return self->code;
+    /* A context is agreed on by all before anybody leaves, so a wrong group is found
+     * first. Ranks may pass disjoint groups: all get the same context, and as they have
+     * no rank in common, no message can be taken for another. */
     for (int i = 0; i < g->size; i++)
         if (mpi_group_find(self, c->group, mpi_group_world(g, i)) == MPI_UNDEFINED)
             return mpi_error(self, c, MPI_ERR_GROUP,
@@ -179,6 +199,9 @@ int mpi_comm_create(struct mpi_rank *self, MPI_Comm comm, MPI_Group group, MPI_C
     return MPI_SUCCESS;
 }
 
+/* Only the group's ranks call this, so they agree among themselves, in a plane of tags
+ * for making; the program's tag keeps calls apart that overlap (section 7.4.2). It is cut
+ * to the 25 bits that the plane has room for. */
 int mpi_comm_create_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group group, int tag,
                           MPI_Comm *newcomm)
 {
@@ -196,6 +219,7 @@ int mpi_comm_create_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group group,
     return MPI_SUCCESS;
 }
 
+/* MPI_UNDEFINED is a color, too: such ranks take part and get MPI_COMM_NULL. */
 int mpi_comm_split(struct mpi_rank *self, MPI_Comm comm, int color, int key, MPI_Comm *newcomm)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -213,6 +237,8 @@ int mpi_comm_split_type(struct mpi_rank *self, MPI_Comm comm, int split_type, in
                         MPI_Info info, MPI_Comm *newcomm)
 {
     (void)info;
+    /* MPI_COMM_TYPE_SHARED follows the placement of ranks on nodes. The other types
+     * (section 7.4.2) would need a description of what is inside a node. */
     const int *node = self->world->setup->node;
     int color = MPI_UNDEFINED;
     if (split_type == MPI_COMM_TYPE_SHARED) color = node ? node[self->rank] : self->rank;
@@ -222,6 +248,8 @@ int mpi_comm_split_type(struct mpi_rank *self, MPI_Comm comm, int split_type, in
     return mpi_comm_split(self, comm, color, key, newcomm);
 }
 
+/* Attributes go first, while the handle is good: their functions get it (section 7.7.2).
+ * Requests under way keep the rest alive. */
 int mpi_comm_free(struct mpi_rank *self, MPI_Comm *comm)
 {
     struct mpi_comm *c = mpi_comm_of(self, *comm);
@@ -236,4 +264,5 @@ int mpi_comm_free(struct mpi_rank *self, MPI_Comm *comm)
     return MPI_SUCCESS;
 }
 
+/* It should wait for what is under way; as no process may leave the run, freeing does. */
 int mpi_comm_disconnect(struct mpi_rank *self, MPI_Comm *comm) { return mpi_comm_free(self, comm); }

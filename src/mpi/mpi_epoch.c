@@ -2,9 +2,16 @@
  * locks.
  *
  * An operation is complete at both ends when its answer is there, so that every epoch ends with
- * waiting for answers; what else is sent tells others so. */
+ * waiting for answers; what else is sent tells others so.
+ *
+ * Sections 12.5.1 to 12.5.5 of MPI 5.0. Assertions are promises that allow a library to
+ * leave out messages; here they are accepted and nothing is left out, which is always
+ * right. */
 #include "mpi/mpi_window.h"
 
+/* All operations of this rank are answered, so all of its targets have applied them;
+ * after the barrier that holds for every rank. A real library may count messages instead,
+ * and saves the answers. */
 int mpi_win_fence(struct mpi_rank *self, int assert, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -17,7 +24,8 @@ int mpi_win_fence(struct mpi_rank *self, int assert, MPI_Win win)
 
 /* --- groups --- */
 
-/* tell: a message without data to each rank of a group; hear: one from each. */
+/* tell: a message without data to each rank of a group; hear: one from each. No request:
+ * nobody waits for a message of zero bytes to leave. */
 static void tell(struct mpi_rank *r, const struct mpi_window *w, const struct mpi_group *g, int tag)
 {
     for (int i = 0; i < g->size; i++)
@@ -39,9 +47,14 @@ int mpi_win_post(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win
     struct mpi_group *g = w ? mpi_group_of(self, group) : NULL;
     (void)assert;
     if (!g) return self->code;
+    /* Exposure to a group: ranks that call MPI_Win_start wait for TAG_POST, and this one
+     * later for TAG_COMPLETE from each. Receives are posted before the others are let in,
+     * so that none comes unexpected. */
     if (w->exposed)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "the window is exposed already");
     w->exposed = g;
+    /* The window keeps the group; the empty group is a constant without a handle, which
+     * nobody counts. */
     g->o.uses += g->o.number >= 0;
     w->completed = mpi_take_zero(self->world, (g->size + 1) * (int64_t)sizeof *w->completed);
     post(self, w, g, TAG_COMPLETE, w->completed);
@@ -49,6 +62,8 @@ int mpi_win_post(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win
     return MPI_SUCCESS;
 }
 
+/* The standard allows this call to wait or to return at once (section 12.5.2). It waits:
+ * operations of the epoch then never meet a window that is not exposed. */
 int mpi_win_start(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -66,6 +81,7 @@ int mpi_win_start(struct mpi_rank *self, MPI_Group group, int assert, MPI_Win wi
     return MPI_SUCCESS;
 }
 
+/* Answers first: what the target hears after them is that everything was applied. */
 int mpi_win_complete(struct mpi_rank *self, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -79,6 +95,7 @@ int mpi_win_complete(struct mpi_rank *self, MPI_Win win)
     return MPI_SUCCESS;
 }
 
+/* The window lets go of the group and of the requests, which are all complete. */
 static void exposure_ends(struct mpi_rank *r, struct mpi_window *w)
 {
     mpi_give(r->world, w->completed);
@@ -87,6 +104,8 @@ static void exposure_ends(struct mpi_rank *r, struct mpi_window *w)
     w->exposed = NULL;
 }
 
+/* Operations were applied by the serving task as they came; what is left is to hear that
+ * no more will come. */
 int mpi_win_wait(struct mpi_rank *self, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -105,6 +124,9 @@ int mpi_win_test(struct mpi_rank *self, MPI_Win win, int *flag)
     if (!w->exposed)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "MPI_Win_post was not called before");
     *flag = 1;
+    /* Requests that are complete stay so: a later test begins where this one ends. One
+     * look may move an operation in progress instead of the request, so it is repeated
+     * until nothing moves. */
     for (int i = 0; i < w->exposed->size && *flag; i++) {
         struct comm_request *q = &w->completed[i];
         int found = PROGRESS_TASK;
@@ -122,6 +144,7 @@ static int held_type(char held)
     return held == HELD_SHARED ? MPI_LOCK_SHARED : MPI_LOCK_EXCLUSIVE;
 }
 
+/* MPI_PROC_NULL is legal, and then nothing is done (section 12.3). */
 static struct mpi_window *on_rank(struct mpi_rank *r, MPI_Win win, int rank)
 {
     struct mpi_window *w = mpi_window_of(r, win);
@@ -131,6 +154,8 @@ static struct mpi_window *on_rank(struct mpi_rank *r, MPI_Win win, int rank)
     return NULL;
 }
 
+/* The call waits until the lock is granted. Real libraries often put the lock off until
+ * the first operation; the number of messages is the same. */
 int mpi_win_lock(struct mpi_rank *self, int lock_type, int rank, int assert, MPI_Win win)
 {
     struct mpi_window *w = on_rank(self, win, rank);
@@ -153,12 +178,16 @@ int mpi_win_unlock(struct mpi_rank *self, int rank, MPI_Win win)
     if (rank == MPI_PROC_NULL) return MPI_SUCCESS;
     if (!mpi_window_locks(self, w)[rank])
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "rank %d is not locked", rank);
+    /* The lock goes when its operations are answered, so whoever gets it next sees their
+     * effect (section 12.5.3). */
     mpi_window_flush(self, w, rank);
     mpi_window_ask(self, w, RMA_UNLOCK, rank, held_type(w->locked[rank]));
     w->locked[rank] = 0;
     return MPI_SUCCESS;
 }
 
+/* No message yet: P locks for a program that reaches a few neighbours would be dear. Each
+ * is taken by the first operation on its rank (mpi_window_take). */
 int mpi_win_lock_all(struct mpi_rank *self, int assert, MPI_Win win)
 {
     struct mpi_window *w = mpi_window_of(self, win);
@@ -188,6 +217,8 @@ int mpi_win_unlock_all(struct mpi_rank *self, MPI_Win win)
 
 /* --- in between --- */
 
+/* An answered operation is complete at both ends, so a flush and a local flush are the
+ * same here (section 12.5.4). */
 int mpi_win_flush(struct mpi_rank *self, int rank, MPI_Win win)
 {
     struct mpi_window *w = on_rank(self, win, rank);

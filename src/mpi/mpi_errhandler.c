@@ -1,4 +1,7 @@
-/* mpi_errhandler.c - error handlers: what a communicator does with what goes wrong. */
+/* mpi_errhandler.c - error handlers: what a communicator does with what goes wrong.
+ *
+ * Section 9.3 of MPI 5.0. What the handlers do is in mpi_error.c; here they are made,
+ * counted and attached. */
 #include "mpi/mpi_internal.h"
 
 struct mpi_errhandler *mpi_errhandler_of(struct mpi_rank *r, MPI_Errhandler handle)
@@ -6,6 +9,8 @@ struct mpi_errhandler *mpi_errhandler_of(struct mpi_rank *r, MPI_Errhandler hand
     int value = (int)(intptr_t)handle;
     if (handle != MPI_ERRORS_ARE_FATAL && handle != MPI_ERRORS_ABORT && handle != MPI_ERRORS_RETURN)
         return mpi_object(r, handle, KIND_ERRHANDLER) ?: mpi_bad_handle(r, handle, KIND_ERRHANDLER);
+    /* Handles of the standard's three are fixed in the ABI, 0x141 to 0x143, one behind
+     * the other: the handle says the place in the table. */
     static const struct mpi_errhandler standard[3] = {
         {.o = {KIND_ERRHANDLER, -1, 1}, .code = 0x141},
         {.o = {KIND_ERRHANDLER, -1, 1}, .code = 0x142},
@@ -20,6 +25,7 @@ void mpi_errhandler_use(struct mpi_errhandler *h)
     if (h && h->function) h->o.uses++;
 }
 
+/* Uses: the program's handle and every communicator or window that has it. */
 void mpi_errhandler_drop(struct mpi_rank *r, struct mpi_errhandler *h)
 {
     if (!h || !h->function || --h->o.uses > 0) return;
@@ -27,6 +33,7 @@ void mpi_errhandler_drop(struct mpi_rank *r, struct mpi_errhandler *h)
     mpi_give(r->world, h);
 }
 
+/* The function is variadic in the standard; it gets the object and the code, and no more. */
 static int create_handler(struct mpi_rank *r, MPI_Handler_function *function,
                           MPI_Errhandler *errhandler)
 {
@@ -55,6 +62,7 @@ int mpi_comm_set_errhandler(struct mpi_rank *self, MPI_Comm comm, MPI_Errhandler
     struct mpi_comm *c = mpi_comm_of(self, comm);
     struct mpi_errhandler *h = c ? mpi_errhandler_of(self, errhandler) : NULL;
     if (!h) return self->code;
+    /* Use before drop: the new handler may be the old one. */
     mpi_errhandler_use(h);
     mpi_errhandler_drop(self, c->handler);
     c->handler = h;
@@ -63,6 +71,7 @@ int mpi_comm_set_errhandler(struct mpi_rank *self, MPI_Comm comm, MPI_Errhandler
 
 MPI_Errhandler mpi_errhandler_handle(struct mpi_errhandler *h)
 {
+    /* A communicator without a handler has the world's default. */
     if (!h) return MPI_ERRORS_ARE_FATAL;
     if (!h->function) return (MPI_Errhandler)(intptr_t)h->code;
     h->o.uses++; /* the program may free what it gets */
@@ -87,6 +96,8 @@ int mpi_errhandler_get(struct mpi_rank *self, MPI_Comm comm, MPI_Errhandler *err
     return mpi_comm_get_errhandler(self, comm, errhandler);
 }
 
+/* The program's own code goes through the same handler as errors that are found here.
+ * What the handler returns is not this call's result. */
 int mpi_comm_call_errhandler(struct mpi_rank *self, MPI_Comm comm, int errorcode)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -108,6 +119,8 @@ int mpi_errhandler_free(struct mpi_rank *self, MPI_Errhandler *errhandler)
     return MPI_SUCCESS;
 }
 
+/* Handlers of windows differ by the type of their first argument, a pointer to a handle
+ * in either case. */
 int mpi_win_create_errhandler(struct mpi_rank *self, MPI_Win_errhandler_function *win_errhandler_fn,
                               MPI_Errhandler *errhandler)
 {

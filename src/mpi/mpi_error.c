@@ -7,6 +7,8 @@
 
 #include "mpi/mpi_internal.h"
 
+/* Section 9.5: a program may add classes and codes of its own, at any time and
+ * differently on each rank. 256 are more than the programs that do so add. */
 /* Classes and codes that the program added: codes LASTCODE + 1 + i. */
 enum { MOST_ADDED = 256, FIRST_ADDED = MPI_ERR_LASTCODE + 1 };
 struct mpi_errors {
@@ -18,6 +20,7 @@ struct mpi_errors {
     } of[MOST_ADDED];
 };
 
+/* In the order of the standard's numbers (ABI chapter): class is index. */
 static const char *const class_text[] = {"no error",
                                          "invalid buffer",
                                          "invalid count",
@@ -83,6 +86,9 @@ static const char *const class_text[] = {"no error",
                                          "invalid binary interface"};
 enum { NCLASS = sizeof class_text / sizeof class_text[0] };
 
+/* The host may have to account for computing and switch what belongs to the program
+ * (setup->call); tests call plainly. Six words are the most that any callback has; one
+ * with fewer ignores the rest, which the calling convention allows. */
 /* mpi_call_program: a function of the program, on its own terms. */
 intptr_t mpi_call_program(struct mpi_rank *r, void *function, const intptr_t argument[6])
 {
@@ -93,6 +99,8 @@ intptr_t mpi_call_program(struct mpi_rank *r, void *function, const intptr_t arg
     return f(argument[0], argument[1], argument[2], argument[3], argument[4], argument[5]);
 }
 
+/* The place in the program comes from the return address of the call, if anybody can look
+ * it up. */
 _Noreturn void mpi_fail(struct mpi_rank *r, const char *text)
 {
     char place[256] = "", all[1280];
@@ -103,7 +111,7 @@ _Noreturn void mpi_fail(struct mpi_rank *r, const char *text)
 }
 
 /* The handler that counts: the communicator's, else the world's. Handles' errors have no
- * communicator. */
+ * communicator. Before MPI_Init there is no world either: then errors are fatal. */
 static struct mpi_errhandler *handler_of(struct mpi_rank *r, struct mpi_comm *c)
 {
     if (!c || !c->handler) c = r->world_comm;
@@ -117,12 +125,16 @@ int mpi_error(struct mpi_rank *r, struct mpi_comm *c, int code, const char *form
     va_list list;
     if (h && !h->function && h->code == (int)(intptr_t)MPI_ERRORS_RETURN) return code;
     if (h && h->function) return mpi_error_handled(r, c ? c : r->world_comm, h, code);
+    /* A text is made only where somebody reads it: MPI_ERRORS_RETURN may be part of a
+     * program's loop. */
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     mpi_fail(r, text);
 }
 
+/* The function gets pointers to the handle and to the code (section 9.3), and may return:
+ * the call then returns the code. A window's own handler comes here with the window. */
 int mpi_error_handled(struct mpi_rank *r, void *object, struct mpi_errhandler *h, int code)
 {
     struct mpi_comm *c = object;
@@ -133,24 +145,29 @@ int mpi_error_handled(struct mpi_rank *r, void *object, struct mpi_errhandler *h
     const char *call = r->call;
     mpi_call_program(r, (void *)(intptr_t)h->function,
                      (intptr_t[6]){(intptr_t)&handle, (intptr_t)&seen});
+    /* The handler may have called MPI itself, which changed the name of the call in
+     * progress. */
     r->call = call;
     return code;
 }
 
 /* --- the program's own classes and codes --- */
 
+/* Few programs add codes, so the table is made by the first. */
 static struct mpi_errors *errors_of(struct mpi_rank *r)
 {
     if (!r->errors) r->errors = mpi_take_zero(r->world, sizeof *r->errors);
     return r->errors;
 }
 
+/* Removed codes keep their numbers: none is given twice. */
 static int added(struct mpi_rank *r, int code)
 {
     int i = code - FIRST_ADDED;
     return r->errors && i >= 0 && i < r->errors->n && r->errors->of[i].there ? i : -1;
 }
 
+/* A class is a code of its own class, which the number 0 asks for here. */
 static int add(struct mpi_rank *r, int class, int *out)
 {
     struct mpi_errors *e = errors_of(r);
@@ -163,6 +180,7 @@ static int add(struct mpi_rank *r, int class, int *out)
     return MPI_SUCCESS;
 }
 
+/* The value of MPI_LASTUSEDCODE: it grows with each addition and never shrinks. */
 int mpi_last_code(struct mpi_rank *r) { return FIRST_ADDED - 1 + (r->errors ? r->errors->n : 0); }
 
 int mpi_add_error_class(struct mpi_rank *self, int *errorclass) { return add(self, 0, errorclass); }
@@ -172,6 +190,7 @@ int mpi_add_error_code(struct mpi_rank *self, int errorclass, int *errorcode)
     return add(self, errorclass, errorcode);
 }
 
+/* Texts of the standard's codes cannot be changed (section 9.5). */
 int mpi_add_error_string(struct mpi_rank *self, int errorcode, const char *string)
 {
     int i = added(self, errorcode);
@@ -183,6 +202,7 @@ int mpi_add_error_string(struct mpi_rank *self, int errorcode, const char *strin
     return MPI_SUCCESS;
 }
 
+/* MPI 4.1 added removal; the number stays used. */
 static int remove_code(struct mpi_rank *r, int code)
 {
     int i = added(r, code);
@@ -213,6 +233,7 @@ int mpi_remove_error_string(struct mpi_rank *self, int errorcode)
     return MPI_SUCCESS;
 }
 
+/* A code of the standard is its own class. */
 int mpi_error_class(struct mpi_rank *self, int errorcode, int *errorclass)
 {
     int i = added(self, errorcode);

@@ -5,6 +5,8 @@
 static void start_part(struct mpi_rank *r, struct mpi_comm *c, int64_t tag,
                        const struct mpi_part *p, struct comm_request *q, void **staging, bool out)
 {
+    /* Ranks of an intercommunicator are those of the other side. A dense type goes
+     * straight between buffers, any other through packed bytes. */
     int64_t bytes = p->count * p->type->size;
     int world = mpi_group_world(c->remote ? c->remote : c->group, p->peer);
     void *data = p->buffer;
@@ -18,6 +20,9 @@ static void start_part(struct mpi_rank *r, struct mpi_comm *c, int64_t tag,
     else comm_irecv(r->comm, world, tag, data, bytes, q);
 }
 
+/* Receives come first, so that what others send while this rank still packs finds its
+ * buffer. One tag is enough: between two ranks messages do not overtake, so the k-th sent
+ * meets the k-th posted. */
 void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin,
                   const struct mpi_part *in, int nout, const struct mpi_part *out)
 {
@@ -30,9 +35,12 @@ void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int
     for (int i = 0; i < nout; i++)
         if (out[i].peer != MPI_PROC_NULL)
             start_part(r, c, tag, &out[i], &q[nin + i], &staging[nin + i], true);
+    /* The order of waiting does not matter: all have to be complete, and the clock ends
+     * at the latest. */
     for (int i = 0; i < n; i++) mpi_wait_request(r, &q[i]);
     for (int i = 0; i < nin; i++) {
         if (!staging[i]) continue;
+        /* Only types with gaps have bytes to unpack. */
         int64_t bytes = in[i].count * in[i].type->size;
         mpi_unpack_bytes(in[i].buffer, staging[i], bytes, in[i].count, in[i].type);
         mpi_charge_copy(r, bytes);

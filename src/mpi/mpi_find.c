@@ -4,6 +4,8 @@
 
 enum { FIRST_HANDLE = 0x400 };
 
+/* By enum mpi_kind; keyvals are integers and no handles, but have their numbers from the
+ * same table. */
 static const char *const kind_name[] = {"",          "communicator", "group", "datatype",
                                         "operation", "request",      "info",  "error handler",
                                         "window",    "message",      "keyval"};
@@ -11,6 +13,8 @@ static const int kind_class[] = {MPI_ERR_ARG, MPI_ERR_COMM,    MPI_ERR_GROUP, MP
                                  MPI_ERR_OP,  MPI_ERR_REQUEST, MPI_ERR_INFO,  MPI_ERR_ERRHANDLER,
                                  MPI_ERR_WIN, MPI_ERR_REQUEST, MPI_ERR_KEYVAL};
 
+/* The kind in the lower four bits tells a wrong handle from a stale one, which names the
+ * mistake: programs pass a group where a communicator belongs. */
 /* What is wrong with a handle: null, of another kind, or of nothing that is there. */
 void *mpi_bad_handle(struct mpi_rank *r, const void *handle, enum mpi_kind kind)
 {
@@ -27,6 +31,7 @@ void *mpi_bad_handle(struct mpi_rank *r, const void *handle, enum mpi_kind kind)
     return NULL;
 }
 
+/* The two fixed handles are by far the most frequent, so they come first. */
 struct mpi_comm *mpi_comm_of(struct mpi_rank *r, MPI_Comm handle)
 {
     if (handle == MPI_COMM_WORLD && r->world_comm) return r->world_comm;
@@ -40,6 +45,7 @@ MPI_Comm mpi_comm_handle(struct mpi_rank *r, const struct mpi_comm *c)
     return c == r->world_comm ? MPI_COMM_WORLD : c == r->self_comm ? MPI_COMM_SELF : mpi_handle(c);
 }
 
+/* A constant: it has no number, so nobody counts or frees it. */
 static const struct mpi_group empty = {.o = {KIND_GROUP, -1, 1}, .rank = MPI_UNDEFINED, .step = 1};
 
 struct mpi_group *mpi_group_of(struct mpi_rank *r, MPI_Group handle)

@@ -1,5 +1,9 @@
 /* mpi_graph.c - graph topologies: one that all ranks know whole, and distributed ones of which each
- * knows its own. */
+ * knows its own.
+ *
+ * Sections 8.5.3 to 8.5.5 of MPI 5.0. Ranks are never reordered, for the reason in
+ * mpi_cart.c. A graph that all know takes memory for the whole of it on every rank; of a
+ * distributed one each rank keeps its own edges. */
 #include <stdlib.h>
 
 #include "mpi/mpi_collective.h"
@@ -15,11 +19,13 @@ int mpi_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int nnodes, const
     if (!c) return self->code;
     if (nnodes < 0 || nnodes > c->size)
         return mpi_error(self, c, MPI_ERR_ARG, "a graph of %d nodes for %d ranks", nnodes, c->size);
+    /* `indx` holds the ends of the nodes' lists, so the last one is the number of edges. */
     int nedges = nnodes ? indx[nnodes - 1] : 0;
     for (int i = 0; i < nedges; i++)
         if (edges[i] < 0 || edges[i] >= nnodes)
             return mpi_error(self, c, MPI_ERR_ARG, "edge %d goes to %d of %d nodes", i, edges[i],
                              nnodes);
+    /* Nodes are the first ranks; those behind get MPI_COMM_NULL. */
     struct mpi_comm *made = mpi_comm_first(self, c, nnodes);
     *comm_graph = MPI_COMM_NULL;
     if (!made) return MPI_SUCCESS;
@@ -42,6 +48,7 @@ int mpi_graphdims_get(struct mpi_rank *self, MPI_Comm comm, int *nnodes, int *ne
     return MPI_SUCCESS;
 }
 
+/* Arrays that are too short get as much as they have room for. */
 int mpi_graph_get(struct mpi_rank *self, MPI_Comm comm, int maxindex, int maxedges, int indx[],
                   int edges[])
 {
@@ -86,6 +93,7 @@ int mpi_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int rank, int maxn
     return MPI_SUCCESS;
 }
 
+/* The identity, as for grids. */
 int mpi_graph_map(struct mpi_rank *self, MPI_Comm comm, int nnodes, const int indx[],
                   const int edges[], int *newrank)
 {
@@ -100,6 +108,8 @@ int mpi_graph_map(struct mpi_rank *self, MPI_Comm comm, int nnodes, const int in
 
 /* --- distributed --- */
 
+/* The topology was made before: what is wrong with arguments is found before ranks agree
+ * on a context. */
 static int made(struct mpi_rank *r, struct mpi_comm *c, struct mpi_topology *t, MPI_Comm *newcomm)
 {
     struct mpi_comm *m = mpi_comm_first(r, c, c->size);
@@ -117,8 +127,9 @@ static int check_ranks(struct mpi_rank *r, struct mpi_comm *c, const int *rank, 
     return MPI_SUCCESS;
 }
 
-/* Weights as the topology keeps them: NULL for none, one element that nobody reads for empty lists.
- */
+/* Weights as the topology keeps them: NULL for none, one element that nobody reads for
+ * empty lists. MPI_UNWEIGHTED and MPI_WEIGHTS_EMPTY are fixed addresses of the ABI and
+ * never read. */
 static int *weights(struct mpi_rank *r, const int *from, int n)
 {
     if (from == MPI_UNWEIGHTED) return NULL;
@@ -137,6 +148,9 @@ int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int
     int code = check_ranks(self, c, sources, indegree);
     if (code == MPI_SUCCESS) code = check_ranks(self, c, destinations, outdegree);
     if (code != MPI_SUCCESS) return code;
+    /* Each rank names all its edges, so nothing need be told to others. Both ends must
+     * name an edge; whether they do is not checked, as section 8.5.4 leaves it to the
+     * program. */
     struct mpi_topology *t = mpi_topology_take(self, MPI_DIST_GRAPH);
     t->nin = indegree;
     t->nout = outdegree;
@@ -147,17 +161,23 @@ int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int
     return made(self, c, t, comm_dist_graph);
 }
 
+/* Three integers, so that a list of edges travels as integers. */
 /* An edge as any rank may name it. */
 struct edge {
     int from, to, weight;
 };
 
+/* Neighbours come in the order of their ranks, the same in every run. Section 8.5.4
+ * leaves the order open, but a simulator should not. */
 static int by_source(const void *a, const void *b)
 {
     const struct edge *x = a, *y = b;
     return x->from != y->from ? x->from - y->from : x->to - y->to;
 }
 
+/* Every rank holds all E edges for a moment. A library for large machines sends each edge
+ * to its two ends instead; that takes less memory, and an exchange in which ranks do not
+ * know who sends to them. */
 /* gather_edges: everybody's edges on every rank, by numbers first and then all of them. */
 static struct edge *gather_edges(struct mpi_rank *r, struct mpi_comm *c, struct edge *own, int n,
                                  int *total)
@@ -166,6 +186,7 @@ static struct edge *gather_edges(struct mpi_rank *r, struct mpi_comm *c, struct 
         *places = counts + c->size;
     mpi_collective_allgather(r, &c->channel, c->sequence++, &n, counts, sizeof n);
     *total = 0;
+    /* From edges to integers: three each. */
     for (int i = 0; i < c->size; i++) {
         counts[i] *= 3;
         places[i] = 3 * *total;
@@ -193,6 +214,8 @@ int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const
     int nown = 0, total, code = c ? check_ranks(self, c, sources, n) : self->code;
     (void)info, (void)reorder;
     if (code != MPI_SUCCESS) return code;
+    /* Checks come before the first message. Degrees say how many destinations belong to
+     * each source. */
     bool weighted = weight != MPI_UNWEIGHTED;
     for (int i = 0; i < n; i++) nown += degrees[i];
     code = check_ranks(self, c, destinations, nown);
@@ -204,6 +227,8 @@ int mpi_dist_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int n, const
                                    weighted && weight != MPI_WEIGHTS_EMPTY ? weight[k] : 0};
     struct edge *all = gather_edges(self, c, own, nown, &total);
     struct mpi_topology *t = mpi_topology_take(self, MPI_DIST_GRAPH);
+    /* Once over all edges to count, once more to keep them: lists are as long as needed.
+     * An edge from a rank to itself counts on both sides. */
     for (int i = 0; i < total; i++) {
         t->nin += all[i].to == c->rank;
         t->nout += all[i].from == c->rank;
@@ -237,6 +262,7 @@ int mpi_dist_graph_neighbors_count(struct mpi_rank *self, MPI_Comm comm, int *in
     return MPI_SUCCESS;
 }
 
+/* Weights are written only where the graph has some and the program wants them. */
 int mpi_dist_graph_neighbors(struct mpi_rank *self, MPI_Comm comm, int maxindegree, int sources[],
                              int sourceweights[], int maxoutdegree, int destinations[],
                              int destweights[])

@@ -1,4 +1,7 @@
-/* mpi_info.c - MPI_Info: keys with values, in the order in which they were set. */
+/* mpi_info.c - MPI_Info: keys with values, in the order in which they were set.
+ *
+ * Chapter 10 of MPI 5.0. Nothing acts on hints: they are kept so that programs that set
+ * and ask for them work. Lists are short, so a key is searched for from the start. */
 #include <ctype.h>
 #include <stdio.h>
 
@@ -17,6 +20,7 @@ static struct mpi_entry *entry_of(const struct mpi_info *i, const char *key)
     return NULL;
 }
 
+/* `most` counts the byte at the end, as MPI_MAX_INFO_KEY does in C. */
 /* trimmed: without blanks at either end, as the standard asks; false: empty or longer than `most`.
  */
 static bool trimmed(char *out, const char *in, size_t most)
@@ -30,6 +34,8 @@ static bool trimmed(char *out, const char *in, size_t most)
     return true;
 }
 
+/* Key and value are copies of the info's own. A key that is there keeps its place in the
+ * order. */
 static void put(struct mpi_rank *r, struct mpi_info *i, const char *key, const char *value)
 {
     struct mpi_entry *e = entry_of(i, key);
@@ -38,6 +44,7 @@ static void put(struct mpi_rank *r, struct mpi_info *i, const char *key, const c
         e->value = mpi_take_text(r->world, value);
         return;
     }
+    /* Doubling, so that n keys cost O(n) copies in all. */
     if (i->n == i->room) {
         int room = i->room ? 2 * i->room : 4;
         struct mpi_entry *grown = mpi_take(r->world, room * (int64_t)sizeof *grown);
@@ -57,6 +64,7 @@ int mpi_info_create(struct mpi_rank *self, MPI_Info *info)
     return MPI_SUCCESS;
 }
 
+/* Blanks at the ends go, so that Fortran's padded strings name the same keys as C's. */
 int mpi_info_set(struct mpi_rank *self, MPI_Info info, const char *key, const char *value)
 {
     struct mpi_info *i = info_of(self, info);
@@ -72,6 +80,7 @@ int mpi_info_set(struct mpi_rank *self, MPI_Info info, const char *key, const ch
     return MPI_SUCCESS;
 }
 
+/* Keys behind it move up: their numbers follow the order in which they were set. */
 int mpi_info_delete(struct mpi_rank *self, MPI_Info info, const char *key)
 {
     struct mpi_info *i = info_of(self, info);
@@ -85,6 +94,7 @@ int mpi_info_delete(struct mpi_rank *self, MPI_Info info, const char *key)
     return MPI_SUCCESS;
 }
 
+/* Deprecated: `valuelen` does not count the byte at the end, which is why one is added. */
 int mpi_info_get(struct mpi_rank *self, MPI_Info info, const char *key, int valuelen, char *value,
                  int *flag)
 {
@@ -96,6 +106,8 @@ int mpi_info_get(struct mpi_rank *self, MPI_Info info, const char *key, int valu
     return MPI_SUCCESS;
 }
 
+/* Its replacement counts the byte at the end, in both directions; a length of 0 asks for
+ * the size alone. */
 int mpi_info_get_string(struct mpi_rank *self, MPI_Info info, const char *key, int *buflen,
                         char *value, int *flag)
 {
@@ -128,6 +140,7 @@ int mpi_info_get_nkeys(struct mpi_rank *self, MPI_Info info, int *nkeys)
     return MPI_SUCCESS;
 }
 
+/* Numbers begin at 0 and change when a key is deleted. */
 int mpi_info_get_nthkey(struct mpi_rank *self, MPI_Info info, int n, char *key)
 {
     struct mpi_info *i = info_of(self, info);
@@ -137,6 +150,7 @@ int mpi_info_get_nthkey(struct mpi_rank *self, MPI_Info info, int n, char *key)
     return MPI_SUCCESS;
 }
 
+/* Entries are put in the order of the original, so that numbers of keys are the same. */
 int mpi_info_dup(struct mpi_rank *self, MPI_Info info, MPI_Info *newinfo)
 {
     struct mpi_info *i = info_of(self, info);
@@ -147,6 +161,7 @@ int mpi_info_dup(struct mpi_rank *self, MPI_Info info, MPI_Info *newinfo)
     return MPI_SUCCESS;
 }
 
+/* Nothing else holds on to an info: it ends at once. */
 int mpi_info_free(struct mpi_rank *self, MPI_Info *info)
 {
     struct mpi_info *i = info_of(self, *info);

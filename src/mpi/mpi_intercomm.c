@@ -3,16 +3,21 @@
  * Both sides share one context for the messages between them; each has a communicator of its own
  * beneath for what it does among itself. Collective operations move data directly between the sides
  * where every rank's differ, and through the first rank of each side where one message tells all.
- */
+ *
+ * Section 7.6 of MPI 5.0; collective operations as in chapter 6's paragraphs on
+ * intercommunicators. */
 #include <stdlib.h>
 
 #include "mpi/mpi_collective.h"
 
+/* Plain bytes as a part of an exchange. */
 static struct mpi_part words(int peer, void *buffer, int64_t bytes)
 {
     return (struct mpi_part){peer, buffer, bytes, mpi_type_basic(MPI_BYTE)};
 }
 
+/* Both directions are under way at once: neither side can wait for the other to begin.
+ * Tags are in the plane of making, which the program's messages never reach. */
 /* swap: the leaders of both sides exchange bytes over `c`, whose rank `peer` is the other leader.
  */
 static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, void *out,
@@ -27,6 +32,7 @@ static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, 
     mpi_wait_request(r, &q[1]);
 }
 
+/* What only a leader knows goes to all of its side, by the machine's broadcast. */
 static void tell(struct mpi_rank *r, struct mpi_comm *local, int root, void *data, int64_t bytes)
 {
     struct mpi_collective x = {
@@ -51,9 +57,13 @@ static struct side_word meet(struct mpi_rank *r, struct mpi_comm *local, int lea
                              struct mpi_comm *peers, int peer, int64_t tag, int word,
                              struct contexts *context)
 {
+    /* Two numbers from each side: the first may serve both sides, the second stays the
+     * own one's. Both are unique in the run, so the larger of the first two is, too, and
+     * no third message is needed to agree. */
     int given = mpi_context_agree(r, &local->channel, local->sequence++);
     struct side_word out = {local->size, given, word}, in = {0};
     context->own = mpi_context_agree(r, &local->channel, local->sequence++);
+    /* Only leaders reach the other side: the rest hear from them. */
     if (local->rank == leader) swap(r, peers, peer, tag, &out, sizeof out, &in, sizeof in);
     tell(r, local, leader, &in, sizeof in);
     context->both = given > in.context ? given : in.context;
@@ -64,9 +74,12 @@ static struct side_word meet(struct mpi_rank *r, struct mpi_comm *local, int lea
 static struct mpi_comm *make(struct mpi_rank *r, struct mpi_group *local, struct mpi_group *remote,
                              struct contexts context, struct mpi_comm *like)
 {
+    /* Two communicators beneath one handle: that between the sides, whose ranks are the
+     * remote group's for messages, and that of the own side for collective steps. */
     local->o.uses++;
     struct mpi_comm *c = mpi_comm_make(r, local, context.both, like);
     c->remote = remote;
+    /* A barrier between two sides is never the machine's own. */
     c->whole = false;
     c->local = mpi_comm_make(r, local, context.own, like);
     return c;
@@ -83,11 +96,15 @@ int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_l
     if (local_leader < 0 || local_leader >= local->size)
         return mpi_error(self, local, MPI_ERR_RANK, "leader %d of %d ranks", local_leader,
                          local->size);
+    /* The peer communicator and the other leader are significant at the leader alone
+     * (section 7.6.2). */
     bool leads = local->rank == local_leader;
     if (leads) peers = mpi_comm_of(self, peer_comm);
     if (leads && !peers) return self->code;
     int npeer = !leads ? 0 : peers->remote ? peers->remote->size : peers->size;
     struct contexts context;
+    /* An error at the leader under MPI_ERRORS_RETURN leaves the other ranks waiting:
+     * nothing was agreed on. */
     if (leads && (remote_leader < 0 || remote_leader >= npeer))
         return mpi_error(self, local, MPI_ERR_RANK, "remote leader %d of %d ranks", remote_leader,
                          npeer);
@@ -97,16 +114,19 @@ int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_l
     int *own = mpi_take(self->world, (local->size + far.size) * (int64_t)sizeof *own),
         *list = own + local->size;
     for (int i = 0; i < local->size; i++) own[i] = mpi_group_world(local->group, i);
+    /* The tag is doubled, because one call needs two. */
     int64_t nown = local->size * (int64_t)sizeof *own, nfar = far.size * (int64_t)sizeof *own;
     if (leads) swap(self, peers, remote_leader, 2 * (int64_t)tag + 1, own, nown, list, nfar);
     tell(self, local, local_leader, list, nfar);
     struct mpi_group *remote = mpi_group_make(self, list, far.size);
     mpi_give(self->world, own);
+    /* make takes over one use of each group, and the local communicator keeps its own. */
     local->group->o.uses++;
     *newintercomm = mpi_handle(make(self, local->group, remote, context, local));
     return MPI_SUCCESS;
 }
 
+/* The first rank of each side leads: any would do, and everybody knows this one. */
 int mpi_intercomm_dup(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm)
 {
     struct contexts context;
@@ -132,6 +152,8 @@ static MPI_Comm parts(struct mpi_rank *r, struct mpi_comm *c, const int *near, i
     return mpi_handle(make(r, local, mpi_group_make(r, far, nfar), context, c));
 }
 
+/* Section 7.4.2: each side's ranks pass the group of their own side; the new communicator
+ * joins the two. Sizes travel as the word of the meeting, so that lists have room. */
 int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group *g,
                        MPI_Comm *newcomm)
 {
@@ -141,6 +163,8 @@ int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group 
     int *far = near + g->size;
     for (int i = 0; i < g->size; i++) near[i] = mpi_group_world(g, i);
     int64_t nnear = g->size * (int64_t)sizeof *near, nfar = other.word * (int64_t)sizeof *near;
+    /* Ranks of the world are valid in the whole run, so they need no translation on the
+     * other side. */
     if (c->local->rank == 0) swap(r, c, 0, 1, near, nnear, far, nfar);
     tell(r, c->local, 0, far, nfar);
     *newcomm = parts(r, c, near, g->size, far, other.word, context);
@@ -160,6 +184,7 @@ static int by_key(const void *a, const void *b)
     return x->place - y->place;
 }
 
+/* Sorts what it chooses from; the order on both sides is that of section 7.4.2. */
 static int chosen(struct choice *of, int n, int color, int *list)
 {
     int m = 0;
@@ -169,6 +194,8 @@ static int chosen(struct choice *of, int n, int color, int *list)
     return m;
 }
 
+/* Both sides split by the same colors; those with ranks on one side only give
+ * MPI_COMM_NULL. */
 int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int key,
                         MPI_Comm *newcomm)
 {
@@ -178,6 +205,7 @@ int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int k
     struct choice *near = mpi_take(r->world, (size + other) * (int64_t)sizeof *near);
     struct choice *far = near + size;
     int *list = mpi_take(r->world, (size + other) * (int64_t)sizeof *list);
+    /* One context serves all parts: they have no rank in common. */
     meet(r, c->local, 0, c, 0, 0, 0, &context);
     mpi_collective_allgather(r, &c->local->channel, c->local->sequence++, &own, near, sizeof own);
     int64_t nnear = size * (int64_t)sizeof own, nfar = other * (int64_t)sizeof own;
@@ -190,7 +218,8 @@ int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int k
     return MPI_SUCCESS;
 }
 
-/* The low side comes first; of equals the one whose first rank of the world is the smaller. */
+/* The low side comes first; of equals the one whose first rank of the world is the
+ * smaller. Section 7.6.3. */
 int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI_Comm *newintracomm)
 {
     struct mpi_comm *c = mpi_comm_of(self, intercomm);
@@ -199,6 +228,8 @@ int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI
     if (!c->remote)
         return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
     struct side_word far = meet(self, c->local, 0, c, 0, 0, high != 0, &context);
+    /* `high` of each side travels as the word of the meeting; the world's order decides
+     * where both say the same, so that both sides come to one result. */
     bool first = (high != 0) != far.word
                      ? !high
                      : mpi_group_world(c->group, 0) < mpi_group_world(c->remote, 0);
@@ -213,6 +244,7 @@ int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI
     return MPI_SUCCESS;
 }
 
+/* An intracommunicator has no other side, so asking is an error (section 7.6.1). */
 int mpi_comm_remote_size(struct mpi_rank *self, MPI_Comm comm, int *size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -235,7 +267,10 @@ int mpi_comm_remote_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group *group
 
 /* --- collective operations --- */
 
-/* What one side does among itself for a call; tags apart from those of making communicators. */
+/* What one side does among itself for a call; tags apart from those of making
+ * communicators. Both communicators count operations from 0, and the local one is used by
+ * making, too. The added 2^24 takes the upper half of the tags' cycle, so that the two do
+ * not meet before 16 million operations. */
 static void among_own(struct mpi_rank *r, const struct mpi_collective *x, enum mpi_what what,
                       void *recv)
 {
@@ -248,6 +283,8 @@ static void among_own(struct mpi_rank *r, const struct mpi_collective *x, enum m
     mpi_collective_run(r, &local);
 }
 
+/* Own side complete, first ranks tell each other, own side released: whoever leaves knows
+ * that all have come. */
 static void barrier(struct mpi_rank *r, const struct mpi_collective *x)
 {
     char out = 0, in = 0;
@@ -262,6 +299,7 @@ static void broadcast(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct mpi_part part = {0, x->recv, x->recv_count, x->recv_type};
     if (x->root == MPI_ROOT) mpi_exchange(r, x->comm, x->sequence, 0, NULL, 1, &part);
+    /* On the root's side: MPI_ROOT has sent, MPI_PROC_NULL has nothing to do. */
     if (x->root < 0) return;
     part.peer = x->root;
     if (x->comm->rank == 0) mpi_exchange(r, x->comm, x->sequence, 1, &part, 0, NULL);
@@ -272,6 +310,8 @@ static void broadcast(struct mpi_rank *r, const struct mpi_collective *x)
 static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct mpi_comm *c = x->comm;
+    /* The side with data reduces to its first rank, which sends the result on. The answer
+     * of an MPI_Allreduce is the other side's sum, not one's own (section 6.9.6). */
     bool all = x->what == WHAT_ALLREDUCE, contributes = all || x->root >= 0;
     int64_t bytes = x->recv_count * x->recv_type->extent;
     struct mpi_part in = {0, x->recv, x->recv_count, x->recv_type}, out = in;
@@ -281,6 +321,8 @@ static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
     bool sends = out.buffer != NULL, takes = all ? c->rank == 0 : x->root == MPI_ROOT;
     mpi_exchange(r, c, x->sequence, takes, &in, sends, &out);
     mpi_give(r->world, out.buffer);
+    /* Only now is the receive buffer complete on the first rank, from where the rest of
+     * the side gets it. */
     if (all) among_own(r, x, WHAT_BCAST, x->recv);
 }
 
@@ -288,6 +330,8 @@ static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
 static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct mpi_comm *c = x->comm;
+    /* Counts are those of the own side; both sides' sums must be equal (section 6.10),
+     * which nobody checks. */
     int64_t total = x->recv_count * c->size, place = 0;
     int *places = mpi_take(r->world, (c->size + 1) * (int64_t)sizeof *places);
     for (int i = 0; i < c->size && x->recv_counts.at; i++) {
@@ -298,12 +342,15 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
     int64_t bytes = total * x->recv_type->extent + 1;
     struct mpi_part out = {0, NULL, total, x->recv_type}, in = out;
     struct mpi_collective part = *x;
+    /* One block holds both vectors, the own result and the other's. Only first ranks need
+     * them. */
     if (c->rank == 0) out.buffer = mpi_take_zero(r->world, 2 * bytes);
     in.buffer = c->rank == 0 ? (char *)out.buffer + bytes : NULL;
     part.recv_count = total;
     part.recv_counts = (struct mpi_counts){0};
     among_own(r, &part, WHAT_REDUCE, out.buffer);
     mpi_exchange(r, c, x->sequence, c->rank == 0, &in, c->rank == 0, &out);
+    /* The second half is a scatter by the same counts. */
     part = *x;
     part.send = in.buffer;
     part.send_type = x->recv_type;
@@ -327,6 +374,8 @@ static struct mpi_part part_of(struct mpi_rank *r, const struct mpi_collective *
     int64_t each = out ? x->send_count : x->recv_count;
     struct mpi_type *t = out ? x->send_type : x->recv_type;
     char *memory = out ? (char *)(uintptr_t)x->send : x->recv;
+    /* Displacements count extents, but bytes in the one call whose blocks have types of
+     * their own. */
     int64_t place = counts.at ? mpi_count_at(places, i) : i * each, scale = 1;
     if (x->what == WHAT_ALLTOALLW) t = mpi_type_of(r, out ? x->send_types[i] : x->recv_types[i]);
     else scale = t->extent;
@@ -338,11 +387,16 @@ static struct mpi_part part_of(struct mpi_rank *r, const struct mpi_collective *
  */
 static void direct(struct mpi_rank *r, const struct mpi_collective *x)
 {
+    /* All in one exchange: blocks in and out under way together. The cost is that of a
+     * linear algorithm; the machine's rules for collectives speak of one group and have
+     * no entry for two. */
     int far = x->comm->remote->size, nin = 0, nout = 0;
     bool rooted = x->what == WHAT_GATHER || x->what == WHAT_SCATTER, root = x->root == MPI_ROOT;
     bool blocks_in = x->what != WHAT_SCATTER,
          blocks_out = x->what != WHAT_GATHER && x->what != WHAT_ALLGATHER;
     struct mpi_part *in = mpi_take(r->world, 2 * far * (int64_t)sizeof *in), *out = in + far;
+    /* The root, or everybody where there is none, has a block for each rank of the other
+     * side. Gathering sends one block, the same for all. */
     for (int i = 0; i < far && (!rooted || root); i++) {
         if (!rooted || x->what == WHAT_GATHER) in[nin++] = part_of(r, x, false, i);
         if (!rooted || x->what == WHAT_SCATTER) {
@@ -350,6 +404,7 @@ static void direct(struct mpi_rank *r, const struct mpi_collective *x)
             out[nout++].peer = i;
         }
     }
+    /* A rank of the side without the root: one message, to the root or from it. */
     if (rooted && x->root >= 0) {
         struct mpi_part part = blocks_in ? part_of(r, x, true, 0) : part_of(r, x, false, 0);
         part.peer = x->root;

@@ -14,6 +14,7 @@ struct mpi_large {
     struct mpi_large *next, **before;
 };
 
+/* The list comes first, so that an entry's address is that of the block from the heap. */
 /* What stands before each block. */
 union head {
     struct {
@@ -24,6 +25,7 @@ union head {
     char room[HEAD];
 };
 
+/* Class k holds blocks of up to 2^(SMALLEST + k) bytes, class 16 of up to 2 MiB. */
 static int class_of(size_t bytes)
 {
     if (bytes <= (size_t)1 << SMALLEST) return 0;
@@ -33,15 +35,21 @@ static int class_of(size_t bytes)
 static void *take_large(struct mpi_world *w, size_t bytes)
 {
     union head *h = malloc(HEAD + bytes);
+    /* Out of memory ends the process with a message: no caller has a way to go on. */
     if (!h) check_memory(HEAD + bytes);
     h->class = -1;
     h->list.next = w->large;
+    /* `before` is the link that leads here, so that a block is taken off without a
+     * search. */
     h->list.before = &w->large;
     if (w->large) w->large->before = &h->list.next;
     w->large = &h->list;
     return (char *)h + HEAD;
 }
 
+/* Free blocks are chained through their first word; the head stays, so the class is known
+ * when a block comes back. Blocks hold what they held: callers fill them or ask for
+ * zeros. */
 void *mpi_take(struct mpi_world *w, int64_t bytes)
 {
     int class = class_of((size_t)bytes);
@@ -78,6 +86,7 @@ void mpi_give(struct mpi_world *w, void *block)
     free(h);
 }
 
+/* Small blocks end with the run's arena. */
 void mpi_memory_end(struct mpi_world *w)
 {
     while (w->large) {

@@ -9,6 +9,7 @@ static int world_rank(const struct mpi_comm *c, int rank)
     return mpi_group_world(c->remote ? c->remote : c->group, rank);
 }
 
+/* A rank is checked against the side that it belongs to. */
 static int peers(const struct mpi_comm *c) { return c->remote ? c->remote->size : c->size; }
 
 /* mpi_message_check: the arguments that all calls share, into *q. */
@@ -16,6 +17,8 @@ int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_mess
 {
     *q = (struct mpi_request){.what = m.receive ? REQUEST_RECEIVE : REQUEST_SEND, .mode = m.mode};
     q->comm = mpi_comm_of(r, m.comm);
+    /* Section 3.11: a message to or from MPI_PROC_NULL has no effect, and its type may be
+     * anything. */
     /* nothing is said of what goes to nobody */
     if (m.peer == MPI_PROC_NULL) m.type = MPI_BYTE;
     q->type = q->comm ? mpi_type_of(r, m.type) : NULL;
@@ -30,6 +33,8 @@ int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_mess
                          m.peer, peers(c));
     if (m.tag < 0 && !(m.receive && m.tag == MPI_ANY_TAG) && m.peer != MPI_PROC_NULL)
         return mpi_error(r, c, MPI_ERR_TAG, "tag %d is negative", m.tag);
+    /* A type with gaps may hold absolute addresses and begin at MPI_BOTTOM, which is NULL
+     * (section 5.1.5): then NULL is right. */
     if (!m.buffer && q->type->dense && m.count * q->type->size > 0 && m.peer != MPI_PROC_NULL)
         return mpi_error(r, c, MPI_ERR_BUFFER, "the buffer is NULL");
     q->buffer = m.buffer;
@@ -39,6 +44,9 @@ int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_mess
     return MPI_SUCCESS;
 }
 
+/* Only one message is looked at: comm.h copies what is sent, so earlier ones take no
+ * room. A program is told of a buffer that could never be enough; it is not told of one
+ * that is too small for several messages at once. */
 static int buffered_room(struct mpi_rank *r, struct mpi_request *q, int64_t bytes)
 {
     struct mpi_comm *c = q->comm;
@@ -54,6 +62,8 @@ static int send(struct mpi_rank *r, struct mpi_request *q)
 {
     struct mpi_comm *c = q->comm;
     int64_t bytes = q->count * q->type->size;
+    /* A dense type's bytes lie in the program's memory already; comm.h copies them into
+     * the message. */
     const void *data = q->buffer;
     void *packed = NULL;
     if (q->mode == MODE_BUFFERED && buffered_room(r, q, bytes) != MPI_SUCCESS)
@@ -63,6 +73,9 @@ static int send(struct mpi_rank *r, struct mpi_request *q)
         mpi_pack_bytes(packed, q->buffer, q->count, q->type);
         mpi_charge_copy(r, bytes);
     }
+    /* Modes of section 3.4. Synchronous sends wait until they are matched. Buffered ones
+     * have no request, so that the call is local whatever the size. Ready sends go as
+     * standard ones: that the receive is posted is the program's promise. */
     int to = world_rank(c, q->peer);
     int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, q->tag);
     if (q->mode == MODE_SYNCHRONOUS) comm_isend_synchronous(r->comm, to, tag, data, bytes, &q->q);
@@ -72,6 +85,7 @@ static int send(struct mpi_rank *r, struct mpi_request *q)
     return MPI_SUCCESS;
 }
 
+/* The tag of another context cannot match, because the mask always covers the upper bits. */
 static void receive(struct mpi_rank *r, struct mpi_request *q)
 {
     struct mpi_comm *c = q->comm;
@@ -79,6 +93,7 @@ static void receive(struct mpi_rank *r, struct mpi_request *q)
     void *room = mpi_receive_room(r, q);
     int from = q->peer == MPI_ANY_SOURCE ? COMM_ANY_SOURCE : world_rank(c, q->peer);
     int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, any_tag ? 0 : q->tag);
+    /* MPI_ANY_TAG leaves the lower 32 bits open and keeps context and plane. */
     int64_t mask = any_tag ? ~(INT64_C(0xffffffff)) & COMM_WHOLE_TAG : COMM_WHOLE_TAG;
     comm_irecv_matching(r->comm, from, tag, mask, room, q->room, &q->q);
 }
@@ -93,6 +108,8 @@ void *mpi_receive_room(struct mpi_rank *r, struct mpi_request *q)
     return q->staging = mpi_take(r->world, q->room ? q->room : 1);
 }
 
+/* Persistent requests come here once for each start, so what the last one left is
+ * cleared. */
 int mpi_message_begin(struct mpi_rank *r, struct mpi_request *q)
 {
     q->q = (struct comm_request){0};
@@ -106,6 +123,8 @@ int mpi_message_begin(struct mpi_rank *r, struct mpi_request *q)
     return MPI_SUCCESS;
 }
 
+/* Ranks of the world become ranks of the communicator only where the program does not
+ * know them. */
 static int source_of(struct mpi_rank *r, const struct mpi_request *q)
 {
     if (q->peer != MPI_ANY_SOURCE) return q->peer;
@@ -115,8 +134,10 @@ static int source_of(struct mpi_rank *r, const struct mpi_request *q)
 /* mpi_message_finish: the message is there: unpack it, tell its status, or that it was too long. */
 int mpi_message_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status)
 {
+    /* The third internal word is what MPI_Test_cancelled reads (mpi_status.c). */
     if (q->cancelled) {
         mpi_give(r->world, q->staging);
+        /* An empty status, section 3.7.3: a send has nothing to tell. */
         mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
         if (status) status->MPI_internal[2] = 1;
         return MPI_SUCCESS;
@@ -129,8 +150,12 @@ int mpi_message_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Status *st
         mpi_status_set(status, MPI_PROC_NULL, MPI_ANY_TAG, 0);
         return MPI_SUCCESS;
     }
+    /* What does not fit is cut: bytes that are there are delivered, and the error says
+     * the rest. */
     int64_t bytes = q->q.truncated ? q->room : q->q.bytes;
     int source = source_of(r, q), tag = (int)(q->q.tag & 0xffffffff);
+    /* A message may be shorter than the type has room for: unpacking stops where the
+     * bytes end. */
     if (q->staging) {
         mpi_unpack_bytes((void *)(uintptr_t)q->buffer, q->staging, bytes, q->count, q->type);
         mpi_charge_copy(r, bytes);

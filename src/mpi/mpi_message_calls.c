@@ -1,10 +1,15 @@
-/* mpi_message_calls.c - the functions that send and receive, in every mode and way to start. */
+/* mpi_message_calls.c - the functions that send and receive, in every mode and way to start.
+ *
+ * The stubs give blocking, non-blocking and persistent forms of a send to one function
+ * with `start`, so that a mode is written once. Section 3.4 of MPI 5.0 has the modes, 3.7
+ * and 3.9 the ways to start. */
 #include "mpi/mpi_internal.h"
 
 /* --- sends --- */
 
 static int start_send(struct mpi_rank *r, struct mpi_start start, struct mpi_message m)
 {
+    /* A blocking send needs no handle: its request lives on the stack. */
     struct mpi_request own;
     int code = mpi_message_check(r, &own, m);
     if (code != MPI_SUCCESS) return code;
@@ -14,6 +19,8 @@ static int start_send(struct mpi_rank *r, struct mpi_start start, struct mpi_mes
     return code;
 }
 
+/* A standard send may wait for its receive or not: the machine's protocol for the size
+ * decides (eager or rendezvous, docs/network.md). */
 int mpi_send(struct mpi_rank *self, struct mpi_start start, const void *buf, MPI_Count count,
              MPI_Datatype datatype, int dest, int tag, MPI_Comm comm)
 {
@@ -22,6 +29,7 @@ int mpi_send(struct mpi_rank *self, struct mpi_start start, const void *buf, MPI
         (struct mpi_message){MODE_STANDARD, false, buf, count, datatype, dest, tag, comm});
 }
 
+/* Local: it completes without a receive, as the buffer takes the message. */
 int mpi_bsend(struct mpi_rank *self, struct mpi_start start, const void *buf, MPI_Count count,
               MPI_Datatype datatype, int dest, int tag, MPI_Comm comm)
 {
@@ -30,6 +38,8 @@ int mpi_bsend(struct mpi_rank *self, struct mpi_start start, const void *buf, MP
         (struct mpi_message){MODE_BUFFERED, false, buf, count, datatype, dest, tag, comm});
 }
 
+/* Complete when the receive has begun, which programs use to find hidden dependences on
+ * buffering. */
 int mpi_ssend(struct mpi_rank *self, struct mpi_start start, const void *buf, MPI_Count count,
               MPI_Datatype datatype, int dest, int tag, MPI_Comm comm)
 {
@@ -38,6 +48,7 @@ int mpi_ssend(struct mpi_rank *self, struct mpi_start start, const void *buf, MP
         (struct mpi_message){MODE_SYNCHRONOUS, false, buf, count, datatype, dest, tag, comm});
 }
 
+/* Costs what a standard send costs: the machines know no faster path. */
 int mpi_rsend(struct mpi_rank *self, struct mpi_start start, const void *buf, MPI_Count count,
               MPI_Datatype datatype, int dest, int tag, MPI_Comm comm)
 {
@@ -51,6 +62,8 @@ int mpi_rsend(struct mpi_rank *self, struct mpi_start start, const void *buf, MP
 int mpi_recv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype, int source,
              int tag, MPI_Comm comm, MPI_Status *status)
 {
+    /* No reference is taken on communicator and type: the call ends before the program
+     * can free them. */
     struct mpi_request own;
     int code = mpi_message_check(
         self, &own,
@@ -61,6 +74,7 @@ int mpi_recv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype dat
     return mpi_message_finish(self, &own, status);
 }
 
+/* The checked request is copied into one with a handle. */
 static int start_receive(struct mpi_rank *r, enum mpi_start_mode mode, struct mpi_message m,
                          MPI_Request *request)
 {
@@ -95,6 +109,8 @@ static int exchange(struct mpi_rank *r, struct mpi_message out, struct mpi_messa
     int code = mpi_message_check(r, &to, out);
     if (code == MPI_SUCCESS) code = mpi_message_check(r, &from, in);
     if (code != MPI_SUCCESS) return code;
+    /* MPI_Sendrecv_replace: comm.h takes its copy when the send begins, so the receive
+     * may come after it. Elsewhere the receive goes first, as in any exchange. */
     if (out.buffer == in.buffer) {
         mpi_message_begin(r, &to);
         mpi_message_begin(r, &from);
@@ -102,6 +118,8 @@ static int exchange(struct mpi_rank *r, struct mpi_message out, struct mpi_messa
         mpi_message_begin(r, &from);
         mpi_message_begin(r, &to);
     }
+    /* Section 3.10: neither half waits for the other, so rings of such calls do not lock
+     * up. */
     mpi_wait_request(r, &from.q);
     mpi_wait_request(r, &to.q);
     return mpi_message_finish(r, &from, status);
@@ -135,12 +153,16 @@ struct pair {
     MPI_Status status;
 };
 
+/* The operation in progress checks its arguments again, which costs nothing in simulated
+ * time. */
 static void run_pair(struct mpi_rank *r, void *argument)
 {
     struct pair *p = argument;
     exchange(r, p->out, p->in, &p->status);
 }
 
+/* Checked here, so that errors are the call's and not those of a later wait. The status
+ * is found behind its offset when the request is completed. */
 static int start_pair(struct mpi_rank *r, struct pair p, MPI_Request *request)
 {
     struct mpi_request check;

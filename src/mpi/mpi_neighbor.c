@@ -1,5 +1,8 @@
 /* mpi_neighbor.c - collective operations between neighbours of a topology: one message for each
- * edge. */
+ * edge.
+ *
+ * Section 8.6 of MPI 5.0. There is no algorithm to choose: who talks to whom is the
+ * program's, and all messages are under way together. */
 #include "mpi/mpi_collective.h"
 #include "mpi/mpi_topology.h"
 
@@ -8,8 +11,9 @@ struct neighbours {
     int nin, nout, *in, *out;
 };
 
-/* Of a grid: in each dimension the one before, then the one behind. Of a graph: both ways the same.
- */
+/* Of a grid: in each dimension the one before, then the one behind. Of a graph: both ways
+ * the same. MPI_PROC_NULL beyond the edge of a grid keeps its block: the place in the
+ * program's buffers stays, and nothing is sent (section 8.6.1). */
 static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm *c)
 {
     const struct mpi_topology *t = c->topology;
@@ -18,6 +22,7 @@ static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm
     if (t->kind == MPI_CART) n.nin = n.nout = 2 * t->ndim;
     else if (t->kind == MPI_DIST_GRAPH) n.nin = t->nin, n.nout = t->nout;
     else n.nin = n.nout = t->index[c->rank] - (c->rank ? t->index[c->rank - 1] : 0);
+    /* One block for both lists; whoever asked gives it back. */
     n.in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *n.in);
     n.out = n.in + n.nin;
     for (int i = 0; i < n.nin; i++) {
@@ -35,6 +40,7 @@ static struct mpi_part part(int peer, void *buffer, int64_t place, int64_t count
     return (struct mpi_part){peer, (char *)buffer + place, count, t};
 }
 
+/* Displacements count extents, but bytes in MPI_Neighbor_alltoallw. */
 static struct mpi_part in_part(struct mpi_rank *r, const struct mpi_collective *x, int peer, int i)
 {
     int64_t count = x->recv_counts.at ? mpi_count_at(x->recv_counts, i) : x->recv_count;
@@ -47,6 +53,7 @@ static struct mpi_part in_part(struct mpi_rank *r, const struct mpi_collective *
 static struct mpi_part out_part(struct mpi_rank *r, const struct mpi_collective *x, int peer, int i)
 {
     void *send = (void *)(uintptr_t)x->send;
+    /* The same block goes to everybody. */
     if (x->what == WHAT_NEIGHBOR_ALLGATHER) return part(peer, send, 0, x->send_count, x->send_type);
     int64_t count = x->send_counts.at ? mpi_count_at(x->send_counts, i) : x->send_count;
     int64_t place = x->send_places.at ? mpi_count_at(x->send_places, i) : i * x->send_count;
@@ -72,6 +79,7 @@ void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x)
     struct neighbours n = neighbours_of(r, x->comm);
     struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in),
                     *out = in + n.nin;
+    /* Blocks are numbered by edge, not by rank: several edges may lead to one rank. */
     for (int i = 0; i < n.nin; i++) in[i] = in_part(r, x, n.in[i], i);
     for (int i = 0; i < n.nout; i++) out[i] = out_part(r, x, n.out[i], i);
     if (x->comm->topology->kind == MPI_CART) order_grid(n.nout, out);

@@ -3,7 +3,11 @@
  *
  * An operation on n elements counts n floating-point operations, whatever the type: an integer's
  * takes about as long. Sums of integers wrap as unsigned ones do, so that no element is undefined.
- */
+ *
+ * Section 6.9.2 of MPI 5.0 says which operation is defined on which types, section 6.9.4
+ * what the pairs are, section 6.9.5 what a program's own function gets. One plain loop
+ * for each pair of operation and class: no function is called for an element, and
+ * compilers make vectors of it. */
 #include <complex.h>
 
 #include "mpi/mpi_internal.h"
@@ -24,20 +28,26 @@
         w->flop += (uint64_t)n * (cost);                                                           \
     }
 
+/* A comparison with a number that is none is false: then `a` stays, the same on every
+ * machine. */
 #define ORDERED(class, type)                                                                       \
     ONE(max, class, type, b > a ? b : a, 1)                                                        \
     ONE(min, class, type, b < a ? b : a, 1)
 
+/* Results are 0 or 1 in the type of the operands. */
 #define LOGICAL(class, type)                                                                       \
     ONE(land, class, type, a &&b, 1)                                                               \
     ONE(lor, class, type, a || b, 1)                                                               \
     ONE(lxor, class, type, !a != !b, 1)
 
+/* Not for floating-point numbers, whose bits mean nothing here. */
 #define BITS(class, type)                                                                          \
     ONE(band, class, type, a &b, 1)                                                                \
     ONE(bor, class, type, a | b, 1)                                                                \
     ONE(bxor, class, type, a ^ b, 1)
 
+/* The sum is formed in 64 unsigned bits and cut to the type, which is the sum modulo its
+ * range. */
 #define INTEGER(class, type)                                                                       \
     ONE(sum, class, type, (uint64_t)a + (uint64_t)b, 1)                                            \
     ONE(prod, class, type, (uint64_t)a *(uint64_t)b, 1)                                            \
@@ -45,6 +55,8 @@
     BITS(class, type)                                                                              \
     LOGICAL(class, type)
 
+/* Order of operands and of elements is fixed, so that results have the same bits
+ * everywhere. */
 #define REAL(class, type)                                                                          \
     ONE(sum, class, type, a + b, 1)                                                                \
     ONE(prod, class, type, a *b, 1)                                                                \
@@ -56,7 +68,8 @@
     ONE(sum, class, type, a + b, 2)                                                                \
     ONE(prod, class, type, a *b, 6)
 
-/* The smaller index wins where values are equal. */
+/* The smaller index wins where values are equal. Section 6.9.4. Ties must be decided, or
+ * the result would depend on the algorithm's order. */
 #define PAIR(class, value_type, index_type)                                                        \
     struct pair_##class                                                                            \
     {                                                                                              \
@@ -96,6 +109,7 @@ PAIR(LONG_DOUBLE_INT, long double, int)
 PAIR(FLOAT_FLOAT, float, float)
 PAIR(DOUBLE_DOUBLE, double, double)
 
+/* Rows of the table below, class by class. */
 #define NUMBERS(op)                                                                                \
     [CLASS_INT8] = op##_INT8, [CLASS_INT16] = op##_INT16, [CLASS_INT32] = op##_INT32,              \
     [CLASS_INT64] = op##_INT64, [CLASS_UINT8] = op##_UINT8, [CLASS_UINT16] = op##_UINT16,          \
@@ -116,6 +130,7 @@ PAIR(DOUBLE_DOUBLE, double, double)
     [CLASS_SHORT_INT] = op##_SHORT_INT, [CLASS_LONG_DOUBLE_INT] = op##_LONG_DOUBLE_INT,            \
     [CLASS_FLOAT_FLOAT] = op##_FLOAT_FLOAT, [CLASS_DOUBLE_DOUBLE] = op##_DOUBLE_DOUBLE
 
+/* Handles of operations are 0x20 to 0x3f in the ABI, so the handle is the index. */
 enum { FIRST_OP = 0x20, OPS = 0x20 };
 
 /* By handle and class; NULL: not defined. */
@@ -134,6 +149,9 @@ static mpi_combine *const combine[OPS][CLASSES] = {
     [0x39 - FIRST_OP] = {PAIRS(maxloc)},
 };
 
+/* Idempotent operations may see an element twice, which some algorithms of
+ * comm/collectives.h use. All of the standard's commute, although sums of floating-point
+ * numbers do not associate: the order of those is the algorithm's, and always the same. */
 #define OP(handle, text, idempotent_)                                                              \
     [handle - FIRST_OP] = {                                                                        \
         .o = {KIND_OP, -1, 1}, .commutative = true, .idempotent = idempotent_, .name = text}
@@ -154,6 +172,7 @@ struct mpi_op *mpi_op_of(struct mpi_rank *r, MPI_Op handle)
     return op ? op : mpi_bad_handle(r, handle, KIND_OP);
 }
 
+/* The program's own operations lie elsewhere in memory. */
 static bool is_standard(const struct mpi_op *op) { return op >= standard && op < standard + OPS; }
 
 /* --- the program's functions --- */
@@ -162,6 +181,8 @@ static bool is_standard(const struct mpi_op *op) { return op >= standard && op <
  */
 static void call(struct mpi_reduction *x, const void *in, void *inout, int64_t n)
 {
+    /* The function gets pointers to length and type (section 6.9.5). Functions made by
+     * MPI_Op_create_c count in MPI_Count, all others in int. */
     MPI_Datatype type = mpi_type_handle(x->type);
     MPI_Count large = n;
     int small = (int)n;
@@ -177,6 +198,8 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
 {
     struct mpi_reduction *x = context;
     (void)w;
+    /* inout is the right operand. When `into` comes from higher ranks it is that already;
+     * where order does not matter, no copy is needed either. */
     if (before || x->op->commutative) {
         call(x, (const char *)with - x->offset, (char *)into - x->offset, n);
         return;
@@ -194,12 +217,16 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
 int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_op *op,
                        struct mpi_type *t, struct mpi_comm *c)
 {
+    /* Elements are as far apart as the type says. Types whose bytes reach beyond their
+     * extent overlap; such an element counts as long as its bytes. */
     *x = (struct mpi_reduction){.self = r, .op = op, .type = t, .offset = t->true_lb};
     x->element = t->true_extent > t->extent ? t->true_extent : t->extent;
     x->work = (struct collective_op){.commutative = op->commutative, .idempotent = op->idempotent};
     x->work.context = x;
     x->work.combine = combine_user;
     if (!is_standard(op)) return MPI_SUCCESS;
+    /* A built-in operation works on basic types alone (section 6.9.2); a type made by the
+     * program has no class. */
     x->work.combine = t->class == CLASS_NONE ? NULL : combine[op - standard][t->class];
     if (x->work.combine) return MPI_SUCCESS;
     return mpi_error(r, c, MPI_ERR_OP, "%s is not defined on %s", op->name,
@@ -218,6 +245,8 @@ int mpi_reduce_local(struct mpi_rank *self, const void *inbuf, void *inoutbuf, M
         return mpi_error(self, NULL, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
     int code = mpi_reduction_make(self, &x, o, t, NULL);
     if (code != MPI_SUCCESS || count == 0) return code;
+    /* Section 6.9.7: inout = in op inout, on this rank, for the time that its operations
+     * take. */
     x.work.combine((char *)inoutbuf + x.offset, (const char *)inbuf + x.offset, true, count,
                    x.work.context, &w);
     comm_work(self->comm, &w);
@@ -226,6 +255,7 @@ int mpi_reduce_local(struct mpi_rank *self, const void *inbuf, void *inoutbuf, M
 
 /* --- handles --- */
 
+/* Handles of operations in both widths share a kind, and free alike. */
 static int create(struct mpi_rank *r, MPI_User_function *function, bool large, int commute,
                   MPI_Op *op)
 {
@@ -260,6 +290,7 @@ void mpi_op_use(struct mpi_op *o)
     if (!is_standard(o)) o->o.uses++;
 }
 
+/* Reductions in progress keep the function (section 6.9.5); the handle ends now. */
 int mpi_op_free(struct mpi_rank *self, MPI_Op *op)
 {
     struct mpi_op *o = mpi_op_of(self, *op);

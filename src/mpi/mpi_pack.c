@@ -1,4 +1,8 @@
-/* mpi_pack.c - data from where a datatype says to bytes one behind the other, and back. */
+/* mpi_pack.c - data from where a datatype says to bytes one behind the other, and back.
+ *
+ * Types are trees: a piece is blocks of another type, down to dense runs, which are moved
+ * by memcpy. Packed bytes are in the order of the type map (section 5.1), without gaps
+ * and without a header, as all ranks are of one host. */
 #include "mpi/mpi_internal.h"
 
 /* Bytes that are being moved between memory and a packed run; `left` stops a message that ends
@@ -11,6 +15,7 @@ struct mover {
 
 static void move(struct mover *m, char *memory, int64_t bytes)
 {
+    /* A run is cut where the message ends; what lies behind stays as it was. */
     if (bytes > m->left) bytes = m->left;
     if (m->out) memcpy(memory, m->packed, (size_t)bytes);
     else memcpy(m->packed, memory, (size_t)bytes);
@@ -18,6 +23,8 @@ static void move(struct mover *m, char *memory, int64_t bytes)
     m->left -= bytes;
 }
 
+/* A dense type is one run whatever its depth, so contiguous data cost one memcpy.
+ * Recursion is as deep as the program nests its types. */
 static void move_type(struct mover *m, char *memory, int64_t n, const struct mpi_type *t);
 
 static void move_piece(struct mover *m, char *memory, const struct mpi_piece *p)
@@ -44,6 +51,7 @@ static void move_type(struct mover *m, char *memory, int64_t n, const struct mpi
         for (int k = 0; k < t->npiece; k++) move_piece(m, memory, &t->piece[k]);
 }
 
+/* The cast takes const away for a mover that serves both directions. */
 void mpi_pack_bytes(void *packed, const void *memory, int64_t n, const struct mpi_type *t)
 {
     struct mover m = {.packed = packed, .left = n * t->size};
@@ -57,6 +65,8 @@ void mpi_unpack_bytes(void *memory, const void *packed, int64_t bytes, int64_t n
     move_type(&m, memory, n, t);
 }
 
+/* Packing is charged as bytes that move through memory, at the node's rate: a library
+ * that packs pays that, too. Network cards that gather by themselves are not modelled. */
 void mpi_charge_copy(struct mpi_rank *r, int64_t bytes)
 {
     const struct work w = {.bytes = (uint64_t)bytes};
@@ -68,8 +78,10 @@ int64_t mpi_copy_typed(struct mpi_rank *r, void *to, int64_t nto, const struct m
                        const void *from, int64_t nfrom, const struct mpi_type *tfrom)
 {
     int64_t bytes = nfrom * tfrom->size, room = nto * tto->size;
+    /* What does not fit is cut, as a message would be. */
     if (bytes > room) bytes = room;
     if (bytes == 0 || to == from) return bytes;
+    /* Both runs may overlap in calls with one buffer, hence memmove. */
     if (tto->dense && tfrom->dense) {
         memmove(to, from, (size_t)bytes);
         return bytes;
@@ -83,6 +95,7 @@ int64_t mpi_copy_typed(struct mpi_rank *r, void *to, int64_t nto, const struct m
 
 /* --- the program's own packing --- */
 
+/* Section 5.2: `position` moves on, so that several calls fill one buffer. */
 int mpi_pack(struct mpi_rank *self, const void *inbuf, MPI_Count incount, MPI_Datatype datatype,
              void *outbuf, MPI_Count outsize, MPI_Count *position, MPI_Comm comm)
 {
@@ -101,6 +114,7 @@ int mpi_pack(struct mpi_rank *self, const void *inbuf, MPI_Count incount, MPI_Da
     return MPI_SUCCESS;
 }
 
+/* The type need not be that of the packing, only its bytes. */
 int mpi_unpack(struct mpi_rank *self, const void *inbuf, MPI_Count insize, MPI_Count *position,
                void *outbuf, MPI_Count outcount, MPI_Datatype datatype, MPI_Comm comm)
 {
@@ -119,6 +133,7 @@ int mpi_unpack(struct mpi_rank *self, const void *inbuf, MPI_Count insize, MPI_C
     return MPI_SUCCESS;
 }
 
+/* An upper bound in the standard, the exact size here. */
 int mpi_pack_size(struct mpi_rank *self, MPI_Count incount, MPI_Datatype datatype, MPI_Comm comm,
                   MPI_Count *size)
 {

@@ -1,4 +1,7 @@
-/* mpi_probe.c - looking for messages before they are received, and receiving what was found. */
+/* mpi_probe.c - looking for messages before they are received, and receiving what was found.
+ *
+ * Section 3.8 of MPI 5.0. A matched probe takes the message away from all other receives,
+ * so that the one that follows it gets the very message that was seen. */
 #include "mpi/mpi_internal.h"
 
 /* probe: whether a message fits; `take` keeps it from all others. */
@@ -7,20 +10,27 @@ static int probe(struct mpi_rank *r, MPI_Comm comm, int source, int tag, int blo
 {
     struct mpi_request q;
     struct comm_envelope e;
+    /* A receive of nothing has all the arguments that a probe has, so their check is the
+     * same. */
     struct mpi_message m = {MODE_STANDARD, true, NULL, 0, MPI_BYTE, source, tag, comm};
     int code = mpi_message_check(r, &q, m);
     *flag = 1;
     if (code != MPI_SUCCESS) return code;
     if (take) take->comm = q.comm;
+    /* A program that only probes must not keep its collectives from going on (progress
+     * rule, section 3.7.4). */
     mpi_poll_tasks(r);
     mpi_status_set(status, MPI_PROC_NULL, MPI_ANY_TAG, 0);
     if (source == MPI_PROC_NULL) return code;
+    /* From here as a receive would do (mpi_message.c): the same tag and mask, so that it
+     * finds the same message. */
     struct mpi_group *peers = q.comm->remote ? q.comm->remote : q.comm->group;
     int from = source == MPI_ANY_SOURCE ? COMM_ANY_SOURCE : mpi_group_world(peers, source);
     int64_t wanted = mpi_tag(q.comm->context, PLANE_PROGRAM, tag == MPI_ANY_TAG ? 0 : tag);
     int64_t mask = tag == MPI_ANY_TAG ? ~(INT64_C(0xffffffff)) & COMM_WHOLE_TAG : COMM_WHOLE_TAG;
     if (take) *flag = comm_probe_take(r->comm, from, wanted, mask, block, &e, &take->q);
     else *flag = comm_probe(r->comm, from, wanted, mask, block, &e);
+    /* The size is in the envelope before the data are here: programs take memory for it. */
     if (*flag)
         mpi_status_set(status, mpi_group_find(r, peers, e.source), (int)(e.tag & 0xffffffff),
                        e.bytes);
@@ -35,6 +45,8 @@ int mpi_probe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, MPI_Sta
         int code = probe(self, comm, source, tag, 0, &flag, status, NULL);
         if (flag || code != MPI_SUCCESS) return code;
     }
+    /* Without operations in progress waiting needs no polls: the rank stops until a
+     * message comes. */
     return probe(self, comm, source, tag, 1, &flag, status, NULL);
 }
 
@@ -44,6 +56,8 @@ int mpi_iprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, int *f
     return probe(self, comm, source, tag, 0, flag, status, NULL);
 }
 
+/* The message waits inside a request; its handle is first that of a request, then of a
+ * message. */
 static int matched_probe(struct mpi_rank *r, int source, int tag, MPI_Comm comm, int block,
                          int *flag, MPI_Message *message, MPI_Status *status)
 {
@@ -52,6 +66,7 @@ static int matched_probe(struct mpi_rank *r, int source, int tag, MPI_Comm comm,
     *message = MPI_MESSAGE_NULL;
     mpi_handle_end(r, m);
     if (*flag && source == MPI_PROC_NULL) *message = MPI_MESSAGE_NO_PROC;
+    /* Nothing was taken: the request goes back to the spare ones. */
     if (!*flag || code != MPI_SUCCESS || source == MPI_PROC_NULL) {
         m->next = r->spare_request;
         r->spare_request = m;
@@ -81,6 +96,7 @@ static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_D
 {
     struct mpi_type *t = mpi_type_of(r, datatype);
     if (!t) return r->code;
+    /* Section 3.8.3: a message from nobody gives a receive from nobody. */
     if (*message == MPI_MESSAGE_NO_PROC) {
         struct mpi_message none = {MODE_STANDARD, true,          buf, count,
                                    datatype,      MPI_PROC_NULL, 0,   MPI_COMM_SELF};
@@ -97,6 +113,8 @@ static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_D
     }
     if (count < 0)
         return mpi_error(r, q->comm, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
+    /* From here on the request is like one of MPI_Irecv that has been matched: it holds
+     * communicator and type, and counts as pending. */
     mpi_handle_end(r, q);
     *message = MPI_MESSAGE_NULL;
     q->type = t;
@@ -121,6 +139,7 @@ int mpi_imrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype d
     return code;
 }
 
+/* Waiting for a request is all that a blocking receive adds. */
 int mpi_mrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype,
               MPI_Message *message, MPI_Status *status)
 {

@@ -6,6 +6,8 @@
 
 struct mpi_request *mpi_request_make(struct mpi_rank *r, enum mpi_request_kind what)
 {
+    /* Programs start and complete requests in every step: they come from a list of spare
+     * ones, and handles from the table's free slots, so both take constant time. */
     struct mpi_request *q = r->spare_request;
     if (q) r->spare_request = q->next;
     else q = mpi_take(r->world, sizeof *q);
@@ -20,6 +22,7 @@ static void spare(struct mpi_rank *r, struct mpi_request *q)
     r->spare_request = q;
 }
 
+/* A persistent request ends by MPI_Request_free alone, any other when it is completed. */
 /* end: the request is no more; what it held on to is let go. */
 static void end(struct mpi_rank *r, struct mpi_request *q)
 {
@@ -38,12 +41,16 @@ struct mpi_request *mpi_request_of(struct mpi_rank *r, MPI_Request handle)
     return q ? q : mpi_bad_handle(r, handle, KIND_REQUEST);
 }
 
+/* The program may free communicator and type while the operation goes on (sections 5.1.9,
+ * 7.4.3). */
 static void hold(struct mpi_request *q)
 {
     if (q->comm) q->comm->o.uses++;
     if (q->type) mpi_type_use(q->type);
 }
 
+/* An operation in progress runs at once, as far as it comes without waiting: its first
+ * messages leave now. */
 static int begin(struct mpi_rank *r, struct mpi_request *q)
 {
     q->active = true;
@@ -57,6 +64,8 @@ static int begin(struct mpi_rank *r, struct mpi_request *q)
 int mpi_request_start(struct mpi_rank *r, const struct mpi_request *checked, struct mpi_start start)
 {
     struct mpi_request *q = mpi_request_make(r, checked->what);
+    /* The checked request was filled before there was a handle: all but its first member
+     * is taken over. */
     struct mpi_object o = q->o;
     *q = *checked;
     q->o = o;
@@ -67,6 +76,8 @@ int mpi_request_start(struct mpi_rank *r, const struct mpi_request *checked, str
     return code;
 }
 
+/* The argument is copied, as the caller's lies on its stack; in the copy the operation
+ * may leave a status. */
 int mpi_request_task(struct mpi_rank *r, struct mpi_comm *c, mpi_task_fn *run, const void *argument,
                      int64_t bytes, int64_t status_at, struct mpi_start start)
 {
@@ -81,6 +92,7 @@ int mpi_request_task(struct mpi_rank *r, struct mpi_comm *c, mpi_task_fn *run, c
     return q->persistent ? MPI_SUCCESS : begin(r, q);
 }
 
+/* Called when the request ends: what it must let go of is known to who started it. */
 void mpi_request_release(struct mpi_rank *r, MPI_Request request,
                          void (*release)(struct mpi_rank *r, void *argument))
 {
@@ -96,6 +108,8 @@ MPI_Request mpi_request_nothing(struct mpi_rank *r)
     return mpi_handle(q);
 }
 
+/* Without a look at time: what comm.h has completed by now. Looking itself is
+ * mpi_progress's. */
 bool mpi_request_ready(const struct mpi_request *q)
 {
     switch (q->what) {
@@ -112,6 +126,9 @@ bool mpi_request_ready(const struct mpi_request *q)
     return true;
 }
 
+/* Section 13.2: the query function fills the status, the free function ends the state;
+ * both run when the program completes the request. The four words are those of
+ * mpi_grequest_start. */
 static int finish_general(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status)
 {
     void *const *f = q->argument;
@@ -123,6 +140,8 @@ static int finish_general(struct mpi_rank *r, struct mpi_request *q, MPI_Status 
     return code;
 }
 
+/* The caller has seen that it is ready. A persistent request becomes inactive and keeps
+ * its handle. */
 int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *request,
                        MPI_Status *status)
 {
@@ -132,6 +151,7 @@ int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *r
     if (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE)
         code = mpi_message_finish(r, q, status);
     else if (q->what == REQUEST_GENERAL) code = finish_general(r, q, status);
+    /* The status of MPI_Isendrecv is what its receiving half told; collectives have none. */
     else if (q->what == REQUEST_TASK && q->status_at >= 0) {
         if (status) *status = *(MPI_Status *)((char *)q->argument + q->status_at);
     } else mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
@@ -143,6 +163,7 @@ int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *r
 
 /* --- starting persistent ones --- */
 
+/* Section 3.9. Starting an active request again is an error, as its buffer is in use. */
 int mpi_start(struct mpi_rank *self, MPI_Request *request)
 {
     struct mpi_request *q = mpi_request_of(self, *request);
@@ -154,6 +175,7 @@ int mpi_start(struct mpi_rank *self, MPI_Request *request)
     return begin(self, q);
 }
 
+/* In the order of the array, one after the other; an error leaves the rest inactive. */
 int mpi_startall(struct mpi_rank *self, int count, MPI_Request array_of_requests[])
 {
     int code = MPI_SUCCESS;
@@ -170,11 +192,14 @@ int mpi_request_free(struct mpi_rank *self, MPI_Request *request)
     struct mpi_request *q = mpi_request_of(self, *request);
     if (!q) return self->code;
     *request = MPI_REQUEST_NULL;
+    /* Neither memory nor uses come back: comm.h writes into this request when the message
+     * is done. */
     if (q->active && !mpi_request_ready(q)) {
         self->pending--;
         mpi_handle_end(self, q);
         return MPI_SUCCESS;
     }
+    /* It is complete already, so freeing it completes it. */
     if (q->active) {
         q->persistent = false;
         return mpi_request_finish(self, q, NULL, MPI_STATUS_IGNORE);
@@ -188,10 +213,13 @@ int mpi_cancel(struct mpi_rank *self, MPI_Request *request)
 {
     struct mpi_request *q = mpi_request_of(self, *request);
     if (!q) return self->code;
+    /* The program's own function decides; it is told whether the request is complete. */
     if (q->what == REQUEST_GENERAL) {
         void *const *f = q->argument;
         return (int)mpi_call_program(self, f[2], (intptr_t[6]){(intptr_t)f[3], q->matched});
     }
+    /* Section 3.8.4: a receive either is taken back or has its message, and the status of
+     * the completing call says which. Cancelling a send is deprecated. */
     if (q->what == REQUEST_RECEIVE && q->active && q->q.active && comm_cancel(self->comm, &q->q))
         q->cancelled = true;
     return MPI_SUCCESS;
@@ -199,6 +227,8 @@ int mpi_cancel(struct mpi_rank *self, MPI_Request *request)
 
 /* --- requests of the program's own --- */
 
+/* Section 13.2. The program completes such a request itself; until then it is pending
+ * like any other. */
 int mpi_grequest_start(struct mpi_rank *self, MPI_Grequest_query_function *query_fn,
                        MPI_Grequest_free_function *free_fn, MPI_Grequest_cancel_function *cancel_fn,
                        void *extra_state, MPI_Request *request)
@@ -219,6 +249,8 @@ int mpi_grequest_complete(struct mpi_rank *self, MPI_Request request)
     if (!q) return self->code;
     if (q->what != REQUEST_GENERAL)
         return mpi_error(self, NULL, MPI_ERR_REQUEST, "the request is not a generalized one");
+    /* `matched` serves as the mark of completion, as no message belongs to such a
+     * request. */
     q->matched = true;
     return MPI_SUCCESS;
 }

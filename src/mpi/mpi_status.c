@@ -1,5 +1,8 @@
 /* mpi_status.c - statuses: source, tag, and in the internal words the number of bytes and whether
- * it was cancelled. */
+ * it was cancelled.
+ *
+ * Section 3.2.5 of MPI 5.0 for statuses, 5.1.11 for counts of elements, 13.3 for what the
+ * program may set. */
 #include "mpi/mpi_internal.h"
 
 /* The error field belongs to calls that complete many requests: others leave it alone. */
@@ -12,6 +15,7 @@ void mpi_status_set(MPI_Status *s, int source, int tag, int64_t bytes)
     s->MPI_internal[2] = 0;
 }
 
+/* By memcpy: the internal words are ints and may lie on a boundary of four bytes. */
 static int64_t bytes_of(const MPI_Status *s)
 {
     int64_t bytes;
@@ -19,6 +23,8 @@ static int64_t bytes_of(const MPI_Status *s)
     return bytes;
 }
 
+/* Bytes that are no whole number of elements have no count. A type of size 0 has 0
+ * elements of any empty message. */
 int mpi_get_count(struct mpi_rank *self, const MPI_Status *status, MPI_Datatype datatype,
                   MPI_Count *count)
 {
@@ -34,6 +40,8 @@ int mpi_get_count(struct mpi_rank *self, const MPI_Status *status, MPI_Datatype 
  * is left. */
 static int64_t elements(int64_t n, const struct mpi_type *t, int64_t *bytes)
 {
+    /* Whole elements are counted by their number of basics; of the one that is cut, each
+     * piece is asked in turn. */
     int64_t whole = t->size ? *bytes / t->size : n, found;
     if (whole > n) whole = n;
     found = whole * t->basics;
@@ -53,6 +61,8 @@ int mpi_get_elements(struct mpi_rank *self, const MPI_Status *status, MPI_Dataty
     struct mpi_type *t = mpi_type_of(self, datatype);
     if (!t) return self->code;
     int64_t bytes = bytes_of(status);
+    /* The type may be repeated without limit here, as only the bytes matter; the division
+     * keeps the product within 64 bits. */
     *count = t->size ? elements(INT64_MAX / (t->basics ? t->basics : 1), t, &bytes) : 0;
     if (bytes > 0) *count = MPI_UNDEFINED;
     return MPI_SUCCESS;
@@ -64,6 +74,8 @@ int mpi_get_elements_x(struct mpi_rank *self, const MPI_Status *status, MPI_Data
     return mpi_get_elements(self, status, datatype, count);
 }
 
+/* Whole types first, so that the product does not overflow; the rest is a share of one
+ * type's bytes, exact where all its basics have one size. */
 int mpi_status_set_elements(struct mpi_rank *self, MPI_Status *status, MPI_Datatype datatype,
                             MPI_Count count)
 {
@@ -95,6 +107,7 @@ int mpi_test_cancelled(struct mpi_rank *self, const MPI_Status *status, int *fla
     return MPI_SUCCESS;
 }
 
+/* MPI 4.1 added functions for the public fields, for languages that cannot reach them. */
 #define STATUS_FIELD(get, set, argument, field)                                                    \
     int get(struct mpi_rank *self, const MPI_Status *status, int *argument)                        \
     {                                                                                              \

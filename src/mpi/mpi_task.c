@@ -26,6 +26,8 @@ struct mpi_stack {
     int number;
 };
 
+/* Doubling keeps the number of mappings small: the kernel limits them. Stacks are given
+ * back when the run ends. */
 static void more_stacks(struct mpi_world *w)
 {
     struct err e = {0};
@@ -35,6 +37,8 @@ static void more_stacks(struct mpi_world *w)
     if (!p->fibers) check_memory((size_t)p->n * TASK_STACK);
     p->next = w->pools;
     w->pools = p;
+    /* From the last down, so that the free list begins with the first: runs use the same
+     * stacks. */
     for (int i = p->n - 1; i >= 0; i--) {
         struct mpi_stack *s = arena_take(w->arena, sizeof *s);
         *s = (struct mpi_stack){.next = w->free_stack, .fibers = p->fibers, .number = i};
@@ -48,6 +52,7 @@ void mpi_tasks_end(struct mpi_world *w)
     w->pools = NULL;
 }
 
+/* The first and last that runs on the operation's own stack. */
 static void begin(void *argument)
 {
     struct mpi_task *t = argument;
@@ -58,6 +63,8 @@ static void begin(void *argument)
 /* Run t until it waits or is done; a task that ends leaves the list. */
 void mpi_task_go_on(struct mpi_rank *r, struct mpi_task *t)
 {
+    /* The operation may call functions of the program, which call MPI: the rank's call in
+     * progress comes back after it. */
     const char *call = r->call;
     r->running = t;
     fiber_enter(t->stack->fiber);
@@ -77,6 +84,8 @@ void mpi_task_go_on(struct mpi_rank *r, struct mpi_task *t)
 struct mpi_task *mpi_task_start(struct mpi_rank *r, mpi_task_fn *run, void *argument)
 {
     CHECK(!r->running);
+    /* Operations do not start operations: a program's function that is called inside one
+     * may not either. */
     struct mpi_task *t = mpi_take_zero(r->world, sizeof *t), **end = &r->tasks;
     if (!r->world->free_stack) more_stacks(r->world);
     struct mpi_stack *s = r->world->free_stack;
@@ -85,6 +94,8 @@ struct mpi_task *mpi_task_start(struct mpi_rank *r, mpi_task_fn *run, void *argu
     /* the oldest first, so that equal times are served in the order of the calls */
     while (*end) end = &(*end)->next;
     *end = t;
+    /* It runs until its first wait. If it never waits, it is done on return; its memory
+     * is the request's to free. */
     s->fiber = fiber_start(s->fibers, s->number, begin, t);
     mpi_task_go_on(r, t);
     return t;
@@ -109,6 +120,8 @@ static struct comm_request **watch(struct mpi_rank *r, int nwanted,
     return all;
 }
 
+/* One look or wait over all at once. The index found says who is meant: the caller's own,
+ * or a task's. */
 int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wanted, bool block)
 {
     struct comm_request *few[MOST];
@@ -117,6 +130,8 @@ int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wa
     if (block) found = comm_wait_any(r->comm, n, all);
     else found = comm_test_any(r->comm, n, all);
     if (all != few) mpi_give(r->world, all);
+    /* A task whose message is there goes on now, on its own stack, while the rank's stack
+     * stands here. */
     if (found < nwanted) return found < 0 ? PROGRESS_NONE : found;
     struct mpi_task *t = r->tasks;
     for (int i = nwanted; i < found; i++) t = t->next;
@@ -124,6 +139,9 @@ int mpi_progress(struct mpi_rank *r, int nwanted, struct comm_request *const *wa
     return PROGRESS_TASK;
 }
 
+/* The same call on both kinds of stack. On an operation's it leaves, and whoever waits on
+ * the rank's stack finds `blocked`; on the rank's it waits for all, or plainly when
+ * nothing else goes on, which costs no search. */
 void mpi_wait_request(struct mpi_rank *r, struct comm_request *q)
 {
     while (q->active) {
@@ -135,11 +153,13 @@ void mpi_wait_request(struct mpi_rank *r, struct comm_request *q)
     }
 }
 
+/* Something must move, or the run is a deadlock, which comm.h reports. */
 void mpi_wait_task(struct mpi_rank *r, const struct mpi_task *t)
 {
     while (!t->done) CHECK(mpi_progress(r, 0, NULL, true) == PROGRESS_TASK);
 }
 
+/* Each look that finds nothing takes the time of a poll, so a loop of these ends. */
 void mpi_poll_tasks(struct mpi_rank *r)
 {
     while (r->tasks && mpi_progress(r, 0, NULL, false) == PROGRESS_TASK) continue;

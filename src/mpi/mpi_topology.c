@@ -1,6 +1,8 @@
 /* mpi_topology.c - topologies as data: taken, copied, given back (mpi_topology.h). */
 #include "mpi/mpi_topology.h"
 
+/* One element more than n, so that a list of none still has an address: NULL means that
+ * there is no list. */
 int *mpi_topology_ints(struct mpi_rank *r, const int *from, int n)
 {
     if (!from) return NULL;
@@ -19,11 +21,13 @@ void mpi_topology_end(struct mpi_rank *r, struct mpi_comm *c)
 {
     struct mpi_topology *t = c->topology;
     if (!t) return;
+    /* All lists are this topology's own; giving NULL does nothing. */
     void *const all[] = {t->dim, t->period, t->coordinate, t->index,      t->edge,
                          t->in,  t->out,    t->in_weight,  t->out_weight, t};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) mpi_give(r->world, all[i]);
 }
 
+/* A duplicate has lists of its own, so that either may be freed first. */
 void mpi_topology_copy(struct mpi_rank *r, const struct mpi_comm *from, struct mpi_comm *to)
 {
     const struct mpi_topology *f = from->topology;
@@ -44,6 +48,7 @@ void mpi_topology_copy(struct mpi_rank *r, const struct mpi_comm *from, struct m
 struct mpi_topology *mpi_topology_of(struct mpi_rank *r, MPI_Comm comm, int kind,
                                      struct mpi_comm **c)
 {
+    /* The kinds are neighbours in the ABI: MPI_CART, MPI_GRAPH, MPI_DIST_GRAPH. */
     static const char *const name[] = {"a Cartesian", "a graph", "a distributed graph"};
     *c = mpi_comm_of(r, comm);
     if (!*c) return NULL;
