@@ -2,9 +2,14 @@
  *
  * A type is a list of pieces; a piece is count blocks, `stride` bytes apart, each of `length`
  * elements one behind the other. So a vector is one piece whatever its count, and an array's part
- * is as many types as it has dimensions. */
+ * is as many types as it has dimensions.
+ *
+ * Section 5.1 of MPI 5.0. The list of pieces replaces the type map of the standard, which
+ * would have an entry for each basic element: a column of a matrix of a million rows is
+ * one piece here. All lengths and places are bytes in 64 bits. */
 #include "mpi/mpi_internal.h"
 
+/* Pieces come zeroed; who fills them in calls mpi_type_finish. */
 struct mpi_type *mpi_type_make(struct mpi_rank *r, int combiner, int npiece)
 {
     struct mpi_type *t = mpi_take_zero(r->world, sizeof *t);
@@ -15,6 +20,8 @@ struct mpi_type *mpi_type_make(struct mpi_rank *r, int combiner, int npiece)
     return t;
 }
 
+/* The type that refers to another holds a use of it, so that a tree of types ends from
+ * the top. */
 /* Types that others are made of live on after their handles. */
 void mpi_type_drop(struct mpi_rank *r, struct mpi_type *t)
 {
@@ -36,6 +43,8 @@ struct bounds {
     bool any;
 };
 
+/* Bounds with and without the gaps that a resized type declares (sections 5.1.7, 5.1.8).
+ * An extent may be negative, so a low bound may lie above a high one. */
 static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
 {
     int64_t low = at + of->lb, high = low + of->extent;
@@ -47,6 +56,8 @@ static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
     b->any = true;
 }
 
+/* Every block in between lies within these four, because places are linear in both
+ * indices. */
 /* The four corners of a piece bound it, whatever the signs of strides and extents. */
 static void include_piece(struct bounds *b, const struct mpi_piece *p)
 {
@@ -72,6 +83,8 @@ static bool is_run(const struct mpi_piece *p, int64_t *end)
  * element. */
 void mpi_type_finish(struct mpi_type *t)
 {
+    /* Dense means that the bytes lie in the order of packing, from 0 on and without a
+     * gap, so that neither packing nor unpacking is needed. */
     struct bounds b = {0};
     int64_t end = 0, next;
     bool run = true;
@@ -82,6 +95,8 @@ void mpi_type_finish(struct mpi_type *t)
         int64_t n = p->count * p->length;
         t->size += n * p->of->size;
         t->basics += n * p->of->basics;
+        /* Section 5.1.6: the extent is rounded up as a C compiler would pad a struct.
+         * Only structs do so, so that arrays of elements keep their places. */
         if (n && p->of->align > t->align) t->align = p->of->align;
         include_piece(&b, p);
         if (n == 0) continue;
@@ -112,11 +127,14 @@ void mpi_type_remember(struct mpi_rank *r, struct mpi_type *t, int ninteger, int
 
 /* --- constructors --- */
 
+/* Arrays of counts are of int or of MPI_Count, as the call has a _c in its name or not;
+ * one function serves both. */
 int64_t mpi_count_at(struct mpi_counts c, int64_t i)
 {
     return c.large ? ((const MPI_Count *)c.at)[i] : ((const int *)c.at)[i];
 }
 
+/* A negative count has a class of its own in the standard, any other length has not. */
 static bool negative(struct mpi_rank *r, const char *what, int64_t n)
 {
     if (n >= 0) return false;
@@ -132,7 +150,9 @@ static int finish(struct mpi_type *t, MPI_Datatype *newtype)
     return MPI_SUCCESS;
 }
 
-/* One piece of one type, and the integers that describe it. */
+/* One piece of one type, and the integers that describe it. What MPI_Type_get_contents
+ * will return (section 5.1.13) is kept beside the piece: it cannot be recovered from
+ * that. */
 static struct mpi_type *one_piece(struct mpi_rank *r, int combiner, struct mpi_piece piece,
                                   int ninteger, int naddress)
 {
@@ -155,6 +175,7 @@ int mpi_type_contiguous(struct mpi_rank *self, MPI_Count count, MPI_Datatype old
     return finish(t, newtype);
 }
 
+/* A vector's stride counts extents of the old type, an hvector's counts bytes. */
 static int vector(struct mpi_rank *r, int combiner, int64_t count, int64_t length, int64_t stride,
                   MPI_Datatype oldtype, MPI_Datatype *newtype)
 {
@@ -200,6 +221,7 @@ static int indexed(struct mpi_rank *r, int combiner, int64_t count, int64_t leng
     bool in_bytes = combiner == MPI_COMBINER_HINDEXED || combiner == MPI_COMBINER_HINDEXED_BLOCK;
     for (int64_t i = 0; i < count && lengths.at; i++)
         if (negative(r, "blocklength", mpi_count_at(lengths, i))) return r->code;
+    /* One piece for each block: they lie anywhere. */
     struct mpi_type *t = mpi_type_make(r, combiner, (int)count);
     /* integers are count, lengths and then places, unless those are bytes */
     int nlength = lengths.at ? (int)count : 1;
@@ -221,6 +243,7 @@ static int indexed(struct mpi_rank *r, int combiner, int64_t count, int64_t leng
     return finish(t, newtype);
 }
 
+/* Blocks of one length need no array. */
 static const struct mpi_counts none;
 
 int mpi_type_indexed(struct mpi_rank *self, MPI_Count count,
@@ -269,6 +292,7 @@ static int structure(struct mpi_rank *r, int64_t count, struct mpi_counts length
                      const MPI_Aint *places, const MPI_Datatype *types, MPI_Datatype *newtype)
 {
     if (negative(r, "count", count)) return r->code;
+    /* All arguments first: nothing is half-made when one is wrong. */
     for (int64_t i = 0; i < count; i++)
         if (!mpi_type_of(r, types[i]) || negative(r, "blocklength", mpi_count_at(lengths, i)))
             return r->code;
@@ -304,6 +328,8 @@ int mpi_type_struct(struct mpi_rank *self, int count, int *array_of_blocklengths
                      array_of_displacements, array_of_types, newtype);
 }
 
+/* The pieces stay, only the bounds change (section 5.1.7): that is how blocks of a matrix
+ * come to lie side by side in one message. */
 int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Count lb,
                             MPI_Count extent, MPI_Datatype *newtype)
 {
@@ -321,6 +347,8 @@ int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Cou
     return MPI_SUCCESS;
 }
 
+/* A duplicate is as good as the original in reductions, too, hence its class (section
+ * 5.1.10). A refused attribute undoes it. */
 int mpi_type_dup(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Datatype *newtype)
 {
     struct mpi_type *of = mpi_type_of(self, oldtype);
@@ -343,6 +371,8 @@ int mpi_type_dup(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Datatype *newt
     return MPI_SUCCESS;
 }
 
+/* Nothing is compiled at commit: pieces are ready when a type is made. The mark is there
+ * because communication asks for it (section 5.1.9). */
 int mpi_type_commit(struct mpi_rank *self, MPI_Datatype *datatype)
 {
     struct mpi_type *t = mpi_type_of(self, *datatype);

@@ -2,7 +2,10 @@
  * array.
  *
  * Both are built from the fastest dimension outwards: runs of indices of a dimension are pieces of
- * the type below it, and the extent is that of the whole dimension. */
+ * the type below it, and the extent is that of the whole dimension.
+ *
+ * Sections 5.1.3 and 5.1.4 of MPI 5.0. The standard defines both as nested vectors and
+ * resized types; one type for each dimension is the same tree with fewer levels. */
 #include "mpi/mpi_internal.h"
 
 /* Indices first .. first + length - 1, count times, each `stride` further; then a shorter rest. */
@@ -22,6 +25,8 @@ static struct mpi_type *dimension(struct mpi_rank *r, struct mpi_type *of, int64
     t->piece[1] = (struct mpi_piece){
         .at = x->rest_first * of->extent, .count = 1, .length = x->rest, .of = of};
     mpi_type_finish(t);
+    /* Finishing set the bounds by what is there; a part of an array has those of the
+     * whole, so that the next dimension, or the next element, lies behind all of it. */
     t->lb = 0;
     t->dense = of->dense && x->first == 0 && x->count == 1 && x->length == whole;
     t->extent = whole * of->extent;
@@ -35,6 +40,8 @@ static struct mpi_type *dimension(struct mpi_rank *r, struct mpi_type *of, int64
 static int outermost(struct mpi_rank *r, struct mpi_type *t, struct mpi_type *of, int combiner,
                      int ninteger, MPI_Datatype *newtype)
 {
+    /* Attributes, names and contents belong to what the program made, which is one type
+     * and not a type for each dimension. */
     struct mpi_type *whole = mpi_type_make(r, combiner, 1);
     whole->piece[0] = (struct mpi_piece){.count = 1, .length = 1, .of = t};
     mpi_type_finish(whole);
@@ -50,6 +57,8 @@ static int outermost(struct mpi_rank *r, struct mpi_type *t, struct mpi_type *of
     return MPI_SUCCESS;
 }
 
+/* The order of memory says which dimension is the fastest: the last in C, the first in
+ * Fortran. */
 int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts array_of_sizes,
                              struct mpi_counts array_of_subsizes, struct mpi_counts array_of_starts,
                              int order, MPI_Datatype oldtype, MPI_Datatype *newtype)
@@ -68,6 +77,7 @@ int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts
                              "dimension %d: %lld from %lld on is not within 0 .. %lld", d,
                              (long long)part, (long long)start, (long long)size - 1);
     }
+    /* dimension() passes this use on from type to type. */
     mpi_type_use(of);
     for (int i = 0; i < ndims; i++) {
         int d = order == MPI_ORDER_C ? ndims - 1 - i : i;
@@ -78,6 +88,7 @@ int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts
     }
     int code = outermost(self, t, of, MPI_COMBINER_SUBARRAY, 3 * ndims + 2, newtype);
     struct mpi_type *made = mpi_type_of(self, *newtype);
+    /* The program's arguments in the order of section 5.1.13. */
     made->integer[0] = ndims;
     for (int d = 0; d < ndims; d++) {
         made->integer[1 + d] = mpi_count_at(array_of_sizes, d);
@@ -88,6 +99,7 @@ int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts
     return code;
 }
 
+/* Blocks p, p + n, p + 2 n, ... belong to p; the last one of all may be shorter. */
 /* What process `p` of n has of g indices dealt out in blocks of b, round and round. */
 static struct runs dealt(int64_t g, int64_t b, int p, int n)
 {
@@ -99,6 +111,8 @@ static struct runs dealt(int64_t g, int64_t b, int p, int n)
     return x;
 }
 
+/* Section 5.1.4: by default, blocks are as large as they must be for one each, and cycles
+ * have blocks of one. */
 /* The block of a distribution's argument; 0: the two do not fit together. */
 static int64_t block_of(int distribution, int argument, int64_t g, int n)
 {
@@ -118,12 +132,14 @@ int mpi_type_create_darray(struct mpi_rank *self, int size, int rank, int ndims,
 {
     struct mpi_type *of = mpi_type_of(self, oldtype), *t = of;
     if (!of) return self->code;
+    /* A grid of another size than that of the processes fits nobody. */
     int64_t grid = 1;
     for (int d = 0; d < ndims; d++) grid *= array_of_psizes[d];
     if (ndims < 1 || grid != size || rank < 0 || rank >= size)
         return mpi_error(self, NULL, MPI_ERR_ARG, "rank %d in a grid of %lld processes of %d", rank,
                          (long long)grid, size);
     mpi_type_use(of);
+    /* `below` counts the processes in one step of dimension d. */
     /* the grid of processes is in C's order whatever the array's */
     for (int i = 0; i < ndims; i++) {
         int d = order == MPI_ORDER_C ? ndims - 1 - i : i, below = 1;

@@ -1,5 +1,9 @@
 /* mpi_type_basic.c - the basic datatypes: what the standard's handles of types stand for on this
- * host. */
+ * host.
+ *
+ * The types of sections 3.2.2 and 6.9.4 of MPI 5.0, with the handles of the ABI chapter:
+ * ten bits that begin with 10 are types. Types of Fortran are those of gfortran's default
+ * kinds. */
 #include <complex.h>
 #include <stdalign.h>
 #include <wchar.h>
@@ -32,8 +36,11 @@ struct long_double_int {
     int i;
 };
 
+/* The handle is the index: looking a type up takes no search and no table of pointers. */
 enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
 
+/* One run of bytes, dense and committed; constants without a number, so nobody counts or
+ * frees them. */
 #define BASIC(handle, type, class_, text)                                                          \
     [(int)(handle)-FIRST_TYPE] = {.o = {KIND_TYPE, -1, 1},                                         \
                                   .combiner = MPI_COMBINER_NAMED,                                  \
@@ -47,6 +54,8 @@ enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
                                   .align = alignof(type),                                          \
                                   .name = text}
 
+/* The extent has the gap, the size has not (section 6.9.4), so messages of pairs carry no
+ * padding. */
 /* Pairs are two pieces where the compiler leaves a gap behind them. */
 #define PAIR(handle, type, class_, text, first, gap)                                               \
     [(int)(handle)-FIRST_TYPE] = {.o = {KIND_TYPE, -1, 1},                                         \
@@ -63,6 +72,7 @@ enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
                                   .piece = (struct mpi_piece *)pieces_of_##class_,                 \
                                   .name = text}
 
+/* `basic` is declared ahead, as the pieces point into the table that they are part of. */
 #define PAIR_PIECES(class_, type, first)                                                           \
     static const struct mpi_piece pieces_of_##class_[2] = {                                        \
         {.at = 0, .count = 1, .length = 1, .of = (struct mpi_type *)&basic[(first)-FIRST_TYPE]},   \
@@ -79,6 +89,7 @@ PAIR_PIECES(CLASS_INT_INT, struct int_int, 0x209);
 PAIR_PIECES(CLASS_SHORT_INT, struct short_int, 0x208);
 PAIR_PIECES(CLASS_LONG_DOUBLE_INT, struct long_double_int, 0x220);
 
+/* Types that have no name in C, for their size and alignment. */
 typedef struct {
     char bytes[2];
 } half;
@@ -95,6 +106,8 @@ typedef struct {
     _Float128 re, im;
 } quad_pair;
 
+/* CLASS_NONE: bytes can be moved, but no operation is defined, or the host has no
+ * arithmetic for it. */
 static const struct mpi_type basic[TYPES] = {
     BASIC(0x201, MPI_Aint, CLASS_INT64, "MPI_AINT"),
     BASIC(0x202, MPI_Count, CLASS_INT64, "MPI_COUNT"),
@@ -169,6 +182,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x2eb, quad_pair, CLASS_NONE, "MPI_COMPLEX32"),
 };
 
+/* Gaps in the table have no name and are no types. */
 struct mpi_type *mpi_type_basic(const void *handle)
 {
     intptr_t i = (intptr_t)handle - FIRST_TYPE;

@@ -1,4 +1,10 @@
-/* mpi_wait.c - completing requests: one, any, some, all; waiting or testing. */
+/* mpi_wait.c - completing requests: one, any, some, all; waiting or testing.
+ *
+ * Section 3.7.5 of MPI 5.0. Blocking calls stop the rank until something is there and
+ * take no polls; a test that finds nothing costs a poll (vp/poll.c). Requests that are
+ * known to be complete are taken in the order of the array, else the one that is complete
+ * first in simulated time: a simulator should not choose at random where the standard
+ * lets it. */
 #include "mpi/mpi_internal.h"
 
 /* The requests of one call: few of them need no memory. */
@@ -9,6 +15,8 @@ struct set {
     struct mpi_request *few[FEW];
 };
 
+/* Handles are looked up once, and inactive persistent requests count as null (section
+ * 3.7.5). */
 static bool collect(struct mpi_rank *r, struct set *s, int n, const MPI_Request *handle)
 {
     s->n = n;
@@ -39,6 +47,7 @@ static void release(struct mpi_rank *r, struct set *s)
     if (s->q != s->few) mpi_give(r->world, s->q);
 }
 
+/* No time passes: this asks what has been completed before. */
 static int first_ready(int n, struct mpi_request *const *q)
 {
     for (int i = 0; i < n; i++)
@@ -52,11 +61,15 @@ static bool look(struct mpi_rank *r, int n, struct mpi_request *const *q, bool b
 {
     struct comm_request *few[FEW], **wanted = few;
     int nwanted = 0;
+    /* Operations in progress are added by mpi_progress; general requests wait for nothing
+     * that comm.h knows. */
     few[0] = NULL;
     if (n > FEW) wanted = mpi_take(r->world, n * (int64_t)sizeof *wanted);
     for (int i = 0; i < n; i++)
         if (q[i] && (q[i]->what == REQUEST_SEND || q[i]->what == REQUEST_RECEIVE) && q[i]->q.active)
             wanted[nwanted++] = &q[i]->q;
+    /* A rank has one thread, so nobody else could complete a generalized request: the
+     * wait would last for ever. */
     if (block && nwanted == 0 && !r->tasks)
         mpi_fail(r, "waits for a request that only the program can complete");
     bool moved = mpi_progress(r, nwanted, wanted, block) != PROGRESS_NONE;
@@ -64,6 +77,8 @@ static bool look(struct mpi_rank *r, int n, struct mpi_request *const *q, bool b
     return moved;
 }
 
+/* Each round may let an operation in progress go on instead of completing a request; it
+ * is repeated as long as something moves. */
 int mpi_poll(struct mpi_rank *r, int n, struct mpi_request *const *q)
 {
     int found = first_ready(n, q);
@@ -78,6 +93,8 @@ static int wait_any(struct mpi_rank *r, int n, struct mpi_request *const *q)
     return found;
 }
 
+/* A message needs no search among others, unless operations are in progress
+ * (mpi_wait_request). */
 static void wait_one(struct mpi_rank *r, struct mpi_request *q)
 {
     if (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE) mpi_wait_request(r, &q->q);
@@ -86,6 +103,7 @@ static void wait_one(struct mpi_rank *r, struct mpi_request *q)
 
 /* --- one --- */
 
+/* A null or inactive request is complete at once, with an empty status. */
 int mpi_wait(struct mpi_rank *self, MPI_Request *request, MPI_Status *status)
 {
     if (*request == MPI_REQUEST_NULL) {
@@ -102,6 +120,7 @@ int mpi_wait(struct mpi_rank *self, MPI_Request *request, MPI_Status *status)
     return mpi_request_finish(self, q, request, status);
 }
 
+/* The flag is what the program loops on; time passes when it stays 0, so such loops end. */
 int mpi_test(struct mpi_rank *self, MPI_Request *request, int *flag, MPI_Status *status)
 {
     *flag = 1;
@@ -126,6 +145,9 @@ int mpi_test(struct mpi_rank *self, MPI_Request *request, int *flag, MPI_Status 
 static int finish_all(struct mpi_rank *r, struct set *s, MPI_Request *handle, MPI_Status *status)
 {
     int code = MPI_SUCCESS;
+    /* Every request is completed, also behind one that failed: none may be left half-way
+     * (section 3.7.5). The error field of statuses is set here and in the calls for some
+     * alone. */
     for (int i = 0; i < s->n; i++) {
         MPI_Status *own = status ? &status[i] : MPI_STATUS_IGNORE;
         int one = MPI_SUCCESS;
@@ -137,6 +159,7 @@ static int finish_all(struct mpi_rank *r, struct set *s, MPI_Request *handle, MP
     return code;
 }
 
+/* One after the other: the clock ends at the latest of all, whatever the order. */
 int mpi_waitall(struct mpi_rank *self, int count, MPI_Request array_of_requests[],
                 MPI_Status *array_of_statuses)
 {
@@ -164,6 +187,7 @@ static bool poll_all(struct mpi_rank *r, const struct set *s)
     return all_ready(s);
 }
 
+/* Nothing is completed unless all are ready. */
 int mpi_testall(struct mpi_rank *self, int count, MPI_Request array_of_requests[], int *flag,
                 MPI_Status *array_of_statuses)
 {
@@ -178,6 +202,7 @@ int mpi_testall(struct mpi_rank *self, int count, MPI_Request array_of_requests[
 
 /* --- any --- */
 
+/* No active request: the index is MPI_UNDEFINED, and the status is empty. */
 static int finish_any(struct mpi_rank *r, struct set *s, int found, MPI_Request *handle, int *index,
                       MPI_Status *status)
 {
@@ -187,6 +212,7 @@ static int finish_any(struct mpi_rank *r, struct set *s, int found, MPI_Request 
     return MPI_SUCCESS;
 }
 
+/* Waits for whichever is complete first in simulated time. */
 int mpi_waitany(struct mpi_rank *self, int count, MPI_Request array_of_requests[], int *indx,
                 MPI_Status *status)
 {
@@ -218,6 +244,7 @@ static int finish_some(struct mpi_rank *r, struct set *s, MPI_Request *handle, i
                        int *indices, MPI_Status *status)
 {
     int code = MPI_SUCCESS;
+    /* Indices and statuses are packed at the front of the arrays. */
     *outcount = s->nactive ? 0 : MPI_UNDEFINED;
     for (int i = 0; i < s->n; i++) {
         if (!s->q[i] || !mpi_request_ready(s->q[i])) continue;
@@ -237,6 +264,8 @@ static void poll_rest(struct mpi_rank *r, struct set *s)
     while (waiting && !all_ready(s)) waiting = look(r, s->n, s->q, false);
 }
 
+/* Waits until one is there, then takes all that are: a server that uses this lets nobody
+ * starve. */
 int mpi_waitsome(struct mpi_rank *self, int incount, MPI_Request array_of_requests[], int *outcount,
                  int array_of_indices[], MPI_Status *array_of_statuses)
 {
@@ -274,6 +303,7 @@ int mpi_request_get_status(struct mpi_rank *self, MPI_Request request, int *flag
     if (!q) return self->code;
     if (!q->active) return MPI_SUCCESS;
     *flag = mpi_poll(self, 1, &q) >= 0;
+    /* The same words as mpi_message_finish would set. */
     /* what the status will be, without completing the request */
     if (*flag && q->what == REQUEST_RECEIVE && !q->cancelled && q->peer != MPI_PROC_NULL) {
         int source =
@@ -289,6 +319,8 @@ int mpi_request_get_status(struct mpi_rank *self, MPI_Request request, int *flag
     return MPI_SUCCESS;
 }
 
+/* MPI 4.1 added the forms for several requests; they stop at the first that is not
+ * complete. */
 int mpi_request_get_status_all(struct mpi_rank *self, int count,
                                const MPI_Request array_of_requests[], int *flag,
                                MPI_Status *array_of_statuses)

@@ -1,4 +1,7 @@
-/* mpi_window.c - windows: made, told of, ended. */
+/* mpi_window.c - windows: made, told of, ended.
+ *
+ * Section 12.2 of MPI 5.0. A window's messages have a communicator and so a context of
+ * their own: nothing that the program sends can meet them. */
 #include <stdio.h>
 
 #include "mpi/mpi_window.h"
@@ -14,16 +17,22 @@ static int open_window(struct mpi_rank *r, struct mpi_comm *c, struct mpi_window
     if (given.size < 0) return mpi_error(r, c, MPI_ERR_SIZE, "size %lld", (long long)given.size);
     if (given.unit <= 0) return mpi_error(r, c, MPI_ERR_DISP, "displacement unit %d", given.unit);
     int context = mpi_context_agree(r, &c->channel, c->sequence++);
+    /* Windows do not take over the communicator's error handler: theirs begins as fatal
+     * (section 12.6). */
     struct mpi_window *w = mpi_take(r->world, sizeof *w);
     *w = given;
     mpi_handle_make(r, w, KIND_WIN);
     c->group->o.uses++;
     w->comm = mpi_comm_make(r, c->group, context, NULL);
     w->comm->handler = mpi_errhandler_of(r, MPI_ERRORS_ARE_FATAL);
+    /* Ranks read and write their memory directly, so there is one copy of it (section
+     * 12.4). */
     w->model = MPI_WIN_UNIFIED;
     w->waiting_end = &w->waiting;
     w->next = r->windows;
     r->windows = w;
+    /* From here to MPI_Win_free a task waits for operations, so this rank has always one
+     * in progress. */
     w->server = mpi_task_start(r, mpi_window_serve, w);
     mpi_collective_barrier(r, w->comm, w->comm->sequence++);
     *win = mpi_handle(w);
@@ -40,6 +49,7 @@ int mpi_win_create(struct mpi_rank *self, void *base, MPI_Aint size, MPI_Count d
     return c ? open_window(self, c, w, win) : self->code;
 }
 
+/* Zeroed; one byte more, so that a window of no bytes has an address as well. */
 int mpi_win_allocate(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit, MPI_Info info,
                      MPI_Comm comm, void *baseptr, MPI_Win *win)
 {
@@ -52,6 +62,7 @@ int mpi_win_allocate(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit, 
     return open_window(self, c, w, win);
 }
 
+/* Displacements are addresses, so the unit is 1 (section 12.2.4). */
 int mpi_win_create_dynamic(struct mpi_rank *self, MPI_Info info, MPI_Comm comm, MPI_Win *win)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -66,6 +77,8 @@ struct share {
     char *place;
 };
 
+/* All ranks are in one process, so memory of one is memory of all; that they are on one
+ * node is not checked, as MPI_Comm_split_type is how programs get such a communicator. */
 /* The first rank takes the memory of all, one part behind the other. */
 int mpi_win_allocate_shared(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit,
                             MPI_Info info, MPI_Comm comm, void *baseptr, MPI_Win *win)
@@ -77,6 +90,7 @@ int mpi_win_allocate_shared(struct mpi_rank *self, MPI_Aint size, MPI_Count disp
     struct share own = {.size = size > 0 ? size : 0},
                  *all = mpi_take(self->world, c->size * (int64_t)sizeof *all);
     mpi_collective_allgather(self, &c->channel, c->sequence++, &own, all, sizeof own);
+    /* Contiguous over the ranks, which the standard asks for by default (section 12.2.3). */
     int64_t total = 0;
     for (int i = 0; i < c->size; i++) total += all[i].size;
     if (c->rank == 0) own.place = mpi_take_zero(self->world, total + 1);
@@ -117,7 +131,8 @@ int mpi_win_shared_query(struct mpi_rank *self, MPI_Win win, int rank, MPI_Aint 
     return MPI_SUCCESS;
 }
 
-/* Memory of a dynamic window is named by its address, wherever it is. */
+/* Memory of a dynamic window is named by its address, wherever it is. An address is not
+ * checked against what was attached. */
 int mpi_win_attach(struct mpi_rank *self, MPI_Win win, void *base, MPI_Aint size)
 {
     (void)base, (void)size;
@@ -139,6 +154,8 @@ int mpi_win_free(struct mpi_rank *self, MPI_Win *win)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "an epoch of the window is still open");
     int code = mpi_attributes_end(self, KIND_WIN, w);
     if (code != MPI_SUCCESS) return code;
+    /* Own operations first; after the barrier everybody's are done. The rest is taken
+     * apart in the order in which it was made. */
     mpi_window_flush(self, w, MPI_ANY_SOURCE);
     mpi_collective_barrier(self, w->comm, w->comm->sequence++);
     w->closing = true;
@@ -147,6 +164,8 @@ int mpi_win_free(struct mpi_rank *self, MPI_Win *win)
     struct mpi_window **at = &self->windows;
     while (*at != w) at = &(*at)->next;
     *at = w->next;
+    /* Memory that MPI took is MPI's to give back; of shared memory the first rank took
+     * all. */
     if (w->flavor == MPI_WIN_FLAVOR_ALLOCATE) mpi_give(self->world, w->base);
     if (w->flavor == MPI_WIN_FLAVOR_SHARED && w->comm->rank == 0)
         mpi_give(self->world, w->places[0]);
@@ -171,6 +190,8 @@ int mpi_win_get_group(struct mpi_rank *self, MPI_Win win, MPI_Group *group)
     return MPI_SUCCESS;
 }
 
+/* Section 12.2.7: pointers to the values, but for the base, which is the address itself
+ * and may be NULL. */
 bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value)
 {
     void *p = NULL;
@@ -183,6 +204,7 @@ bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value)
     return p != NULL || keyval == MPI_WIN_BASE;
 }
 
+/* As for communicators and types (section 7.8). */
 int mpi_win_get_name(struct mpi_rank *self, MPI_Win win, char *win_name, int *resultlen)
 {
     struct mpi_window *w = win == MPI_WIN_NULL ? NULL : mpi_window_of(self, win);
@@ -224,6 +246,7 @@ int mpi_win_get_errhandler(struct mpi_rank *self, MPI_Win win, MPI_Errhandler *e
     return w ? mpi_comm_get_errhandler(self, mpi_handle(w->comm), errhandler) : self->code;
 }
 
+/* A function of the program gets the window and not the communicator within. */
 int mpi_win_call_errhandler(struct mpi_rank *self, MPI_Win win, int errorcode)
 {
     struct mpi_window *w = mpi_window_of(self, win);

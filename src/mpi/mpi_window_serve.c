@@ -1,9 +1,15 @@
 /* mpi_window_serve.c - the target's side of one-sided communication: operations applied one at a
- * time. */
+ * time.
+ *
+ * One operation after the other is more than the standard promises (section 12.7: atomic
+ * by element for accumulates), so programs that rely on chance see the same result in
+ * every run. Serving takes the target's time only for copies with gaps and for combining. */
 #include <stdio.h>
 
 #include "mpi/mpi_window.h"
 
+/* An answer is as long as what comes back. Its content is never read, but must be memory
+ * of that length: `back`, or the window where the length is 0. */
 static void answer(struct mpi_rank *r, struct mpi_window *w, const struct mpi_rma *x)
 {
     int world = mpi_group_world(w->comm->group, x->origin);
@@ -13,7 +19,9 @@ static void answer(struct mpi_rank *r, struct mpi_window *w, const struct mpi_rm
 
 /* --- memory --- */
 
-/* memory_of: where an operation acts; the run ends when that is not within the window. */
+/* memory_of: where an operation acts; the run ends when that is not within the window.
+ * Origins know neither size nor unit of a window, so the target checks, as a library with
+ * bounds checks would. Displacements count the target's unit (section 12.3). */
 static char *memory_of(struct mpi_rank *r, const struct mpi_window *w, const struct mpi_rma *x)
 {
     if (w->flavor == MPI_WIN_FLAVOR_DYNAMIC) return (char *)NULL + x->displacement;
@@ -26,7 +34,8 @@ static char *memory_of(struct mpi_rank *r, const struct mpi_window *w, const str
     mpi_fail(r, text);
 }
 
-/* element_of: the basic type that a type is made of. */
+/* element_of: the basic type that a type is made of. Section 12.3.4: all basic elements
+ * of the type must be the same, so the first tells. */
 static struct mpi_type *element_of(struct mpi_type *t)
 {
     while (!mpi_type_is_basic(t) && t->npiece) t = t->piece[0].of;
@@ -39,6 +48,7 @@ static void combine(struct mpi_rank *r, struct mpi_window *w, const struct mpi_r
     struct mpi_type *element = element_of(x->type);
     struct mpi_reduction op;
     struct work work = {0};
+    /* MPI_REPLACE and MPI_NO_OP are operations of one-sided calls alone. */
     if (x->op == mpi_op_of(r, MPI_NO_OP)) return;
     int64_t bytes = x->count * x->type->size, n = bytes / element->size;
     if (x->op == mpi_op_of(r, MPI_REPLACE)) {
@@ -47,6 +57,8 @@ static void combine(struct mpi_rank *r, struct mpi_window *w, const struct mpi_r
     }
     if (mpi_reduction_make(r, &op, x->op, element, w->comm) != MPI_SUCCESS)
         mpi_fail(r, "the operation is not defined on the type");
+    /* Built-in operations work on elements as C lays them out, so data come out of the
+     * type, are combined, and go back into it. */
     int64_t each = element->extent;
     char *there = mpi_take(r->world, 2 * n * each + 1), *with = there + n * each, *packed = NULL;
     if (!element->dense) packed = mpi_take(r->world, bytes);
@@ -62,6 +74,7 @@ static void combine(struct mpi_rank *r, struct mpi_window *w, const struct mpi_r
     mpi_give(r->world, there);
 }
 
+/* What comes back is what was there before (section 12.3.4), so it is packed first. */
 static void apply(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
 {
     char *memory = memory_of(r, w, x);
@@ -77,6 +90,7 @@ static void apply(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
 
 /* --- locks: granted in the order of asking --- */
 
+/* A shared lock is refused only by an exclusive one; fairness is the queue's. */
 static bool grant(struct mpi_window *w, const struct mpi_rma *x)
 {
     bool alone = x->lock_type == MPI_LOCK_EXCLUSIVE;
@@ -86,6 +100,8 @@ static bool grant(struct mpi_window *w, const struct mpi_rma *x)
     return true;
 }
 
+/* Whoever asks while others wait goes behind them, even if it could share: else writers
+ * starve. No answer means to wait. */
 static void lock(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
 {
     x->queued = NULL;
@@ -97,6 +113,7 @@ static void lock(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
     w->waiting_end = &x->queued;
 }
 
+/* The next in the queue gets it; readers behind each other get it together. */
 static void unlock(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
 {
     if (x->lock_type == MPI_LOCK_EXCLUSIVE) w->exclusive--;
@@ -113,6 +130,8 @@ static void unlock(struct mpi_rank *r, struct mpi_window *w, struct mpi_rma *x)
 void mpi_window_serve(struct mpi_rank *r, void *window)
 {
     struct mpi_window *w = window;
+    /* Requests from anybody, in the order of arrival. The receive is posted again only
+     * after an operation is done, so that one follows the other. */
     int64_t tag = mpi_tag(w->comm->context, PLANE_WINDOW, TAG_OPERATION);
     while (!w->closing) {
         struct mpi_rma *x = NULL;
