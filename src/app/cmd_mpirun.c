@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/debugger.h"
 #include "app/flag.h"
 #include "app/verb.h"
 #include "base/text.h"
@@ -18,7 +19,9 @@ static const char doc[] =
     "stored: "
     "`mimdsim run` with `program: PROGRAM` in a scenario does that.\n\n"
     "-n N: number of ranks (default 1). --level LEVEL: of the network. -l: each line with its rank "
-    "before it. --limit SECONDS: processor time after which it has failed (default 600 s). With -n "
+    "before it. --limit SECONDS: processor time after which it has failed (default 600 s). --debug "
+    "RANK: "
+    "that rank's program under gdb, stopped where its main begins. With -n "
     "above 1, or with -m, the predicted time is written to standard error, unless --quiet is "
     "given.";
 
@@ -34,8 +37,8 @@ struct own {
  * new option with a value has to be named here. */
 static bool takes_word(const char *option)
 {
-    static const char *const list[] = {"-n",      "-np",     "-m",    "--machine",
-                                       "--level", "--limit", "--set", "-s"};
+    static const char *const list[] = {"-n",      "-np",   "-m", "--machine", "--level",
+                                       "--limit", "--set", "-s", "--debug"};
     for (size_t i = 0; i < sizeof list / sizeof *list; i++)
         if (strcmp(option, list[i]) == 0) return true;
     return false;
@@ -153,7 +156,12 @@ int cmd_mpirun(int argc, char **argv)
     struct err e;
     err_clear(&e);
     /* What follows the program is its own: it is not looked at here. */
-    const int at = own.program;
+    const int at = own.program, debug = debugger_wanted(at, argv);
+    if (debug) {
+        debugger_run(argc, argv, debug, &e);
+        common_parse(&c, 1, argv, TAKES_PLAN, "PROGRAM [ARGUMENT...]", doc, 0, 1);
+        return common_fail(&c, &e);
+    }
     char *program = at < argc ? argv[at] : NULL;
     text_add(&arguments, "%s", "");
     for (int i = at + 1; i < argc; i++) argument_line_add(&arguments, argv[i]);

@@ -79,7 +79,8 @@ struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
     const int64_t value = loader_enter(function, argument, &frame);
     i->frame = frame.outer;
     if (outermost) i->outermost = NULL;
-    /* Functions that are called through their entries (`mimdsim cc`) leave their count in memory. */
+    /* Functions that are called through their entries (`mimdsim cc`) leave their count in memory.
+     */
     if (i->pending) {
         frame.count += *i->pending;
         *i->pending = 0;
@@ -136,11 +137,19 @@ static uint64_t array_entry(const struct loader_instance *i, const struct loader
     return function;
 }
 
+/* Kept as a call of its own, with these arguments, for a debugger. */
+__attribute__((noinline, noclone)) void loader_debug_stop(int rank, const char *file, uint64_t base)
+{
+    __asm__ volatile("" : : "r"(rank), "r"(file), "r"(base) : "memory");
+}
+
 struct loader_outcome loader_start(struct loader_instance *i, int argc, char **argv)
 {
     const int64_t argument[4] = {argc, (int64_t)(intptr_t)argv, (int64_t)(intptr_t)environ, 0};
     const struct loader_template *t = i->t;
     struct loader_outcome o = {0};
+    loader_debug_stop(i->host.rank, t->file[0].elf.path,
+                      (uint64_t)(uintptr_t)i->base + t->file[0].place);
     if (!finish_relocation(i, &o)) return o;
     /* The archive's own beginning (guest/streams.c) comes before the constructors of libraries,
      * which may print. */

@@ -89,6 +89,10 @@ struct mimdsim_host *loader_host(struct loader_instance *i);
 /* loader_symbol: address of a function or variable of the rank's program, NULL: none. */
 void *loader_symbol(const struct loader_instance *i, const char *name);
 
+/* loader_debug_stop: does nothing; loader_start calls it before any code of a rank runs, so that a
+ * debugger can stop there and load the symbols of `file` at `base`. */
+void loader_debug_stop(int rank, const char *file, uint64_t base);
+
 /* loader_start: run the constructors, on the rank's fiber, as `argv` (argc entries and NULL) and
  * the process's environment. An exit inside shows in the outcome. */
 struct loader_outcome loader_start(struct loader_instance *i, int argc, char **argv);

@@ -89,3 +89,23 @@ END
     kill -9 "$worker"
     return 1
 }
+
+@test "one rank under a debugger, which knows its variables" {
+    command -v gdb >there || skip "no gdb"
+    made look.c <<'END'
+#include <mpi.h>
+static int seen;
+int main(int argc, char **argv)
+{
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &seen);
+    seen = 100 + seen;
+    MPI_Finalize();
+    return 0;
+}
+END
+    run --separate-stderr mimdsim mpirun -q -n 4 --debug 2 ./look <<<$'break look.c:8\ncontinue\nprint seen\nkill\nquit'
+    stdout_says '$1 = 102'
+    fails_with 64 mimdsim mpirun -n 4 --debug two ./look
+    stderr_says "--debug: expected the number of a rank"
+}
