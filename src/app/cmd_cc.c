@@ -52,7 +52,7 @@ static int print_help(const char *verb, const char *compiler)
  * they were installed first. */
 static int compile_as(enum driver_language language, int argc, char **argv)
 {
-    static char self[PATH_SIZE], folder[PATH_SIZE], library[2 * PATH_SIZE], include[2 * PATH_SIZE];
+    char self[PATH_SIZE], folder[PATH_SIZE], library[2 * PATH_SIZE], include[2 * PATH_SIZE];
     struct driver_places places = {self, MIMDSIM_INCLUDEDIR, NULL, MIMDSIM_PKGLIBDIR};
     struct err e;
     err_clear(&e);
