@@ -12,12 +12,12 @@
 /* Parent of body i in the tree that the generator names. */
 static int parent_of(const struct model_spec *spec, int i, struct random *r)
 {
-    /* Two children where nothing is asked. */
+    /* A parent always has the smaller number, so that sweeps need no order of their own. */
     int branch = spec->branch > 0 ? spec->branch : 2;
     /* The first body hangs at the base in every tree. */
     if (i == 0) return -1;
     switch (spec->generator) {
-    /* A spine with one tooth of branch - 1 bodies at each vertebra. */
+    /* Bodies 0, b, 2b, ... are the spine; those between are teeth on the spine body before them. */
     case MODEL_COMB: return i % branch == 0 ? i - branch : i - i % branch;
     case MODEL_STAR: return 0;
     case MODEL_DENDRIMER: return (i - 1) / branch;
@@ -26,7 +26,8 @@ static int parent_of(const struct model_spec *spec, int i, struct random *r)
     }
 }
 
-/* Mixed joints are drawn body by body. */
+/* Drawn after the parent and from the same stream: the order of the two calls is part of what a
+ * seed means. A floating base is the joint of body 0, whatever the others are. */
 static enum model_joint joint_of(const struct model_spec *spec, int i, struct random *r)
 {
     if (i == 0 && spec->base == BASE_FLOATING) return JOINT_FLOATING;
@@ -36,7 +37,7 @@ static enum model_joint joint_of(const struct model_spec *spec, int i, struct ra
 /* A uniform rod along x from the origin. */
 static void rod(struct body_def *b, double length, double radius, double mass)
 {
-    /* A solid cylinder along x, about its centre. */
+    /* A solid cylinder: m r^2 / 2 about its axis, m (l^2 / 12 + r^2 / 4) across it. */
     b->mass = mass;
     b->com[0] = 0.5 * length;
     b->inertia[0] = 0.5 * mass * radius * radius;
@@ -51,14 +52,15 @@ static void random_body(const struct model_spec *spec, int i, struct body_def *b
     b->mass = spec->mass * pow(spec->mass_ratio, random_uniform(&r, -0.5, 0.5));
     b->com[0] = length * random_uniform(&r, 0.3, 0.7);
     for (int k = 1; k < 3; k++) b->com[k] = 0.1 * length * random_uniform(&r, -1, 1);
-    /* Second moments from which the inertia follows: any sum of outer products is physical. */
+    /* Second moments M of mass, a sum of outer products. Each vector leans to an axis of its
+     * own, so that the three are seldom near a plane. */
     for (int k = 0; k < 3; k++) { /* sum of outer products of three random vectors */
         double x[3];
         for (int j = 0; j < 3; j++) x[j] = 0.3 * length * random_uniform(&r, -1, 1);
         x[k] += 0.2 * length;
         for (int j = 0; j < 9; j++) moment[j / 3][j % 3] += b->mass * x[j / 3] * x[j % 3];
     }
-    /* J = tr(M) U - M for the second moments M. */
+    /* J = tr(M) U - M keeps the triangle inequality for every such M: no draw is thrown away. */
     for (int k = 0; k < 3; k++) trace += moment[k][k];
     b->inertia[0] = trace - moment[0][0], b->inertia[3] = trace - moment[1][1], b->inertia[5] = trace - moment[2][2];
     b->inertia[1] = -moment[0][1], b->inertia[2] = -moment[0][2], b->inertia[4] = -moment[1][2];
@@ -79,24 +81,25 @@ static void placement_of(const struct model_spec *spec, struct body_def *b, stru
     b->placement.p[0] = b->parent >= 0 ? spec->length : 0;
     if (spec->axes != AXES_TWISTED) return;
     if (spec->generator == MODEL_SERIAL_CHAIN) {
+        /* Half of any turn about x. The rods of a straight pose stay in one line. */
         angle_sincos(random_uniform(r, -0.5 * PI, 0.5 * PI), &b->placement.quat[0], &b->placement.quat[3]);
     } else {
         pose_quaternion(r, b->placement.quat);
     }
 }
 
-/* Springs pull towards the first pose, so that a scene begins at rest in them. */
+/* Springs rest where the scene starts: the stream is that of the pose (state.c). */
 static void springs_of(const struct model *m, const struct model_spec *spec, int i, double length, struct body_def *b)
 {
     if (joint_nu(b->joint) != 1 || (spec->stiffness == 0 && spec->damping == 0)) return;
-    /* Settings are in SI; polymers have units of their own. */
+    /* From SI to the model's own units: a torque is kg m^2 / s^2, a damping one times s. */
     double torque = m->kilogram * m->metre * m->metre / (m->second * m->second);
     b->stiffness = spec->stiffness / torque;
     b->damping = spec->damping / (torque * m->second);
     pose_coordinates(spec, b->joint, i, length, &b->rest);
 }
 
-/* For messages: "body 3". */
+/* Generated bodies have no names of their own; messages need one. */
 static void name_body(struct body_def *b, int i) { snprintf(b->name, sizeof b->name, "body %d", i); }
 
 /* Chains, combs, stars, trees: they differ in the parent alone. */
@@ -109,6 +112,7 @@ static bool add_rods(struct model *m, const struct model_spec *spec, struct err 
         b.joint = joint_of(spec, i, &r);
         name_body(&b, i);
         axes_of(&b);
+        /* A tenth of a link for each radian: turn and advance are of like size. */
         b.pitch = joint_has(b.joint, JOINT_PITCH) ? 0.1 * spec->length : 0;
         placement_of(spec, &b, &r);
         if (spec->inertia == INERTIA_RANDOM)
@@ -149,6 +153,7 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
         struct body_def b = {.parent = i - 1, .joint = joint_of(spec, i, &r)};
         name_body(&b, i);
         axes_of(&b);
+        /* Every side is turned by 2 pi / sides against the one before it. */
         turn_z(b.placement.quat, i == 0 && floating ? 0 : turn);
         b.placement.p[0] = i == 0 && floating ? 0 : length; /* the base's own side runs from 0 to length */
         if (spec->inertia == INERTIA_RANDOM)
@@ -157,7 +162,8 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
             rod(&b, length, spec->radius, spec->mass);
         if (model_add_body(m, &b, e) < 0) return false;
     }
-    /* The last side ends where the first begins. */
+    /* The tip of the last side, turned on once more, is the start of the first: at q = 0 the two
+     * frames are the same, and the cut joint is at its zero, too. */
     struct loop_def loop = {.name = "closure", .body_a = floating ? 0 : -1, .body_b = n - 1};
     loop.joint = closing_joint(spec);
     loop.alpha = loop.beta = spec->stabilisation;
@@ -171,7 +177,8 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
 {
     static const double part[3] = {1, 1.5, 1};
     for (int i = 0; i < 3; i++) {
-        /* Opposite sides are equal: the coupler stays parallel to the ground. */
+        /* Opposite sides are equal: the coupler stays parallel to the ground, so that a pose
+         * which closes the loop is known without solving for it (pose_four_bar). */
         double length = part[i] * spec->length;
         struct body_def b = {.parent = i - 1, .joint = JOINT_REVOLUTE};
         name_body(&b, i);
@@ -182,6 +189,7 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
     }
     struct loop_def loop = {.name = "closure", .body_a = -1, .body_b = 2, .joint = JOINT_REVOLUTE};
     loop.alpha = loop.beta = spec->stabilisation;
+    /* The rocker's tip is pinned to the far end of the ground. */
     loop.frame_a.p[0] = 1.5 * spec->length;
     loop.frame_b.p[0] = spec->length;
     return model_add_loop(m, &loop, e) >= 0;
@@ -191,6 +199,7 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
 static void methylene(struct body_def *b)
 {
     static const double atom[3][4] = {{12.011, 0, 0, 0}, {1.008, 0.89, 0.36, 0.52}, {1.008, -0.89, 0.36, 0.52}};
+    /* Mass and centre first: the moments are about the centre. */
     for (int k = 0; k < 3; k++) b->mass += atom[k][0];
     for (int k = 0; k < 9; k++) b->com[k % 3] += atom[k / 3][0] * atom[k / 3][1 + k % 3] / b->mass;
     for (int k = 0; k < 3; k++) {
@@ -204,6 +213,7 @@ static void methylene(struct body_def *b)
 /* Backbone with bond length 1.53 A and tetrahedral angles; every bond is a torsion joint. */
 static bool add_polymer(struct model *m, const struct model_spec *spec, struct err *e)
 {
+    /* Bonds meet at 109.47 degrees: consecutive axes differ by the rest of a half turn. */
     const double tilt = (180 - 109.47) * PI / 180, bond = 1.53;
     m->metre = 1e-10, m->kilogram = 1.66053906660e-27, m->second = 1e-12;
     for (int i = 0; i < spec->nbody; i++) {
@@ -212,6 +222,8 @@ static bool add_polymer(struct model *m, const struct model_spec *spec, struct e
         name_body(&b, i);
         axes_of(&b);
         double sine, cosine;
+        /* A turn about x by the tilt, then one bond along the new z: the carbon lies on the axis of
+         * its own torsion joint. */
         angle_sincos(0.5 * tilt, &b.placement.quat[0], &b.placement.quat[3]);
         angle_sincos(tilt, &sine, &cosine);
         b.placement.p[1] = -bond * sine, b.placement.p[2] = bond * cosine;
@@ -232,7 +244,9 @@ static struct model_spec in_own_units(const struct model_spec *spec, struct mode
     struct model_spec x = *spec;
     if (spec->generator == MODEL_POLYMER || (is_usual(spec->length) && is_usual(spec->mass))) return x;
     const double *g = spec->gravity, gravity = fabs(g[0]) + fabs(g[1]) + fabs(g[2]);
+    /* Exponents of two: numbers change theirs and keep all digits. */
     const int metre = ilogb(spec->length), kilogram = ilogb(spec->mass);
+    /* t^2 = m l^2 / torque, or l / g where no torque acts; without either, seconds do. */
     int square = 0; /* of the unit of time */
     if (spec->torque > 0) square = kilogram + 2 * metre - ilogb(spec->torque);
     else if (gravity > 0) square = metre - ilogb(gravity);
@@ -253,6 +267,7 @@ struct model *generator_model(const struct model_spec *spec, struct arena *a, st
     case MODEL_POLYMER: good = add_polymer(m, &x, e); break;
     default: good = add_rods(m, &x, e);
     }
+    /* Only now are the units known: polymers have set theirs. */
     for (int k = 0; k < 3; k++) m->gravity[k] = spec->gravity[k] * m->second * m->second / m->metre;
     return good && model_finish(m, false, e) ? m : NULL;
 }

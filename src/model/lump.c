@@ -40,7 +40,7 @@ void frame_apply(const struct frame *f, const double *x, double *y)
     for (int i = 0; i < 3; i++) y[i] += f->p[i];
 }
 
-/* Product of quaternions; the inner origin in the outer's parent. */
+/* The Hamilton product a b, in which b turns first; then the inner origin in the outer's parent. */
 struct frame frame_compose(const struct frame *outer, const struct frame *inner)
 {
     const double *a = outer->quat, *b = inner->quat;
@@ -76,14 +76,16 @@ static void body_add(struct body_def *whole, const struct body_def *part, const 
     double com[3], inertia[6], d[3];
     frame_apply(at, part->com, com);
     tensor_turn(at, part->inertia, inertia);
-    /* Massless parts have no say in the common centre. */
+    /* Two frames without mass have no common centre; the share 0 leaves it where it is. */
     double m1 = whole->mass, m2 = part->mass, m = m1 + m2, share = m != 0 ? m2 / m : 0;
     for (int i = 0; i < 3; i++) d[i] = com[i] - whole->com[i];
-    /* Parallel axes for both at once: the reduced mass at their distance (Koenig). */
+    /* Steiner's terms of both parts together are m1 m2 / m (d^2 U - d d^T). They hold the
+     * distance of the centres only, so that parts far from the origin lose no digits. */
     double reduced = m1 * share, square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     for (int i = 0, n = 0; i < 3; i++)
         for (int k = i; k < 3; k++, n++)
             whole->inertia[n] += inertia[n] + reduced * ((i == k ? square : 0) - d[i] * d[k]);
+    /* The centre moves last: d was measured from the old one. */
     for (int i = 0; i < 3; i++) whole->com[i] += share * d[i];
     whole->mass = m;
 }
@@ -154,7 +156,7 @@ bool lump_fixed(const struct model *m, bool allow_nonphysical, struct arena *a, 
     return loops_move(m, out, e) && model_finish(out->model, allow_nonphysical, e);
 }
 
-/* Joints keep their order, so that q, u and tau are the same arrays. */
+/* Joints keep their order and fixed ones have no coordinates: q, u and tau are the same arrays. */
 struct state *lump_state(const struct lumped *lumped, const struct model *old, const struct state *s, struct arena *a)
 {
     struct state *new = TAKE(a, 1, struct state);
@@ -163,6 +165,7 @@ struct state *lump_state(const struct lumped *lumped, const struct model *old, c
     if (!s->fext) return new;
     double *fext = state_fext_need(new, lumped->model, a);
     for (int i = 0; i < old->nbody; i++) {
+        /* The base takes any force. */
         if (lumped->body[i] < 0) continue;
         /* A wrench on a lost body acts on the one that took it up. */
         const struct frame *at = &lumped->at[i];

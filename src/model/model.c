@@ -21,11 +21,11 @@ struct model *model_begin(struct arena *a, const char *file)
 /* What is wrong with body `name`, at its line. */
 static bool refuse(const struct model *m, const char *kind, const char *name, int line, struct err *e, const char *why)
 {
-    /* Every message names the body and, if it has one, its line. */
+    /* Line 0 is that of generated bodies: they stand in no file. */
     return err_set_at(e, ERR_DATA, m->file ? m->file : "", line, "%s '%s': %s", kind, name, why);
 }
 
-/* Readers let infinities pass where a number is a number. */
+/* Not left to readers: models also come from code. */
 static bool all_finite(const double *x, int n)
 {
     for (int i = 0; i < n; i++)
@@ -49,7 +49,7 @@ static void complete_frame(struct frame *f)
 
 static bool frame_finite(const struct frame *f) { return all_finite(f->quat, 4) && all_finite(f->p, 3); }
 
-/* To the rounding of numbers that people type. */
+/* Relative to both lengths, which are free; 1e-9 forgives the rounding of printed axes. */
 static bool orthogonal(const double *x, const double *y)
 {
     double dot = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -74,7 +74,7 @@ static const char *joint_fault(const struct body_def *b)
     return NULL;
 }
 
-/* Checked one by one: the message has the line of the body. */
+/* Parents first: every sweep of the algorithms relies on it, and so no tree has a cycle. */
 int model_add_body(struct model *m, const struct body_def *def, struct err *e)
 {
     const char *fault = joint_fault(def);
@@ -102,14 +102,15 @@ static const char *loop_fault(const struct model *m, const struct loop_def *l)
 {
     if (l->body_a < -1 || l->body_a >= m->nbody || l->body_b < -1 || l->body_b >= m->nbody)
         return "its bodies must come before it";
+    /* Within one body nothing moves: its rows would hold nothing but rounding. */
     if (l->body_a == l->body_b) return "it must join two different bodies";
     if (!frame_finite(&l->frame_a) || !frame_finite(&l->frame_b)) return "frame not finite";
-    /* Rows and joints are two ways to say it. */
+    /* By rows. Redundant ones are fine (physics 7.4), but a zero one is a mistake of the file. */
     if (l->nrow < 0 || l->nrow > 6) return "it must have 1 to 6 rows";
     if (l->nrow > 0 && !all_finite(&l->row[0][0], 6 * l->nrow)) return "row not finite";
     for (int i = 0; i < l->nrow; i++)
         if (norm(l->row[i], 6) == 0) return "a row is zero";
-    /* A joint of six degrees of freedom leaves nothing to constrain. */
+    /* By a joint: W must have columns to constrain with (physics 1.3). */
     if (l->nrow == 0 && (l->joint >= JOINT_MIXED || joint_nu(l->joint) == 6)) return "its joint constrains nothing";
     if (l->nrow == 0 && joint_has(l->joint, JOINT_IN_TREES)) return "a joint of its type cannot close a loop";
     if (!isfinite(l->alpha) || !isfinite(l->beta) || l->alpha < 0 || l->beta < 0)
@@ -160,7 +161,7 @@ static void principal_moments(const double *inertia, double *w)
 /* Whether the body has an inverse inertia, as far as doubles can tell. */
 static bool invertible(const struct body_def *b)
 {
-    /* A point mass has no inverse inertia; principal moments tell it in any axes. */
+    /* A smallest moment below 1e-15 of the largest is rounding, and (1.8) would divide by it. */
     double w[3];
     principal_moments(b->inertia, w);
     return b->mass > 0 && w[0] > 1e-15 * w[2];
@@ -216,10 +217,12 @@ static void index_coordinates(struct model *m)
         m->q_at[i + 1] = m->q_at[i] + joint_nq(b->joint);
         m->u_at[i + 1] = m->u_at[i] + joint_nu(b->joint);
         m->is_chain = m->is_chain && b->parent == i - 1;
+        /* One body without Phi rules out constraint forces for the whole system. */
         m->has_phi = m->has_phi && invertible(b);
     }
     /* A loop joint constrains what its type does not allow. */
     for (int l = 0; l < m->nloop; l++)
+        /* W of a joint has 6 - d columns (physics 1.3). */
         m->row_at[l + 1] = m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
     m->nq = m->q_at[m->nbody];
     m->nu = m->u_at[m->nbody];

@@ -4,7 +4,7 @@
 #include "model/urdf_model.h"
 #include "model/vector_model.h"
 
-/* One reader or generator for each source of models. */
+/* Sources with a file have readers; all others are a matter of numbers. */
 struct model *model_build(const struct model_spec *spec, struct arena *a, struct err *e)
 {
     switch (spec->generator) {

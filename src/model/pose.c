@@ -29,7 +29,7 @@ static double pose_angle(const struct model_spec *spec, int i, struct random *r)
 /* Likewise for a joint with all rotations: folded is half a turn about z. */
 static void pose_rotation(const struct model_spec *spec, int i, struct random *r, double *quat)
 {
-    /* Straight: no turn at all. */
+    /* Straight poses keep this identity. */
     quat[0] = quat[1] = quat[2] = 0, quat[3] = 1;
     if (spec->pose == POSE_FOLDED && i > 0)
         quat[2] = 1, quat[3] = 0;

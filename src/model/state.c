@@ -7,7 +7,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Zero is a pose of every joint, but for quaternions. */
+/* Zero is a pose of every joint but for quaternions, whose w is then 1: no rotation. */
 struct state *state_take(const struct model *m, struct arena *a)
 {
     struct state *s = TAKE(a, 1, struct state);
@@ -42,7 +42,7 @@ static void scatter(const struct model *m, uint64_t seed, enum pose_stream strea
     }
 }
 
-/* Force, then moment, in the body's own axes. */
+/* [force; moment] as in model.h. A moment is as large as the force at the end of a link. */
 static void scatter_wrenches(const struct model *m, const struct model_spec *spec, double force, double length,
                              double *fext)
 {
@@ -57,7 +57,8 @@ static void pose_four_bar(const struct model_spec *spec, struct state *s)
 {
     /* Any angle would do; the cut joint's coordinate follows from it. */
     const double angle = 1.1;
-    /* The parallelogram: coupler against crank, rocker against coupler. */
+    /* The coupler stays parallel to the ground, so it turns back by the crank's angle; the
+     * rocker runs against the crank. The rates follow from the same lines. */
     s->q[0] = angle, s->q[1] = -angle, s->q[2] = angle - PI;
     s->qd[0] = spec->rate, s->qd[1] = -spec->rate, s->qd[2] = spec->rate;
 }
@@ -66,17 +67,19 @@ static void pose_four_bar(const struct model_spec *spec, struct state *s)
 struct state *state_generate(const struct model *m, const struct model_spec *spec, struct arena *a)
 {
     struct state *s = state_take(m, a);
-    /* Lengths and times in the model's units; polymers count in their own bond lengths. */
+    /* Lengths and times in the model's units; the links of a polymer count as one angstrom. */
     double length = spec->generator == MODEL_POLYMER ? 1 : spec->length / m->metre, rate = spec->rate * m->second;
     double force = m->kilogram * m->metre / (m->second * m->second), torque = force * m->metre;
-    /* A closed chain closes at q = 0, or in a pose of its own. */
+    /* A ring closes at q = 0, a four-bar in a pose of its own: drawn ones would open both. */
     bool closed = spec->generator == MODEL_RING || spec->generator == MODEL_FOUR_BAR;
     if (!closed)
         for (int i = 0; i < m->nbody; i++) pose_coordinates(spec, m->body[i].joint, i, length, s->q + m->q_at[i]);
-    /* Rates, accelerations and forces of linear joints scale with the length of a link. */
+    /* What slides has rates a link's length times those of what turns. Accelerations are of the
+     * size of the velocity terms, rate^2, so that neither hides the other. */
     scatter(m, spec->seed, STREAM_RATE, rate, rate * length, s->qd);
     if (spec->generator == MODEL_FOUR_BAR) pose_four_bar(spec, s);
     scatter(m, spec->seed, STREAM_ACCELERATION, rate * rate, rate * rate * length, s->qdd);
+    /* The force of a slide does as much at a link's length as the torque of a turn. */
     scatter(m, spec->seed, STREAM_TORQUE, spec->torque / torque, spec->torque / (torque * length), s->tau);
     if (spec->external_force > 0)
         scatter_wrenches(m, spec, spec->external_force / force, length, state_fext_need(s, m, a));

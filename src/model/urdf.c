@@ -34,7 +34,7 @@ struct reader {
     bool has_mass, has_inertia;       /* of the <inertial> being read */
 };
 
-/* expat counts lines itself. */
+/* The line of the tag that expat reports at the moment. */
 static int line_now(const struct reader *r) { return (int)XML_GetCurrentLineNumber(r->parser); }
 
 /* Record an error at the present line and stop. */
@@ -170,7 +170,7 @@ static void link_read(struct reader *r, const char **attributes)
         .name = name, .line = line_now(r), .inertial_line = line_now(r), .quat = {0, 0, 0, 1}, .joint = -1};
 }
 
-/* Mass and inertia may come in any order. */
+/* Mass and inertia may come in any order; which of them came is asked at the end (on_end). */
 static void inertial_read(struct reader *r, const char **attributes)
 {
     (void)attributes;
@@ -187,7 +187,8 @@ static void mass_read(struct reader *r, const char **attributes)
     r->has_mass = number_need(r, "mass", attributes, "value", &link_now(r)->mass);
 }
 
-/* Six numbers about the centre of mass, in the axes of <origin>. */
+/* Six numbers about the centre of mass, in the axes of <origin>. Entries off the diagonal have
+ * the tensor's sign, as in body_def. */
 static void inertia_read(struct reader *r, const char **attributes)
 {
     static const char *const name[6] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
@@ -202,7 +203,7 @@ static void link_origin_read(struct reader *r, const char **attributes)
     origin_read(r, attributes, link_now(r)->com, link_now(r)->quat);
 }
 
-/* By its name, with the nearest one. */
+/* On failure *kind is the last type tried; nobody reads it. */
 static bool kind_read(struct reader *r, const char *joint, const char *type, enum urdf_kind *kind)
 {
     for (int k = 0; k < URDF_KINDS; k++) {
@@ -247,26 +248,26 @@ static void joint_origin_read(struct reader *r, const char **attributes)
     origin_read(r, attributes, joint_now(r)->p, joint_now(r)->quat);
 }
 
-/* Either end once. */
+/* Once each: of two parents the last would win in silence. */
 static void end_read(struct reader *r, const char **attributes, const char *tag, struct urdf_name *end)
 {
     if (end->name) REFUSE(r, "joint '%.100s' has a second <%s>", joint_now(r)->name, tag);
     *end = (struct urdf_name){name_need(r, tag, attributes, "link"), line_now(r)};
 }
 
-/* The joint that is open. */
+/* Only a name: the link may stand later in the file (urdf_tree.h). */
 static void parent_read(struct reader *r, const char **attributes)
 {
     end_read(r, attributes, "parent", &r->names[r->robot->njoint - 1].parent);
 }
 
-/* Likewise. */
+/* As parent_read: a link may stand after the joint that names it. */
 static void child_read(struct reader *r, const char **attributes)
 {
     end_read(r, attributes, "child", &r->names[r->robot->njoint - 1].child);
 }
 
-/* URDF's default is x; given axes are made unit. */
+/* URDF's default is x. Given axes are made unit by hypot: no square overflows or vanishes. */
 static void axis_read(struct reader *r, const char **attributes)
 {
     struct urdf_joint *joint = joint_now(r);
@@ -279,7 +280,7 @@ static void axis_read(struct reader *r, const char **attributes)
     for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] = x[i] / length;
 }
 
-/* Kept for those who draw motions; the dynamics has no stops. */
+/* Kept, but no joint stops there. URDF takes 0 for a bound that is left out beside the other. */
 static void limit_read(struct reader *r, const char **attributes)
 {
     struct urdf_joint *joint = joint_now(r);
@@ -311,7 +312,7 @@ static void dynamics_read(struct reader *r, const char **attributes)
     if (friction != 0) WARN(r, "joint '%.100s': dry friction is not supported; ignored", joint->name);
 }
 
-/* A mimic joint would be a constraint between coordinates. */
+/* It would be a constraint between coordinates, which models do not have. */
 static void mimic_read(struct reader *r, const char **attributes)
 {
     const char *other = attribute(attributes, "joint");
@@ -375,7 +376,7 @@ static void attributes_check(struct reader *r, const struct element *element, co
 /* Extensions of other programs are skipped, misspellings refused. */
 static enum where element_unknown(struct reader *r, const char *tag, enum where in)
 {
-    /* The tags that this place knows. */
+    /* Only the tags of this place: <origin> under <link> is as wrong as an unknown one. */
     const char *known[ELEMENTS];
     int n = 0;
     for (int i = 0; i < ELEMENTS; i++)
@@ -388,7 +389,7 @@ static enum where element_unknown(struct reader *r, const char *tag, enum where 
     return IN_SKIPPED;
 }
 
-/* The row of this tag in this place. */
+/* Attributes are checked first: after a refusal the reader would only add a second message. */
 static enum where element_read(struct reader *r, const char *tag, enum where in, const char **attributes)
 {
     for (int i = 0; i < ELEMENTS; i++) {
@@ -402,12 +403,12 @@ static enum where element_read(struct reader *r, const char *tag, enum where in,
     return element_unknown(r, tag, in);
 }
 
-/* Called by expat for each opening tag. */
+/* A stack instead of recursion, since expat calls us. Below a skipped element all is skipped. */
 static void XMLCALL on_start(void *context, const char *tag, const char **attributes)
 {
     struct reader *r = context;
     if (r->e->kind != ERR_NONE) return;
-    /* Real robots nest five elements deep. */
+    /* The stack is of fixed size; what is read lies at most four elements deep. */
     if (r->depth == MAX_DEPTH) {
         REFUSE(r, "nested deeper than %d elements", MAX_DEPTH);
         return;

@@ -22,7 +22,8 @@ static enum model_joint joint_from(enum urdf_kind kind)
 /* Link axes from inertial axes: J_link = R J R^T, as a lump of one part. */
 static void inertia_from(const struct urdf_link *link, struct body_def *def)
 {
-    /* URDF gives inertia in axes of its own, turned against the link's. */
+    /* URDF gives inertia in axes of its own, turned against the link's, about the centre of
+     * mass: so no shift comes in. */
     struct frame f;
     memcpy(f.quat, link->quat, sizeof f.quat);
     memset(f.p, 0, sizeof f.p);
@@ -75,11 +76,12 @@ static bool link_check(const struct urdf_robot *robot, int i, const struct urdf_
                           link->name, link->mass);
     bool is_base = link->joint < 0 && !o->floating;
     if (o->allow_nonphysical || (frame_only && (is_base || !o->keep_fixed))) return true;
-    /* Such a link may be fixed to another one, but not move by itself. */
+    /* Only where every link is to be a body (keep_fixed): without mass it cannot be one. */
     if (!link->has_inertial)
         return err_set_at(e, ERR_DATA, robot->path, link->line, "link '%.100s' has no <inertial>: a body needs mass",
                           link->name);
-    /* Checked as a model of one body, so that the message names link and line. */
+    /* Each link by itself, as a model of one body: once fixed links are merged, a bad inertia
+     * may hide in a good sum, and its line is lost. */
     struct arena_mark mark = arena_mark(a);
     struct model *alone = model_begin(a, robot->path);
     struct body_def def = body_from(robot, i);
@@ -118,7 +120,7 @@ static struct model *every_link(const struct urdf_robot *robot, const struct urd
     return model_finish(m, allow, e) ? m : NULL;
 }
 
-/* Links on fixed joints are lumped unless somebody wants to see them. */
+/* Frames on fixed joints would fail the check for mass, so it is put off until they are lumped. */
 struct model *urdf_model(const struct urdf_robot *robot, const struct urdf_options *o, struct arena *a, struct err *e)
 {
     struct lumped lumped;

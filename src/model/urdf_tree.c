@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-/* What the steps share; joints' ends are still names here. */
+/* What the steps share; the ends of joints are names until joints_resolve. */
 struct maker {
     struct urdf_robot *robot;
     const struct urdf_names *names;
@@ -48,7 +48,7 @@ static bool link_find(struct maker *m, const struct named *named, const struct u
     /* A joint may lack an end altogether. */
     if (!end->name)
         return err_set_at(m->e, ERR_DATA, robot->path, joint->line, "joint '%.100s' has no <%s>", joint->name, tag);
-    /* Robots have up to thousands of links. */
+    /* By halving: a search through all links for each joint would take their square. */
     int lo = 0, hi = robot->nlink;
     while (lo < hi) {
         int mid = (lo + hi) / 2, order = strcmp(named[mid].name, end->name);
@@ -91,7 +91,7 @@ static bool joints_resolve(struct maker *m, const struct named *named)
     return true;
 }
 
-/* The one link that nothing carries. */
+/* The one link that nothing carries. Without any, the joints lead round. */
 static bool root_find(struct maker *m, int *root)
 {
     const struct urdf_robot *robot = m->robot;
@@ -116,7 +116,7 @@ static bool order_walk(struct maker *m, int root)
     struct urdf_robot *robot = m->robot;
     int *first = TAKE(m->a, robot->nlink, int), *next = TAKE(m->a, robot->nlink, int),
         *stack = TAKE(m->a, robot->nlink, int);
-    /* To find those that the walk does not reach. */
+    /* A cycle beside the tree has no root of its own: only the walk finds it. */
     bool *reached = TAKE(m->a, robot->nlink, bool);
     int n = 0, top = 0;
     robot->order = TAKE(m->a, robot->nlink, int);
@@ -125,7 +125,8 @@ static bool order_walk(struct maker *m, int root)
         next[robot->joint[j].child] = first[robot->joint[j].parent];
         first[robot->joint[j].parent] = robot->joint[j].child;
     }
-    /* An own stack: chains of links may be longer than the program's. */
+    /* No recursion: a long chain would overflow the program's stack. This one never holds more
+     * than all links, since each has one carrier. */
     stack[top++] = root;
     while (top > 0) {
         int i = stack[--top];

@@ -11,7 +11,7 @@
 
 enum { MAX_BODIES = 1000000, JOINT_KINDS = 5 };
 
-/* The format's own types, with its words. */
+/* In the order of enum vector_joint. */
 static const struct {
     const char *name;
     int nq, nv;
@@ -22,14 +22,14 @@ const char *vector_joint_name(enum vector_joint joint) { return joint_table[join
 int vector_joint_nq(enum vector_joint joint) { return joint_table[joint].nq; }
 int vector_joint_nv(enum vector_joint joint) { return joint_table[joint].nv; }
 
-/* What every reader below needs besides its node. */
+/* Where messages point, where memory comes from, and where the first error goes. */
 struct reader {
     const char *path;
     struct arena *a;
     struct err *e;
 };
 
-/* A message at a node's line. */
+/* False, so that it can end a chain of conditions. */
 static bool fail(struct reader *r, const struct node *at, const char *text)
 {
     return err_set_at(r->e, ERR_DATA, r->path, at ? at->line : 0, "%s", text);
@@ -66,28 +66,29 @@ static bool array_maybe(struct reader *r, const struct node *map, const char *ke
     return *x != NULL;
 }
 
-/* p, quat and R, of which R is a check. */
+/* The rotation comes twice: the quaternion counts, and R must agree with it. */
 static bool frame_read(struct reader *r, const struct node *map, const char *key, struct vector_frame *f)
 {
     const struct node *node = document_need(map, key, r->path, r->e);
     if (!node || !numbers(r, node, "p", f->p, 3) || !numbers(r, node, "quat", f->quat, 4) ||
         !numbers(r, node, "R", f->R, 9))
         return false;
-    /* A length that is off by more than rounding is a mistake of the writer. */
+    /* A length that is off by more than rounding is a mistake of the writer. "Not less" refuses
+     * NaN, too. */
     double square = 0;
     for (int i = 0; i < 4; i++) square += f->quat[i] * f->quat[i];
     if (!(fabs(square - 1) < 1e-6)) return fail(r, node, "'quat' is no unit quaternion");
     return vector_check_frame(f, node, r->path, r->e);
 }
 
-/* Type and, for two of them, an axis. */
+/* Joints without a direction are left as they are: an axis is not read there. */
 static bool joint_read(struct reader *r, const struct node *body, struct vector_body *b)
 {
     const struct node *joint = document_need(body, "joint", r->path, r->e);
-    /* The type decides what else belongs to it. */
+    /* document_need has set the error. */
     if (!joint) return false;
     const char *type = document_text(joint, "type");
-    /* Five words. */
+    /* By search in the table, so that the names stand once. */
     int k = 0;
     while (k < JOINT_KINDS && strcmp(type, joint_table[k].name) != 0) k++;
     if (k == JOINT_KINDS)
@@ -133,7 +134,8 @@ static bool bodies_read(struct reader *r, const struct node *root, struct vector
     return true;
 }
 
-/* nq and nv are redundant, so they must agree. */
+/* nq and nv follow from the joints. That files give them, too, shows when reader and writer mean
+ * different things by a joint. */
 static bool counts_check(struct reader *r, const struct node *root, const struct vector_case *c)
 {
     int nq, nv;
@@ -145,14 +147,14 @@ static bool counts_check(struct reader *r, const struct node *root, const struct
                       nq, nv, c->nq, c->nv);
 }
 
-/* Rows are flat lists or pairs of vectors. */
+/* Rows stay as written, [linear; angular] in axes of frame a: room dynamics reorders them. */
 static bool loop_read(struct reader *r, const struct node *node, int nbody, struct vector_loop *loop)
 {
     const struct node *rows = document_need(node, "rows", r->path, r->e);
     if (!rows) return false;
-    /* Six rows fix a body. */
+    /* Six rows fix a body to the other; more would only repeat them. */
     if (rows->kind != NODE_LIST || rows->count < 1 || rows->count > 6) return fail(r, rows, "a loop has 1 to 6 rows");
-    /* For messages of room model. */
+    /* The loop's own line, where the model's checks point. */
     loop->line = node->line;
     loop->nrow = rows->count;
     int k = 0;
@@ -163,7 +165,7 @@ static bool loop_read(struct reader *r, const struct node *node, int nbody, stru
            frame_read(r, node, "frame_a", &loop->frame_a) && frame_read(r, node, "frame_b", &loop->frame_b);
 }
 
-/* Most files have none. */
+/* Trees leave the list out; `bodies` is then the whole system. */
 static bool loops_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_find(root, "loops");
@@ -182,20 +184,20 @@ static bool loops_read(struct reader *r, const struct node *root, struct vector_
 /* q and qd are always there, the others by what is asked. */
 static bool state_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
-    /* In the order of the format's description. */
+    /* Each is read only if those before it were good: one error, the first. */
     bool good = (c->q = array_need(r, root, "q", c->nq)) && (c->qd = array_need(r, root, "qd", c->nv)) &&
                 array_maybe(r, root, "qdd", c->nv, &c->qdd) && array_maybe(r, root, "tau", c->nv, &c->tau) &&
                 array_maybe(r, root, "f_ext", 6 * c->nbody, &c->external) &&
                 array_maybe(r, root, "joint_spring", c->nv, &c->spring) &&
                 array_maybe(r, root, "joint_spring_q0", c->nv, &c->spring_q0) &&
                 array_maybe(r, root, "joint_damping", c->nv, &c->damping);
-    /* Springs need all three arrays. */
+    /* Half a spring would be a guess. nq = nv rules out quaternions, which have no rest angle. */
     if (good && (c->spring || c->damping) && !(c->spring && c->spring_q0 && c->damping && c->nq == c->nv))
         return fail(r, root, "springs need joint_spring, joint_spring_q0 and joint_damping, and 1-DOF joints only");
     return good;
 }
 
-/* Some or all bodies. */
+/* Of a few leaves: they see the errors of all bodies on the way. */
 static bool poses_read(struct reader *r, const struct node *root, struct vector_case *c)
 {
     const struct node *list = document_find(root, "fk");
@@ -203,7 +205,7 @@ static bool poses_read(struct reader *r, const struct node *root, struct vector_
     if (list->kind != NODE_LIST) return fail(r, list, "'fk' must be a list");
     c->pose = TAKE(r->a, list->count, struct vector_pose);
     for (const struct node *node = list->child; node; node = node->next) {
-        /* Everything of a body at one instant, in the base's frame. */
+        /* In world axes, without gravity: what an observer would see. */
         struct vector_pose *p = &c->pose[c->npose++];
         if (!document_integer(node, "body", r->path, 0, c->nbody - 1, &p->body, r->e) ||
             !numbers(r, node, "R", p->R, 9) || !numbers(r, node, "p", p->p, 3) || !numbers(r, node, "v", p->v, 3) ||
@@ -242,6 +244,7 @@ static double number_or_nan(const struct node *map, const char *key)
 /* The smaller of the two, ignoring "no answer"; libraries run in more than double precision do not compete. */
 static void peer_compete(struct vector_peer *best, double error, const char *name)
 {
+    /* "Not larger or equal" is true against NAN: any number wins over no number. */
     if (isfinite(error) && !(error >= best->error)) *best = (struct vector_peer){error, name};
 }
 
@@ -256,9 +259,9 @@ static void peers_read(const struct node *root, struct vector_case *c)
     if (!list || list->kind != NODE_LIST) return;
     for (const struct node *node = list->child; node; node = node->next) {
         const struct node *diff = document_find(node, "max_rel_diff");
-        /* Those are references, not peers. */
+        /* Run in quad precision: no measure of what doubles can reach. */
         if (strstr(document_text(node, "version"), "113-bit")) continue;
-        /* The best of them for each question. */
+        /* Forward dynamics counts both ways: by recursion and through the mass matrix. */
         const char *name = document_text(node, "name");
         peer_compete(&c->peer_id, number_or_nan(diff, "tau_id"), name);
         peer_compete(&c->peer_fd, number_or_nan(diff, "qdd_fd"), name);
@@ -318,7 +321,7 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
     int n = states->count, k = 0;
     if (states->kind != NODE_LIST || n < 1) return fail(r, states, "'states' must be a list of states");
     const double *time = array_need(r, trajectory, "times", n);
-    /* Both may be missing; then they are not a number. */
+    /* Of the reference itself: its own error, and how fast errors grow. Either may be missing. */
     const double *accuracy, *sensitivity;
     if (!time || !array_maybe(r, trajectory, "verified_accuracy_max_abs_diff", n, &accuracy) ||
         !array_maybe(r, trajectory, "sensitivity_to_initial_state", n, &sensitivity))
@@ -329,7 +332,7 @@ static bool trajectory_read(struct reader *r, const struct node *root, struct ve
         c->instant[k] = (struct vector_instant){.time = time[k], .accuracy = accuracy ? accuracy[k] : NAN,
                                                 .sensitivity = sensitivity ? sensitivity[k] : NAN};
         if (!instant_read(r, node, c, &c->instant[k])) return false;
-        /* Integrators go forward. */
+        /* Integrators go from one time to the next, so each must be later. */
         if (k > 0 && !(time[k] > time[k - 1])) return fail(r, trajectory, "'times' must increase");
     }
     return digits_read(r, root, c);
@@ -357,7 +360,8 @@ static bool complete_check(struct reader *r, const struct node *root, const stru
            fail(r, root, "neither 'tau_id', 'qdd_fd' nor 'trajectory': nothing to compare with");
 }
 
-/* Keys first, since a misspelled one explains most other mistakes. */
+/* Keys first: a misspelt one is then named as such and not as missing. Bodies before all that is
+ * counted by them; the peers are free text and cannot be wrong. */
 bool vector_read(const char *path, struct vector_case *c, struct arena *a, struct err *e)
 {
     struct reader r = {arena_text(a, path), a, e};
@@ -365,7 +369,7 @@ bool vector_read(const char *path, struct vector_case *c, struct arena *a, struc
     if (!root) return false;
     if (strcmp(document_text(root, "format"), "dynref-1") != 0)
         return fail(&r, root, "not a reference vector: 'format' must be \"dynref-1\"");
-    /* Texts may be missing; numbers have readers of their own. */
+    /* Missing texts are "": no reader below depends on them. */
     *c = (struct vector_case){.path = r.path,
                               .name = document_text(root, "name"),
                               .group = document_text(root, "group"),

@@ -59,7 +59,7 @@ static bool known(const struct checker *c, const struct node *map, const char *c
     return true;
 }
 
-/* Body by body: the line of the first mistake. */
+/* A missing list is for its reader to refuse: here it has no entries. */
 static bool bodies_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next)
@@ -69,7 +69,7 @@ static bool bodies_known(const struct checker *c, const struct node *list)
     return true;
 }
 
-/* Loops and their two frames. */
+/* As bodies_known: frames have keys of their own. */
 static bool loops_known(const struct checker *c, const struct node *list)
 {
     for (const struct node *x = list ? list->child : NULL; x; x = x->next)
@@ -86,7 +86,7 @@ static bool totals_known(const struct checker *c, const struct node *map)
            known(c, document_find(map, "momentum"), momentum_keys);
 }
 
-/* All states, then the trajectory's own keys. */
+/* A state has totals of its own, as a file has at its top. */
 static bool trajectory_known(const struct checker *c, const struct node *map)
 {
     const struct node *states = document_find(map, "states");
@@ -106,7 +106,7 @@ static bool answers_known(const struct checker *c, const struct node *list)
     return true;
 }
 
-/* Outer keys last: a mistake inside is the more precise message. */
+/* What other libraries reached ('peers') is not looked into: free text. */
 bool vector_check_keys(const struct node *root, const char *path, struct err *e)
 {
     const struct checker c = {path, e};
@@ -125,13 +125,14 @@ bool vector_check_keys(const struct node *root, const char *path, struct err *e)
 bool vector_check_frame(const struct vector_frame *f, const struct node *at, const char *path, struct err *e)
 {
     const double x = f->quat[0], y = f->quat[1], z = f->quat[2], w = f->quat[3];
-    /* In double: R of the file is rounded to double, too. */
+    /* s = 2 / |quat|^2 normalises, since the quaternion is off by rounding. R is rounded once,
+     * and the formula adds a few roundings of its own: hence `few`. */
     const double s = 2 / (x * x + y * y + z * z + w * w), few = 1e-15;
     const double R[9] = {1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
                          s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w),
                          s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)};
     for (int k = 0; k < 9; k++) {
-        /* Numbers as they would be written, so that the difference is seen. */
+        /* Both in as many digits as tell doubles apart: six would often look the same. */
         char is[32], turned[32];
         if (fabs(R[k] - f->R[k]) <= few) continue;
         text_real(is, f->R[k]);
@@ -157,7 +158,7 @@ static bool left_out(const struct vector_case *c, const char *key)
 /* A missing answer must be said, so that no check disappears silently. */
 bool vector_complete(const struct vector_case *c, struct err *e)
 {
-    /* Larger cases leave out what would make the file too large. */
+    /* The sizes up to which the format promises M and the joint wrenches (README of the data). */
     enum { FULL_MATRIX = 24, FULL_WRENCHES = 64 };
     /* Trajectories have states instead of answers at one instant. */
     const bool still = c->ninstant == 0;
@@ -177,10 +178,11 @@ bool vector_complete(const struct vector_case *c, struct err *e)
     enum { ANSWERS = sizeof answer / sizeof *answer };
     for (int k = 0; k < ANSWERS; k++) {
         bool absent = left_out(c, answer[k].key);
-        /* Given, but not declared: one of the two is a mistake. */
+        /* A list 'answers' must be the truth both ways: all that it names, and nothing else. */
         if (answer[k].given && absent)
             return err_set_at(e, ERR_DATA, c->path, c->declared->line, "'%s' is given, but not in the list 'answers'",
                               answer[k].key);
+        /* A list decides alone; without one the format's promise does. */
         if (answer[k].given || (c->declared ? absent : !answer[k].needed)) continue;
         return err_set_at(e, ERR_DATA, c->path, c->declared ? c->declared->line : 1,
                           "the answer '%s' is missing; a file without it lists what it has in 'answers'",

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-/* The rotation matrix of the file has been checked and is not needed any more. */
+/* The quaternion, normalised where used, is the exact rotation; R was its rounding. */
 static struct frame frame_from(const struct vector_frame *f)
 {
     struct frame out;
@@ -17,7 +17,7 @@ static struct frame frame_from(const struct vector_frame *f)
 
 static struct body_def body_from(const struct vector_case *c, int i)
 {
-    /* The format has five types of ours. */
+    /* The format's five types under their names here. */
     static const enum model_joint joint[] = {[VECTOR_FIXED] = JOINT_FIXED,
                                              [VECTOR_REVOLUTE] = JOINT_REVOLUTE,
                                              [VECTOR_PRISMATIC] = JOINT_PRISMATIC,
@@ -34,7 +34,7 @@ static struct body_def body_from(const struct vector_case *c, int i)
     memcpy(def.axis, b->axis, sizeof def.axis);
     memcpy(def.com, b->com, sizeof def.com);
     memcpy(def.inertia, b->inertia, sizeof def.inertia);
-    /* Springs are arrays over the velocities, of one-degree joints only. */
+    /* Arrays over velocities: the number of a joint of one freedom stands at v. */
     if (c->spring && vector_joint_nv(b->joint) == 1) {
         def.stiffness = c->spring[b->v];
         def.rest = c->spring_q0[b->v];
@@ -43,7 +43,7 @@ static struct body_def body_from(const struct vector_case *c, int i)
     return def;
 }
 
-/* Reference files give loops by rows. */
+/* By rows and without stabilisation: answers have none, and the states meet the loops. */
 static struct loop_def loop_from(const struct vector_case *c, int i)
 {
     const struct vector_loop *l = &c->loop[i];
@@ -98,7 +98,7 @@ struct model *vector_model_build(const struct model_spec *spec, struct arena *a,
     return vector_read(spec->path, &c, a, e) ? vector_model(&c, a, e) : NULL;
 }
 
-/* A file that was readable a moment ago. */
+/* The file has been read for the model: it fails here only if it has changed since. */
 struct state *vector_state_make(const struct model *m, const struct model_spec *spec, struct arena *a, struct err *e)
 {
     struct vector_case c;

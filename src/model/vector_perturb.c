@@ -4,13 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-/* How much, relative, and which stream of random numbers. */
+/* How far, and where the numbers come from: one stream in a fixed order, so that a seed names a
+ * vector. */
 struct shaker {
     double size;
     struct random *r;
 };
 
-/* The largest component stands for a vector's length. */
+/* The largest component stands for the length: within sqrt(n) of it, and no square overflows. */
 static double length_of(const double *x, int n)
 {
     double largest = 0;
@@ -27,13 +28,13 @@ static void shake_by(const struct shaker *s, double *x, int n, double scale)
 /* A vector's components share one scale: its direction is as uncertain as its length. */
 static void shake_vector(const struct shaker *s, double *x, int n) { shake_by(s, x, n, length_of(x, n)); }
 
-/* Numbers that have nothing to do with each other. */
+/* Each by itself; so what is zero stays zero. */
 static void shake_numbers(const struct shaker *s, double *x, int n)
 {
     for (int i = 0; i < n; i++) shake_vector(s, x + i, 1);
 }
 
-/* Quaternions need not stay of length 1: readers normalise. */
+/* Quaternions need not stay of length 1: models normalise them. They do not read R. */
 static void shake_frame(const struct shaker *s, struct vector_frame *f)
 {
     shake_vector(s, f->p, 3);
@@ -43,7 +44,7 @@ static void shake_frame(const struct shaker *s, struct vector_frame *f)
 /* xx xy xz yy yz zz: what is no diagonal entry moves by the root of its row's and its column's. */
 static void shake_inertia(const struct shaker *s, double *i)
 {
-    /* So that a positive definite matrix stays one. */
+    /* |J_xy| cannot exceed sqrt(J_xx J_yy) in a body: that is its scale, even where it is zero. */
     const double root[3] = {sqrt(fabs(i[0])), sqrt(fabs(i[3])), sqrt(fabs(i[5]))};
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     for (int k = 0; k < 6; k++) shake_by(s, i + k, 1, root[row[k]] * root[column[k]]);
@@ -88,7 +89,7 @@ static const double *shaken_coordinates(const struct shaker *s, const struct vec
     return q;
 }
 
-/* Axes of one-degree joints, frames, masses. */
+/* In a fixed order: each number takes the stream's next. */
 static void shake_bodies(const struct shaker *s, struct vector_case *c)
 {
     for (int i = 0; i < c->nbody; i++) {
@@ -102,7 +103,7 @@ static void shake_bodies(const struct shaker *s, struct vector_case *c)
     }
 }
 
-/* Rows as pairs of vectors, linear and angular. */
+/* Linear and angular half of a row apart: their units differ. */
 static void shake_loops(const struct shaker *s, struct vector_case *c)
 {
     for (int i = 0; i < c->nloop; i++) {
@@ -113,7 +114,7 @@ static void shake_loops(const struct shaker *s, struct vector_case *c)
     }
 }
 
-/* Deep where something changes, shared elsewhere. */
+/* Bodies and loops change in place, so they are copied; other arrays are replaced as a whole. */
 static struct vector_case *copy_with_bodies(const struct vector_case *c, struct arena *a)
 {
     struct vector_case *x = copied(a, c, sizeof *c);
@@ -152,11 +153,13 @@ struct vector_case *vector_perturb(const struct vector_case *c, double size, str
 struct vector_case *vector_even(const struct vector_case *c, struct arena *a)
 {
     struct vector_case *x = copy_with_bodies(c, a);
-    /* The length that masses act at: centre or next joint, whichever is farther. */
+    /* A link is as long as the way to its centre or from its parent's joint, whichever is
+     * longer. */
     double link = 0;
     for (int i = 0; i < c->nbody; i++)
         link += fmax(length_of(c->body[i].com, 3), length_of(c->body[i].placement.p, 3)) / c->nbody;
-    /* That of a rod of the mean length, about all axes. */
+    /* 2/5 m r^2: a ball whose radius is the mean link. Where all is at one point, any size will
+     * do. */
     const double moment = link > 0 ? 0.4 * link * link : 1;
     for (int i = 0; i < c->nbody; i++) {
         struct vector_body *b = &x->body[i];
