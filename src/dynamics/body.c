@@ -71,7 +71,7 @@ void base_motion(const struct model *m, const struct state *s, real *a)
     for (int i = 0; i < 6; i++) a[i] = (real)s->base_acceleration[i] - (i < 3 ? 0 : (real)m->gravity[i - 3]);
 }
 
-/* For codes that multiply the inertia out of its factors (kernel/dense_tally.h). */
+/* For codes that multiply the inertia out of its factors (kernel/chain.c, forward_exact.c). */
 void body_inertia_factors(const struct body *b, real *shift, real *about)
 {
     static const signed char at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};

@@ -50,6 +50,7 @@ static void accelerations(struct cfa_run *r)
     }
     /* Loop forces are known numbers here; border and answer_loops find them. */
     loops_force(&r->loops, r->lambda, net, &r->work);
+    /* Y of (4.8): one product with Phi a body; D is never multiplied out. */
     for (int i = 0; i < d->nbody; i++) body_accelerate(&d->body[i], net + 6 * i, r->y + 6 * i);
     arena_release(d->arena, mark);
     r->work.flop += (uint64_t)d->nbody * (BODY_ACCELERATE_FLOP + (has_gyro(r) ? SCREW_ADD_FLOP : 0));
@@ -61,7 +62,7 @@ static void relative( struct cfa_run *r, int i, real *z)
     static const real still[6] = {0};
     struct dynamics *d = r->d;
     int parent = d->body[i].parent;
-    /* physics 4.3: what the joint would have to allow for the two bodies to stay together. */
+    /* Z of (4.8): what the joint would have to allow for the two bodies to stay together. */
     xform_motion(z, &d->pose[i].x, parent >= 0 ? r->y + 6 * parent : r->full ? d->base : still);
     for (int k = 0; k < 6; k++) z[k] = r->y[6 * i + k] - z[k];
     if (has_velocities(r)) screw_sub(z, d->bias + 6 * i);
@@ -87,7 +88,7 @@ static void answer_joints(struct cfa_run *r)
     struct dynamics *d = r->d;
     struct arena_mark mark = arena_mark(d->arena);
     real *x = TAKE(d->arena, size_product(6, d->nbody), real);
-    /* A x = -z: the matrix is that of the free bodies' accelerations under constraint forces. */
+    /* A x = -z, as (4.6): A is what constraint forces do to free bodies, seen by the joints. */
     for (int k = 0; k < 6 * d->nbody; k++) r->z[k] = -r->z[k];
     cfa_solve(d, &r->system, r->z, x, &r->work);
     for (int k = 0; k < 6 * d->nbody; k++) r->f[k] += x[k];
@@ -102,7 +103,8 @@ static void border(struct cfa_run *r)
     int m = r->loops.nrow, size = 6 * d->nbody;
     real *f = r->f, *lambda = r->lambda, *column = TAKE(d->arena, m, real);
     bool full = r->full;
-    /* Without velocity terms: pure responses. */
+    /* (7.5), one solution of the open system a column, without velocity terms: pure responses.
+     * Once an evaluation, whatever the passes. */
     r->full = false;
     r->lambda = TAKE(d->arena, m, real);
     for (int k = 0; k < m; k++) {
@@ -269,6 +271,7 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     } else {
         rnea_full(d, q, u, d->zero, r->bias, &r->work);
     }
+    /* Inverse dynamics leaves angular velocities alone; loops need linear ones, too (7.1). */
     if (direct || m > 0) velocity_terms(r, u);
     if (!cfa_factor(d, &r->system, &r->work)) return false;
     loops_take(d, &r->loops, &r->work);
@@ -282,7 +285,8 @@ static bool prepare(struct cfa_run *r, struct dynamics *d, bool direct, const re
     return true;
 }
 
-/* The paper's scheme: the response of the system at rest to what the bias forces leave of tau. */
+/* (4.3), (4.4): the response of the system at rest to what the bias forces leave of tau. The bias
+ * forces grow along the chain, and with them their rounding (physics 8.2). */
 static void solve_paper(struct cfa_run *r, const real *tau, int inner, real *ud)
 {
     struct dynamics *d = r->d;

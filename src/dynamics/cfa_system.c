@@ -168,7 +168,7 @@ bool cfa_factor(struct dynamics *d, struct cfa_system *s, struct work *w)
         else
             project(&d->pose[i].s, &d->body[i].phi, s->row[i].g, w);
     }
-    /* Leaves have the highest numbers. */
+    /* Children have higher numbers than their parents: no fill on this way (physics 6.1). */
     for (int i = d->nbody - 1; i >= 0; i--)
         if (!eliminate(d, i, s, w)) return false;
     return true;

@@ -95,7 +95,7 @@ static void closing_reference(const struct scene *x, const struct closing *c, re
         if (body < 0) continue;
         loop_column(&c->pose[side / 2], side % 2, column);
         for (int k = 0; k < l->c; k++) {
-            /* As side_reference in loops.c. */
+            /* f^T Phi f, its part of the diagonal of A_ll (7.7). A massless body adds nothing. */
             body_accelerate(&x->body[body], column + SPACE * k, a);
             reference[l->row_at + k] += screw_dot(column + SPACE * k, a);
         }

@@ -164,7 +164,7 @@ void planar_inverse(const struct model *model, const struct state *s, struct are
 }
 
 /* y = S x; 15 flops.
- * Six numbers for nine. */
+ * S by its six numbers, in the order of struct moving. */
 static void symmetric_multiply(const real *s, const real *x, real *y)
 {
     y[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
@@ -323,7 +323,7 @@ static bool accelerate(const struct scene *x, int i, const double *tau, double *
 bool planar_open_forward(const struct scene *x, const double *tau, double *ud, struct work *w)
 {
     bool good = true;
-    /* Down the tree for forces, up for inertias, down again for accelerations. */
+    /* Each body alone; then inertias and bias forces tip to base, accelerations base to tip. */
     for (int i = 0; i < x->model->nbody; i++) {
         pull(x, i, w);
         rigid(&x->body[i], x->moving[i].inertia);
