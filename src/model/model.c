@@ -195,7 +195,8 @@ static void index_children(struct model *m)
 {
     m->child_at = TAKE(m->arena, m->nbody + 2, int);
     m->child = TAKE(m->arena, m->nbody, int);
-    /* Two passes over the parents, no lists. */
+    /* The counts stand one place late, so that after the sums at[i] is where list i begins. Filling
+     * moves it to the end, where list i + 1 begins: child_at is right without a third pass. */
     int *at = m->child_at + 1; /* at[i] becomes the end of i's list while filling */
     for (int i = 0; i < m->nbody; i++)
         if (m->body[i].parent >= 0) at[m->body[i].parent + 1]++;
@@ -220,16 +221,15 @@ static void index_coordinates(struct model *m)
         /* One body without Phi rules out constraint forces for the whole system. */
         m->has_phi = m->has_phi && invertible(b);
     }
-    /* A loop joint constrains what its type does not allow. */
     for (int l = 0; l < m->nloop; l++)
-        /* W of a joint has 6 - d columns (physics 1.3). */
+        /* Rows as given, or the 6 - d columns of the joint's W (physics 1.3). */
         m->row_at[l + 1] = m->row_at[l] + (m->loop[l].nrow ? m->loop[l].nrow : 6 - joint_nu(m->loop[l].joint));
     m->nq = m->q_at[m->nbody];
     m->nu = m->u_at[m->nbody];
     m->nrow = m->row_at[m->nloop];
 }
 
-/* From here on nobody writes the model. */
+/* From here on the model is only read; room dynamics adds its constants once (system_prepare). */
 bool model_finish(struct model *m, bool allow_nonphysical, struct err *e)
 {
     if (m->nbody > MODEL_MAX_BODIES || m->nloop > MODEL_MAX_BODIES)
