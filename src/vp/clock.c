@@ -3,6 +3,9 @@
 
 #include "vp/vp.h"
 
+/* A ring of P places is enough, as each rank is woken at most once before it goes on.
+ * First come, first served: the order in which the host runs ranks is fixed, and so are
+ * digests. */
 void vp_wake(struct world *w, struct vp *v)
 {
     int at = w->ready_head + w->ready_count++;
@@ -10,6 +13,8 @@ void vp_wake(struct world *w, struct vp *v)
     w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
 }
 
+/* The state is kept for reports of deadlocks: whoever blocks is found with what it waits
+ * for. Control returns to the loop in world.c. */
 void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
 {
     v->waiting_for = what;
@@ -19,6 +24,8 @@ void vp_block(struct vp *v, enum waiting_for what, struct comm_request *r)
     v->waiting = NULL;
 }
 
+/* The first rank that would pass the end of time is the one that is told. The loop stops,
+ * so the fiber is never entered again; its stack is freed with the run. */
 void vp_time_out(struct vp *v)
 {
     if (!v->world->late) v->world->late = v;
@@ -29,6 +36,9 @@ void vp_time_out(struct vp *v)
 void vp_wait_until(struct vp *v, sim_ps time, sim_ps uncontended)
 {
     if (time <= v->clock) return;
+    /* The wait is cut in two: what would have passed on an empty machine is wait, the
+     * rest is contention (docs/network.md). Both are within [clock, time], whatever the
+     * caller says. */
     sim_ps free_of_others = uncontended < v->clock ? v->clock : uncontended > time ? time : uncontended;
     vp_stage_time(v)->wait_ps += free_of_others - v->clock;
     vp_stage_time(v)->contention_ps += time - free_of_others;
@@ -39,7 +49,10 @@ void vp_span(struct vp *v, enum span_kind kind, sim_ps begin, sim_ps end, int pe
 {
     struct world *w = v->world;
     struct run_result *r = w->result;
+    /* Spans without a length show nothing, but ends of messages draw arrows. */
     if (begin == end && message < 0) return;
+    /* The result's arena never frees, so arrays that doubled leave as much behind as they
+     * hold. */
     if (r->nspan == w->span_capacity) {
         int64_t capacity = w->span_capacity ? 2 * w->span_capacity : 4096;
         struct span *grown = TAKE(w->arena, capacity, struct span);

@@ -1,4 +1,7 @@
-/* deadlock.c - who waits for whom when no event is left, or how far a rank came when simulated time ended. */
+/* deadlock.c - who waits for whom when no event is left, or how far a rank came when simulated time ended.
+ *
+ * Nothing is detected here: when no event is left and ranks still wait, the run is a
+ * deadlock by definition. What is worked out is a text that names a cause. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,11 +9,14 @@
 #include "vp/explain.h"
 #include "vp/matching.h"
 
+/* -1 where no single rank could end the wait. */
 static int peer_of(const struct vp *v)
 {
     return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer : -1;
 }
 
+/* Room mpi keeps context and plane above the lower 32 bits, which mean nothing to a
+ * reader. */
 /* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its lower 32 bits. */
 static int describe_receive(const struct comm_request *r, char *s, int size)
 {
@@ -27,6 +33,7 @@ static int describe(const struct vp *v, char *s, int size)
     const char *stage = v->world->result->stage_name[v->stage];
     const struct comm_request *r = v->waiting;
     char receive[160];
+    /* Each says the call site as well: that is where to look in the program. */
     switch (v->waiting_for) {
     case WAITING_RECEIVE:
         describe_receive(r, receive, sizeof receive);
@@ -51,6 +58,7 @@ static int describe(const struct vp *v, char *s, int size)
     }
 }
 
+/* Three are enough to see a pattern; a list of 65,536 would not be read. */
 /* Anybody could end the wait of `v`: all others have finished or wait, too. Three of them are told. */
 static void describe_others(struct world *w, const struct vp *v, char *s, int size)
 {
@@ -64,6 +72,7 @@ static void describe_others(struct world *w, const struct vp *v, char *s, int si
     }
 }
 
+/* Such a wait ends every chain: there is no one to follow. */
 static bool waits_for_anybody(const struct vp *v)
 {
     return v->waiting_for == WAITING_ANY || (v->waiting_for == WAITING_RECEIVE && v->waiting->peer < 0);
@@ -76,6 +85,8 @@ static struct vp *first_blocked(struct world *w)
     return NULL;
 }
 
+/* After P steps along waits for single ranks one is on a cycle, if there is one: the
+ * first steps may lead into it from outside. */
 /* A rank on the cycle that starts from `v`, or the end of the chain when it leads to a finished rank or a barrier. */
 static struct vp *walk_into_cycle(struct world *w, struct vp *v)
 {
@@ -91,9 +102,11 @@ void deadlock_explain(struct world *w)
 {
     char *text = w->result->text;
     int size = (int)sizeof w->result->text, used = 0;
+    /* Full buffers of the network can lock up by themselves; then ranks only suffer. */
     if (net_deadlock(w->net, text, size)) return;
     struct vp *start = walk_into_cycle(w, first_blocked(w)), *v = start;
     used += snprintf(text, size, "deadlock: ");
+    /* Up to eight links of the chain: longer cycles look alike. */
     for (int k = 0; k < 8 && used < size; k++) {
         used += describe(v, text + used, size - used);
         int peer = peer_of(v);
@@ -113,6 +126,7 @@ void deadlock_explain(struct world *w)
     if (used < size) snprintf(text + used, size - used, "and so on");
 }
 
+/* For programs that promise to receive everything. The first such rank is told. */
 void find_leftovers(struct world *w)
 {
     for (int i = 0; i < w->nrank; i++) {
@@ -135,6 +149,8 @@ void late_explain(struct world *w)
 {
     struct run_result *r = w->result;
     const struct vp *v = w->late;
+    /* No rank passed the end, so an event did: the rank that has come farthest says how
+     * far the run is. */
     for (int i = 0; i < w->nrank && !w->late; i++)
         if (!v || w->vp[i].clock > v->clock) v = &w->vp[i];
     snprintf(r->text, sizeof r->text, "simulated time ends at %.3g s: rank %d had reached %.6g s in %s, and what %s "

@@ -7,6 +7,8 @@
 #include "vp/explain.h"
 #include "vp/vp.h"
 
+/* Programs are compiled anywhere: folders are of no use in a report, and would differ
+ * between computers. */
 const char *vp_base_name(const char *path)
 {
     const char *slash = path ? strrchr(path, '/') : NULL;
@@ -17,6 +19,7 @@ void vp_record_failure(struct vp *v, const char *file, int line, const char *tex
 {
     struct world *w = v->world;
     struct run_result *r = w->result;
+    /* One failure is told; those that follow are often its consequences. */
     if (w->stopped) return;
     w->stopped = true;
     w->failed = true;
@@ -27,6 +30,8 @@ void vp_record_failure(struct vp *v, const char *file, int line, const char *tex
              r->stage_name[v->stage], (double)v->clock / SIM_PS_PER_S, place, text);
 }
 
+/* The loop in world.c sees `stopped` and enters no fiber again; a rank that blocks here
+ * costs nothing. */
 _Noreturn static void stop(struct vp *v)
 {
     for (;;) vp_block(v, WAITING_NOTHING, NULL);
@@ -39,6 +44,8 @@ void vp_fail(struct comm *c, const char *text)
     stop(v);
 }
 
+/* A kernel of this project that errs has a bug, and the process ends where it is;
+ * somebody else's program ends its run, and others go on. */
 void vp_misuse(struct vp *v, const char *format, ...)
 {
     char text[512];
@@ -55,6 +62,8 @@ void vp_misuse(struct vp *v, const char *format, ...)
 void size_mismatch(struct vp *v, const struct comm_request *r, const struct message *m)
 {
     char text[512];
+    /* The rank of the receive is told, not that of the send: its call has the size that
+     * did not fit. */
     snprintf(
         text, sizeof text,
         "a receive of exactly %lld bytes from rank %d, tag %lld, meets a message of %lld bytes",
@@ -63,6 +72,7 @@ void size_mismatch(struct vp *v, const struct comm_request *r, const struct mess
     vp_record_failure(v, r->file, r->line, text);
 }
 
+/* Times of a run that failed would look like results in tables: only the text stays. */
 void forget_parts(struct world *w)
 {
     struct run_result *r = w->result;

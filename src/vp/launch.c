@@ -2,6 +2,7 @@
 #include "vp/path.h"
 #include "vp/vp.h"
 
+/* The network knows nodes; ranks are needed for the record of what binds alone. */
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
 {
     m->net.src = from->node;
@@ -11,6 +12,8 @@ void vp_launch(struct world *w, struct message *m, const struct vp *from, const 
         net_send(w->net, &m->net);
         return;
     }
+    /* Memory that two processors share (docs/network.md): latency and bytes at its
+     * bandwidth, without contention, so the arrival is known at once and takes no event. */
     m->net.injected = m->net.ready;
     m->net.arrival = m->net.ready + byte_cost(w->software.shared_latency, w->software.shared_byte, m->net.bytes);
     m->net.uncontended = m->net.arrival;

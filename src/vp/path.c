@@ -1,6 +1,11 @@
-/* path.c - see path.h. */
+/* path.c - see path.h.
+ *
+ * Each rank keeps the node of its clock: what it did last, which in turn refers to what
+ * that waited for. A walk back from the end is the critical path. */
 #include "vp/path.h"
 
+/* Time that nothing else explains is charged to looking around (PATH_POLL), so that a
+ * path has no gaps. */
 uint32_t vp_path_until(struct vp *v, sim_ps time)
 {
     struct path_log *p = v->world->path;
@@ -21,6 +26,8 @@ void vp_path_work(struct vp *v, sim_ps begin, const struct work *w)
     if (p) v->path = path_add_work(p, vp_path_until(v, begin), v->clock, v->comm.rank, v->stage, w);
 }
 
+/* What comes later than the clock binds it; what came before has been waited out and
+ * binds nothing. */
 void vp_path_join(struct vp *v, uint32_t node)
 {
     const struct path_log *p = v->world->path;

@@ -15,14 +15,16 @@
 
 enum { POLL_PART = 8, SERIES_PART = 16 };
 
-/* What a look costs: an eighth of what the software spends on receiving an empty message. It reads
- * a flag or two where a receive also finds and unpacks a message. */
+/* What a look costs: an eighth of what the software spends on receiving an empty message.
+ * It reads a flag or two where a receive also finds and unpacks a message. At least 1 ns,
+ * so that a loop of looks ends on machines whose software takes no time. */
 static sim_ps poll_cost(const struct world *w)
 {
     const sim_ps cost = w->software.message[0].recv / POLL_PART;
     return cost > 1000 ? cost : 1000;
 }
 
+/* All of it counts as waiting: nobody else's traffic makes a look longer. */
 static void wait_of(struct vp *v, sim_ps time)
 {
     const sim_ps begin = v->clock;
@@ -36,10 +38,13 @@ static void poll(struct vp *v, sim_ps expected)
 {
     struct matching *k = v->matching;
     const sim_ps cost = poll_cost(v->world);
+    /* The program did hardly anything since the last look: the two belong together. */
     const bool series = k->poll_step > 0 && v->clock - k->poll_end <= k->poll_step;
     if (!series) k->poll_began = v->clock;
     sim_ps step = (v->clock - k->poll_began) / SERIES_PART;
     if (step < cost) step = cost;
+    /* The look takes a poll at least and a step at most; what is expected, or comes
+     * unexpected (poll_notify), ends it in between. */
     k->least = ps_later(v->clock, cost);
     sim_ps until = ps_later(v->clock, step);
     if (expected < until) until = expected > k->least ? expected : k->least;
@@ -50,6 +55,8 @@ static void poll(struct vp *v, sim_ps expected)
     k->poll_step = step;
 }
 
+/* Programs of this project promise to do without, which saves an event for each match; a
+ * slip is a bug and told as one. */
 static void need_time(struct vp *v, const char *what)
 {
     if (!v->matching) vp_misuse(v, "%s in a program that has promised to do without it", what);
@@ -77,6 +84,7 @@ struct candidates {
     sim_ps time;         /* when it is */
 };
 
+/* Requests are few here: rooms that have thousands under way use vp_watch. */
 static struct candidates survey(int n, struct comm_request *const *r)
 {
     struct candidates s = {0, 0, -1, SIM_NEVER};
@@ -90,6 +98,7 @@ static struct candidates survey(int n, struct comm_request *const *r)
     return s;
 }
 
+/* Success ends a series of looks: the next one without success starts small again. */
 static int finish(struct vp *v, struct comm_request *const *r, int i)
 {
     v->comm.type->wait(&v->comm, r[i]);
@@ -104,6 +113,8 @@ int vp_complete_any(struct comm *c, int n, struct comm_request *const *r, int bl
     need_time(v, block ? "a wait for any of several" : "a test");
     struct candidates s = survey(n, r);
     if (s.active == 0) return -1;
+    /* What is complete at the clock must be known first, then answered; a look that finds
+     * nothing takes time, or loops of tests would never end. */
     if (!block) {
         if (s.unknown > 0) {
             timer_catch_up(v);
@@ -118,6 +129,8 @@ int vp_complete_any(struct comm *c, int n, struct comm_request *const *r, int bl
     while (s.unknown > 0 && (s.time > k->synced || v->clock > k->synced)) {
         const sim_ps now = sim_now(v->world->sim);
         sim_ps time = s.time > v->clock ? s.time : v->clock;
+        /* No older timer counts any more. Without a known time the rank waits for
+         * whatever comes. */
         k->timer++;
         if (time != SIM_NEVER) timer_set(v, time > now ? time : now);
         vp_block(v, WAITING_ANY, NULL);
@@ -130,11 +143,14 @@ int vp_cancel(struct comm *c, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
     need_time(v, "a cancelled receive");
+    /* A message may have come by now that this rank does not know of yet. */
     if (r->active == REQUEST_POSTED) timer_catch_up(v);
     if (r->active == REQUEST_POSTED) {
         matching_withdraw(v, r);
     } else if (r->active == REQUEST_MATCHED) {
-        /* bound ahead of time to a message that is still on its way */
+        /* bound ahead of time to a message that is still on its way Its own clock counts:
+         * for this rank a message that arrives later has not come. A hand-shake cannot be
+         * taken back. */
         struct message *m = r->detail;
         if (m->kind != MESSAGE_EAGER || m->net.arrival <= v->clock) return 0;
         matching_put_back(v, m);
@@ -153,8 +169,10 @@ void vp_watch(struct comm *c, struct comm_request *r)
     struct vp *v = (struct vp *)c;
     struct matching *k = v->matching;
     need_time(v, "a watched request");
+    /* The number orders requests that are complete at the same time. */
     r->watch = ++k->nwatch;
     const sim_ps time = r->active == REQUEST_DONE ? v->clock : request_completion(r);
+    /* Those of unknown time are counted, and enter the heap when vp_notify says when. */
     if (time == SIM_NEVER) k->nunknown++;
     else watched_known(v, r, time);
 }
@@ -168,6 +186,7 @@ struct comm_request *vp_next_complete(struct comm *c, int64_t time)
         /* the first one known is the first one when the events have come as far */
         const sim_ps first = k->nheap > 0 ? k->heap[0].time : SIM_NEVER;
         sim_ps goal = first < time ? first : time;
+        /* Nothing that is unknown can still come before `goal`. */
         if (k->nunknown == 0 || goal <= k->synced) break;
         if (goal < v->clock) goal = v->clock; /* the events do not go back */
         k->timer++;
@@ -180,13 +199,15 @@ struct comm_request *vp_next_complete(struct comm *c, int64_t time)
         c->type->wait(c, r);
         return r;
     }
+    /* Nothing is complete by `time`: the rank has waited until then. */
     if (time != INT64_MAX) wait_of(v, time);
     return NULL;
 }
 
 /* ---- probes ---- */
 
-/* Stop until a message is there. */
+/* Stop until a message is there. The probe stands among the receives, so that the order
+ * of posting counts for it as well. */
 static struct unmatched *await(struct vp *v, struct comm_request *look)
 {
     matching_post(v, look);
@@ -200,6 +221,7 @@ static struct unmatched *await(struct vp *v, struct comm_request *look)
     return u;
 }
 
+/* The request now owns the message; a buffer comes later (vp_receive_into). */
 static void take_probed(struct vp *v, struct unmatched *u, struct comm_request *r)
 {
     *r = (struct comm_request){.bytes = u->m->bytes,
@@ -224,9 +246,11 @@ int vp_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
                                 .kind = RECEIVE_PROBE,
                                 .file = c->file,
                                 .line = c->line};
+    /* Arrivals up to the clock must be known before one can be said to be the first. */
     timer_catch_up(v);
     struct unmatched *u = matching_find(v, &look, v->clock);
     if (!u && !block) {
+        /* A message that is known to come later ends the look in time. */
         u = matching_find(v, &look, SIM_NEVER);
         poll(v, u ? u->m->net.arrival : SIM_NEVER);
         return 0;
@@ -234,11 +258,13 @@ int vp_probe(struct comm *c, int src, int64_t tag, int64_t mask, int block,
     if (!u) u = await(v, &look);
     *out = (struct comm_envelope){u->source->rank, u->m->tag, u->m->bytes};
     if (take) take_probed(v, u, take);
+    /* A look with success takes a poll, too. */
     wait_of(v, v->clock + poll_cost(v->world));
     v->matching->poll_step = 0;
     return 1;
 }
 
+/* From here on as any receive whose message is there: copied out when it is waited for. */
 void vp_receive_into(struct comm *c, struct comm_request *r, void *buffer, int64_t capacity)
 {
     struct vp *v = (struct vp *)c;

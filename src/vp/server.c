@@ -4,6 +4,7 @@
 #include "vp/path.h"
 #include "vp/vp.h"
 
+/* A fixed time and a time for each byte, both of machine.software. */
 static sim_ps service_time(const struct world *w, int64_t bytes)
 {
     return w->software.kernel_time + ps_rounded(w->software.kernel_byte * (double)bytes);
@@ -23,6 +24,7 @@ static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
     w->served_stage = v->stage;
 }
 
+/* The clock of a rank that runs ahead says nothing about order; the event queue does. */
 /* An event, so that those who come at one time are served in the order of the queue, by rank. */
 static void begin_service(void *subject, uint64_t bytes, sim_ps now)
 {

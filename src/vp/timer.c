@@ -1,6 +1,8 @@
 /* timer.c - a rank that looks around stops until the events have come to its clock. Of several
  * timers set one after the other the last counts; what comes while one runs may end the look early.
- */
+ *
+ * Why a timer at all: ranks run ahead of the events, so what a rank sees at its clock is
+ * not known until the events have come that far. */
 #include "vp/matching.h"
 
 #include <string.h>
@@ -9,8 +11,11 @@ static void ring(void *subject, uint64_t argument, sim_ps now)
 {
     struct vp *v = subject;
     struct matching *k = v->matching;
+    /* A timer that was replaced still rings: its number tells that it does not count,
+     * which is cheaper than taking events out of the queue. */
     if (argument != k->timer || (v->waiting_for != WAITING_ANY && v->waiting_for != WAITING_POLL))
         return;
+    /* All events before this lane at `now` are done, so what has arrived by now is known. */
     k->synced = now;
     v->waiting_for = WAITING_NOTHING; /* nobody else wakes it again */
     vp_wake(v->world, v);
@@ -23,6 +28,9 @@ void timer_set(struct vp *v, sim_ps time)
     sim_at(v->world->sim, time, LANE_POLL, (uint64_t)v->comm.rank, ring, v, ++k->timer);
 }
 
+/* WAITING_ANY waits for anything new, so it goes on at once and looks for itself.
+ * WAITING_POLL has a time in mind: the look ends earlier, not before it has cost what a
+ * poll costs, and never in the past. */
 void poll_notify(struct vp *v, sim_ps time)
 {
     struct matching *k = v->matching;
@@ -40,6 +48,7 @@ void poll_notify(struct vp *v, sim_ps time)
 void timer_catch_up(struct vp *v)
 {
     struct matching *k = v->matching;
+    /* Nothing can come that is not known yet. */
     if (k->synced >= v->clock) return;
     k->least = SIM_NEVER; /* nothing shortens this */
     timer_set(v, v->clock);
@@ -64,6 +73,8 @@ void watched_known(struct vp *v, struct comm_request *r, sim_ps time)
         k->heap = grown;
         k->heap_capacity = capacity;
     }
+    /* Sifting up and down moves entries, not pairs of entries: a hole travels to where
+     * the new one belongs. */
     const struct watched new = {time, r};
     int at = k->nheap++;
     for (; at > 0 && sooner(&new, &k->heap[(at - 1) / 2]); at = (at - 1) / 2)
@@ -71,6 +82,7 @@ void watched_known(struct vp *v, struct comm_request *r, sim_ps time)
     k->heap[at] = new;
 }
 
+/* The caller has seen that there is one. */
 struct comm_request *watched_pop(struct matching *k)
 {
     struct comm_request *first = k->heap[0].request;
@@ -86,6 +98,8 @@ struct comm_request *watched_pop(struct matching *k)
     return first;
 }
 
+/* Three may look out for a request: the completion queue, a wait for it alone, a look
+ * around. */
 void vp_notify(struct vp *v, struct comm_request *r, sim_ps time)
 {
     if (r->watch) {

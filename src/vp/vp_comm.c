@@ -15,6 +15,9 @@
 
 enum { BARRIER_TAG = 1 << 30 };
 
+/* Overhead and copying by the machine's segments (docs/network.md). Where one kernel
+ * server serves the whole machine, the rank waits for its turn first and is busy for the
+ * longer of the two. */
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
@@ -31,6 +34,7 @@ static void charge_send(struct vp *v, const struct message *m)
     if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
 }
 
+/* The same at the other end, with costs of its own. */
 static void charge_receive(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
@@ -50,10 +54,13 @@ static void charge_receive(struct vp *v, const struct message *m)
 static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data, int64_t bytes)
 {
     struct world *w = v->world;
+    /* Arguments come from programs, also somebody else's. */
     if (dst < 0 || dst >= w->nrank) vp_misuse(v, "a message to rank %d: there are 0 .. %d", dst, w->nrank - 1);
     if (tag < 0 || bytes < 0)
         vp_misuse(v, "a message of %lld bytes with tag %lld to rank %d", (long long)bytes, (long long)tag, dst);
     CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
+    /* comm.h copies what is sent: the program may change its buffer at once, whatever the
+     * protocol. */
     struct message *m = message_take(w, data ? bytes : 0);
     if (data && bytes) memcpy(m->data, data, (size_t)bytes);
     m->hollow = !data;
@@ -61,18 +68,24 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     m->from = v;
     m->to = &w->vp[dst];
     m->tag = tag;
+    /* Sender and count make a number that is unique in the run and orders events at one
+     * time, whichever way the host runs ranks. */
     m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
     m->sent = v->clock;
     vp_stage_time(v)->messages++;
     vp_stage_time(v)->bytes += bytes;
+    /* It is ready for the network when the sender's software has done its part. */
     charge_send(v, m);
     m->net.ready = v->clock;
     m->net.bytes = bytes;
     m->net.path = v->path;
+    /* The order of sending counts from here, before the network says when it arrives. */
     if (m->to->matching) matching_announce(m);
     return m;
 }
 
+/* An eager message needs nothing of its receiver, so its request is complete now; any
+ * other shakes hands. */
 static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
@@ -87,6 +100,7 @@ static void vp_isend(struct comm *c, int dst, int64_t tag, const void *data, int
     vp_launch(w, m, v, m->to);
 }
 
+/* Always with a hand-shake, whatever the size: its end means that a receive has matched. */
 static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const void *data, int64_t bytes,
                                  struct comm_request *r)
 {
@@ -97,6 +111,8 @@ static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const voi
     rendezvous_send(v, m, r);
 }
 
+/* Without wildcards the order of sending decides, so an untimed program needs no events
+ * here. */
 static void post(struct vp *v, struct comm_request *r)
 {
     if (v->matching) matching_post(v, r);
@@ -128,6 +144,7 @@ static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask
     if (src < COMM_ANY_SOURCE || src >= v->world->nrank || tag < 0 || capacity < 0)
         vp_misuse(v, "a receive of %lld bytes, tag %lld, from rank %d: there are 0 .. %d", (long long)capacity,
                   (long long)tag, src, v->world->nrank - 1);
+    /* Only matching in simulated time knows who came first. */
     if (src < 0 && !v->matching)
         vp_misuse(v, "a receive from any source in a program that has promised to do without it");
     *r = (struct comm_request){.buffer = buffer,
@@ -170,6 +187,8 @@ static void finish_synchronous(struct vp *v, struct comm_request *r)
     r->detail = NULL;
 }
 
+/* The states say how far a request has come when its owner waits; a wait may find it at
+ * any of them. */
 static void vp_wait(struct comm *c, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
@@ -181,6 +200,8 @@ static void vp_wait(struct comm *c, struct comm_request *r)
         finish_synchronous(v, r);
         return;
     }
+    /* The clear to send came at `time`: the sender is held until then, which counts as
+     * waiting. */
     if (r->active == REQUEST_SENT) {
         sim_ps time = (sim_ps)(intptr_t)r->detail;
         vp_path_join(v, r->path);
@@ -194,8 +215,10 @@ static void vp_wait(struct comm *c, struct comm_request *r)
     finish_receive(v, r);
 }
 
-/* The last rank to enter lets everybody go at the same time. The release time stays valid until the next barrier is
- * complete, for which every rank must have left this one. */
+/* The last rank to enter lets everybody go at the same time. The release time stays valid
+ * until the next barrier is complete, for which every rank must have left this one. O(P)
+ * for each barrier, and no messages: a network for barriers alone, such as the T3E's,
+ * with the machine's time for it. */
 static void hardware_barrier(struct vp *v)
 {
     struct world *w = v->world;
@@ -219,9 +242,12 @@ static void hardware_barrier(struct vp *v)
     vp_wait_until(v, w->barrier_release, w->barrier_release);
 }
 
+/* A machine without such a network runs an algorithm over its messages. */
 static void vp_barrier(struct comm *c)
 {
     struct vp *v = (struct vp *)c;
+    /* Noise scales each piece of computing by a normal factor, never below zero; each
+     * rank has a stream of its own, so that others' work does not move it. */
     sim_ps begin = v->clock;
     if (v->world->nrank > 1) {
         if (v->world->machine->software.barrier == BARRIER_HARDWARE) hardware_barrier(v);
@@ -253,6 +279,8 @@ static void vp_work(struct comm *c, const struct work *work)
     compute(v, node_cost_ps(&v->world->node_cost, work), work);
 }
 
+/* Times longer than simulated time are cut, so that the clock stops at the end instead of
+ * wrapping. */
 static void vp_elapse(struct comm *c, int64_t ps)
 {
     struct vp *v = (struct vp *)c;
@@ -260,6 +288,7 @@ static void vp_elapse(struct comm *c, int64_t ps)
     compute(v, ps < PS_TOO_LONG ? ps : PS_TOO_LONG, NULL);
 }
 
+/* Stages are numbered in the program's list; time from here on is charged to this one. */
 static void vp_stage(struct comm *c, int stage)
 {
     struct vp *v = (struct vp *)c;
@@ -270,6 +299,7 @@ static void vp_stage(struct comm *c, int stage)
 
 static int64_t vp_now(struct comm *c) { return ((struct vp *)c)->clock; }
 
+/* Outputs are for checking answers and take no simulated time. */
 static void vp_publish(struct comm *c, int output, int64_t first, int64_t n, const double *data)
 {
     const struct comm_output *o = output >= 0 && comm_wanted(c, output) ? &c->output[output] : NULL;

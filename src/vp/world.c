@@ -16,6 +16,7 @@
 
 enum { STACK_BYTES = 64 * 1024 };
 
+/* The last step of a trip. A hand-shake goes its own way, all else to whoever matches. */
 static void arrived(struct message *m)
 {
     switch ((enum message_kind)m->kind) {
@@ -37,6 +38,7 @@ static void deliver(void *context, struct net_message *m)
     arrived((struct message *)m);
 }
 
+/* The clock stops with the program's last call. */
 static void rank_main(void *argument)
 {
     struct vp *v = argument;
@@ -48,6 +50,7 @@ static void rank_main(void *argument)
 
 static void make_ranks(struct world *w, uint64_t seed)
 {
+    /* One row more than stages: "end" takes the idle time until the last rank is done. */
     int row = w->nstage + 1;
     w->vp = TAKE(w->scratch, w->nrank, struct vp);
     w->ready = TAKE(w->scratch, w->nrank, int);
@@ -58,19 +61,23 @@ static void make_ranks(struct world *w, uint64_t seed)
         v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank, .noutput = w->load->noutput,
                                 .output = w->load->output};
         v->world = w;
+        /* Rows belong to the result and outlive the ranks. */
         v->stages = w->result->stage + (size_t)i * (size_t)row;
         v->posted_end = &v->posted;
         v->unexpected_end = &v->unexpected;
         v->node = w->placement.node[i];
         v->processor = w->placement.processor[i];
         v->digest = DIGEST_START;
+        /* The stream depends on seed and rank alone. */
         if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
         v->fiber = fiber_start(w->fibers, i, rank_main, v);
         if (w->load->timed) v->matching = matching_create(w);
     }
+    /* All start at time 0; the host's order acts on no result. */
     for (int i = 0; i < w->nrank; i++) vp_wake(w, &w->vp[w->load->order ? w->load->order[i] : i]);
 }
 
+/* A place in a ring without a division. */
 static inline struct vp *ready_ahead(const struct world *w, int ahead)
 {
     if (ahead >= w->ready_count) return NULL;
@@ -101,6 +108,7 @@ static inline void warm_up(const struct world *w)
     }
 }
 
+/* Often enough for a display, and too seldom to cost anything. */
 enum { PULSE_EVENTS = 1 << 14 }; /* 5 to 30 ms of the host */
 
 static void tell_heartbeat(const struct world *w)
@@ -112,7 +120,9 @@ static void tell_heartbeat(const struct world *w)
     if (p->beat) p->beat(p->context);
 }
 
-/* Ranks run ahead until they wait; only then is it safe to let simulated time pass. */
+/* Ranks run ahead until they wait; only then is it safe to let simulated time pass. So no
+ * event is taken while a rank could still do something earlier: conservative simulation
+ * with one clock for events and one for each rank. */
 static void loop(struct world *w)
 {
     unsigned quiet_events = PULSE_EVENTS;
@@ -131,6 +141,8 @@ static void loop(struct world *w)
     } while (!w->stopped && sim_step(w->sim));
 }
 
+/* Another thread reads these, and needs none of them in step with another: relaxed order
+ * is enough. */
 static void begin_heartbeat(const struct world *w, double now)
 {
     struct run_heartbeat *p = w->load->heartbeat;
@@ -141,10 +153,12 @@ static void begin_heartbeat(const struct world *w, double now)
     atomic_store_explicit(&p->begin, now, memory_order_relaxed);
 }
 
+/* The digest covers events, what ranks received and when, and when they ended. */
 static void collect(struct world *w)
 {
     struct run_result *r = w->result;
     uint64_t digest = digest_mix(DIGEST_START, sim_digest(w->sim));
+    /* Idle time at the end makes every rank's parts add up to the makespan. */
     for (int i = 0; i < w->nrank; i++) {
         const struct vp *v = &w->vp[i];
         r->finish_ps[i] = v->finish;
@@ -181,6 +195,7 @@ static void trace_path(struct world *w)
     r->path_bytes = path_bytes(w->path);
 }
 
+/* Links belong to the network, which ends with the run. */
 static void copy_links(struct world *w)
 {
     int n;
@@ -199,6 +214,8 @@ static void name_stages(struct run_result *r, int nstage, const char *const *nam
     r->nstage = nstage + 1;
 }
 
+/* From the outside in: topology, places of ranks, network, stacks. Whatever fails has set
+ * the error; world_run gives everything back. */
 static bool build(struct world *w, struct err *e)
 {
     const struct machine_spec *m = w->machine;
@@ -213,6 +230,7 @@ static bool build(struct world *w, struct err *e)
     return w->fibers != NULL;
 }
 
+/* Host time covers ranks and events, not building. */
 static void run(struct world *w, uint64_t seed)
 {
     struct run_result *r = w->result;
@@ -229,6 +247,8 @@ static void run(struct world *w, uint64_t seed)
         if (w->path) trace_path(w);
         return;
     }
+    /* One of three causes: the program failed, simulated time ended, or nobody can go on.
+     * A deadlock's times are kept, since they show who waited where. */
     const bool late = w->late || sim_beyond(w->sim), deadlock = !w->failed && !late;
     if (deadlock) deadlock_explain(w);
     else if (!w->failed) late_explain(w);
@@ -236,6 +256,8 @@ static void run(struct world *w, uint64_t seed)
     r->status = deadlock ? RUN_DEADLOCK : RUN_FAILED;
 }
 
+/* The promise of the largest message decides before the run whether any can need a
+ * hand-shake. */
 static bool all_eager(const struct software_spec *s, int64_t largest)
 {
     const int64_t most = software_eager_most(s);
