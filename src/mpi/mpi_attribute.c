@@ -4,9 +4,8 @@
 
 #include "mpi/mpi_internal.h"
 
-/* MPI 5.0, section 7.7 (Caching), has the rules; one table serves all three kinds of
- * object. */
-/* Keyvals of the program stand above those of the standard. */
+/* Keyvals of the program stand above those of the standard. MPI 5.0, section 7.7
+ * (Caching), has the rules; one table serves all three kinds of object. */
 enum { KEYVAL_FIRST = 0x1000 };
 
 /* One list for each rank, the newest first: few programs attach more than a handful. */
@@ -61,9 +60,9 @@ static int delete_one(struct mpi_rank *r, struct mpi_attribute **at)
     return MPI_SUCCESS;
 }
 
-/* One deletion may change the list anywhere, so the search begins again after each. The
- * first refusal stops it: the caller keeps the object. */
-/* The newest first, as the standard asks of the end of MPI_COMM_SELF. */
+/* The newest first, as the standard asks of the end of MPI_COMM_SELF. One deletion may
+ * change the list anywhere, so the search begins again after each. The first refusal
+ * stops it: the caller keeps the object. */
 int mpi_attributes_end(struct mpi_rank *r, enum mpi_kind kind, const void *object)
 {
     for (struct mpi_attribute **at = &r->attributes; *at;) {
@@ -109,8 +108,8 @@ static int copied(struct mpi_rank *r, const struct mpi_attribute *a, void **valu
     return (int)mpi_call_program(r, k->copy, argument);
 }
 
-/* Names are not attributes and stay behind. */
-/* Oldest first, so that the copy's list has the same order. */
+/* Oldest first, so that the copy's list has the same order. Names are not attributes and
+ * stay behind. */
 static int copy_from(struct mpi_rank *r, const struct mpi_attribute *a, enum mpi_kind kind,
                      const void *from, const void *to)
 {
@@ -155,8 +154,8 @@ int mpi_keyval_make(struct mpi_rank *r, void *copy, void *remove, int *keyval, v
     return MPI_SUCCESS;
 }
 
-/* The program's own use ends once, however often it frees: `freed` says so. */
-/* Values that were attached keep the keyval. */
+/* Values that were attached keep the keyval. The program's own use ends once, however
+ * often it frees: `freed` says so. */
 int mpi_keyval_end(struct mpi_rank *r, int *keyval)
 {
     struct mpi_keyval *k = keyval_of(r, *keyval);

@@ -123,9 +123,9 @@ int mpi_cart_sub(struct mpi_rank *self, MPI_Comm comm, const int remain_dims[], 
     struct mpi_comm *c;
     struct mpi_topology *t = mpi_topology_of(self, comm, MPI_CART, &c);
     if (!t) return self->code;
-    /* MPI_Comm_split does the rest (section 8.5.7): ranks with equal coordinates in all
-     * dropped dimensions form one part, in row-major order of those that remain. */
-    /* dropped dimensions say which part, remaining ones the place in it */
+    /* Dropped dimensions say which part, remaining ones the place in it. MPI_Comm_split
+     * does the rest (section 8.5.7): ranks with equal coordinates in all dropped
+     * dimensions form one part, in row-major order of those that remain. */
     int color = 0, key = 0, n = 0;
     int *dims = mpi_take(self->world, 2 * (t->ndim + 1) * (int64_t)sizeof *dims),
         *periods = dims + t->ndim + 1;
@@ -236,10 +236,10 @@ static bool balance(int nodes, int n, int *out)
         out[0] = nodes;
         return true;
     }
-    /* All divisors from the root upwards: at most `nodes` steps, once in a program.
-     * Products are compared as doubles, exact far beyond any number of ranks. The last
-     * try is `nodes` itself with ones behind it, so there is always an answer. */
-    /* try first factors from the n-th root upwards; the rest must not exceed it */
+    /* Try first factors from the n-th root upwards; the rest must not exceed it. All
+     * divisors from the root upwards: at most `nodes` steps, once in a program. Products
+     * are compared as doubles, exact far beyond any number of ranks. The last try is
+     * `nodes` itself with ones behind it, so there is always an answer. */
     for (int first = 1; first <= nodes; first++) {
         if (nodes % first) continue;
         double power = 1;

@@ -54,8 +54,8 @@ static int check_root(struct mpi_rank *r, const struct mpi_collective *x)
                      n);
 }
 
-/* Neighbours' counts are as many as there are edges, which is not known here. */
-/* operate: check what all have in common, then run or start. */
+/* operate: check what all have in common, then run or start. Neighbours' counts are as
+ * many as there are edges, which is not known here. */
 static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x)
 {
     int code = check_root(r, x), peers = x->comm->remote ? x->comm->remote->size : x->comm->size;

@@ -39,10 +39,10 @@ static int by_key(const void *a, const void *b)
     return x->rank - y->rank;
 }
 
-/* Every rank sorts the same list, which takes no message more; O(P log P) on each rank,
+/* Everybody's color and key are gathered by all, with what each could give as a context.
+ * Every rank sorts the same list, which takes no message more; O(P log P) on each rank,
  * and P entries of 16 bytes in memory while it lasts (section 7.4.2 has the rule of
  * order). */
-/* Everybody's color and key are gathered by all, with what each could give as a context. */
 struct mpi_comm *mpi_comm_split_of(struct mpi_rank *r, struct mpi_comm *c, int color, int key)
 {
     struct choice own = {.color = color, .key = key, .given = r->given, .rank = c->rank};
@@ -72,9 +72,8 @@ struct mpi_comm *mpi_comm_split_of(struct mpi_rank *r, struct mpi_comm *c, int c
     return made;
 }
 
-/* The context is agreed on by all ranks, also those left out, because only the old
- * communicator connects them. */
-/* first_ranks: a communicator of the first n; those behind get none. All agree on its context. */
+/* first_ranks: a communicator of the first n; those behind get none. All agree on its
+ * context, also those left out, because only the old communicator connects them. */
 struct mpi_comm *mpi_comm_first(struct mpi_rank *r, struct mpi_comm *c, int n)
 {
     int context = mpi_context_agree(r, &c->channel, c->sequence++);

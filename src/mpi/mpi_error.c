@@ -7,9 +7,10 @@
 
 #include "mpi/mpi_internal.h"
 
-/* Section 9.5: a program may add classes and codes of its own, at any time and
- * differently on each rank. 256 are more than the programs that do so add. */
-/* Classes and codes that the program added: codes LASTCODE + 1 + i. */
+/* Classes and codes that the program added: codes LASTCODE + 1 + i. Section 9.5: a
+ * program may add classes and codes of its own, at any time and differently on each rank.
+ * The table has an end, behind which
+ * a call fails. */
 enum { MOST_ADDED = 256, FIRST_ADDED = MPI_ERR_LASTCODE + 1 };
 struct mpi_errors {
     int n;
@@ -86,10 +87,10 @@ static const char *const class_text[] = {"no error",
                                          "invalid binary interface"};
 enum { NCLASS = sizeof class_text / sizeof class_text[0] };
 
-/* The host may have to account for computing and switch what belongs to the program
- * (setup->call); tests call plainly. Six words are the most that any callback has; one
- * with fewer ignores the rest, which the calling convention allows. */
-/* mpi_call_program: a function of the program, on its own terms. */
+/* mpi_call_program: a function of the program, on its own terms. The host may have to
+ * account for computing and switch what belongs to the program (setup->call); tests call
+ * plainly. Six words are the most that any callback has; one with fewer ignores the rest,
+ * which the calling convention allows. */
 intptr_t mpi_call_program(struct mpi_rank *r, void *function, const intptr_t argument[6])
 {
     const struct mpi_setup *s = r->world->setup;

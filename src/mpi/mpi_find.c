@@ -13,9 +13,9 @@ static const int kind_class[] = {MPI_ERR_ARG, MPI_ERR_COMM,    MPI_ERR_GROUP, MP
                                  MPI_ERR_OP,  MPI_ERR_REQUEST, MPI_ERR_INFO,  MPI_ERR_ERRHANDLER,
                                  MPI_ERR_WIN, MPI_ERR_REQUEST, MPI_ERR_KEYVAL};
 
-/* The kind in the lower four bits tells a wrong handle from a stale one, which names the
+/* What is wrong with a handle: null, of another kind, or of nothing that is there. The
+ * kind in the lower four bits tells a wrong handle from a stale one, which names the
  * mistake: programs pass a group where a communicator belongs. */
-/* What is wrong with a handle: null, of another kind, or of nothing that is there. */
 void *mpi_bad_handle(struct mpi_rank *r, const void *handle, enum mpi_kind kind)
 {
     intptr_t value = (intptr_t)handle - FIRST_HANDLE;

@@ -161,8 +161,8 @@ int mpi_dist_graph_create_adjacent(struct mpi_rank *self, MPI_Comm comm_old, int
     return made(self, c, t, comm_dist_graph);
 }
 
-/* Three integers, so that a list of edges travels as integers. */
-/* An edge as any rank may name it. */
+/* An edge as any rank may name it. Three integers, so that a list of edges travels as
+ * integers. */
 struct edge {
     int from, to, weight;
 };
@@ -175,10 +175,10 @@ static int by_source(const void *a, const void *b)
     return x->from != y->from ? x->from - y->from : x->to - y->to;
 }
 
-/* Every rank holds all E edges for a moment. A library for large machines sends each edge
+/* gather_edges: everybody's edges on every rank, by numbers first and then all of them.
+ * Every rank holds all E edges for a moment. A library for large machines sends each edge
  * to its two ends instead; that takes less memory, and an exchange in which ranks do not
  * know who sends to them. */
-/* gather_edges: everybody's edges on every rank, by numbers first and then all of them. */
 static struct edge *gather_edges(struct mpi_rank *r, struct mpi_comm *c, struct edge *own, int n,
                                  int *total)
 {

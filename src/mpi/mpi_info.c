@@ -20,9 +20,8 @@ static struct mpi_entry *entry_of(const struct mpi_info *i, const char *key)
     return NULL;
 }
 
-/* `most` counts the byte at the end, as MPI_MAX_INFO_KEY does in C. */
-/* trimmed: without blanks at either end, as the standard asks; false: empty or longer than `most`.
- */
+/* trimmed: without blanks at either end, as the standard asks; false: empty or longer
+ * than `most`. `most` counts the byte at the end, as MPI_MAX_INFO_KEY does in C. */
 static bool trimmed(char *out, const char *in, size_t most)
 {
     while (isspace((unsigned char)*in)) in++;

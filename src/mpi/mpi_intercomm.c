@@ -16,10 +16,9 @@ static struct mpi_part words(int peer, void *buffer, int64_t bytes)
     return (struct mpi_part){peer, buffer, bytes, mpi_type_basic(MPI_BYTE)};
 }
 
-/* Both directions are under way at once: neither side can wait for the other to begin.
- * Tags are in the plane of making, which the program's messages never reach. */
-/* swap: the leaders of both sides exchange bytes over `c`, whose rank `peer` is the other leader.
- */
+/* swap: the leaders of both sides exchange bytes over `c`, whose rank `peer` is the other
+ * leader. Both directions are under way at once: neither side can wait for the other to
+ * begin. Tags are in the plane of making, which the program's messages never reach. */
 static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, void *out,
                  int64_t nout, void *in, int64_t nin)
 {

@@ -14,8 +14,8 @@ struct mpi_large {
     struct mpi_large *next, **before;
 };
 
-/* The list comes first, so that an entry's address is that of the block from the heap. */
-/* What stands before each block. */
+/* What stands before each block. The list comes first, so that an entry's address is that
+ * of the block from the heap. */
 union head {
     struct {
         struct mpi_large list; /* large ones */

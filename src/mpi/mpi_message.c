@@ -17,9 +17,8 @@ int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_mess
 {
     *q = (struct mpi_request){.what = m.receive ? REQUEST_RECEIVE : REQUEST_SEND, .mode = m.mode};
     q->comm = mpi_comm_of(r, m.comm);
-    /* Section 3.11: a message to or from MPI_PROC_NULL has no effect, and its type may be
-     * anything. */
-    /* nothing is said of what goes to nobody */
+    /* Nothing is said of what goes to nobody. Section 3.11: a message to or from
+     * MPI_PROC_NULL has no effect, and its type may be anything. */
     if (m.peer == MPI_PROC_NULL) m.type = MPI_BYTE;
     q->type = q->comm ? mpi_type_of(r, m.type) : NULL;
     if (!q->type) return r->code;

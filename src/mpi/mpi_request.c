@@ -22,8 +22,8 @@ static void spare(struct mpi_rank *r, struct mpi_request *q)
     r->spare_request = q;
 }
 
-/* A persistent request ends by MPI_Request_free alone, any other when it is completed. */
-/* end: the request is no more; what it held on to is let go. */
+/* end: the request is no more; what it held on to is let go. A persistent request ends by
+ * MPI_Request_free alone, any other when it is completed. */
 static void end(struct mpi_rank *r, struct mpi_request *q)
 {
     mpi_handle_end(r, q);

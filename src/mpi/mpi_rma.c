@@ -105,8 +105,8 @@ char *mpi_window_locks(struct mpi_rank *r, struct mpi_window *w)
     return w->locked;
 }
 
-/* MPI_Win_lock_all is a shared lock by definition (section 12.5.3). */
-/* A lock on all ranks is taken on each when it is first used. */
+/* A lock on all ranks is taken on each when it is first used. MPI_Win_lock_all is a
+ * shared lock by definition (section 12.5.3). */
 void mpi_window_take(struct mpi_rank *r, struct mpi_window *w, int target)
 {
     if (mpi_window_locks(r, w)[target]) return;
@@ -321,8 +321,8 @@ int mpi_raccumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count or
     return operate(self, &c, request);
 }
 
-/* Then it is a get that keeps the order of accumulates. */
-/* With MPI_NO_OP nothing goes out and only the answer counts. */
+/* With MPI_NO_OP nothing goes out and only the answer counts. Then it is a get that keeps
+ * the order of accumulates. */
 static int get_accumulate(struct mpi_rank *r, struct call c, MPI_Request *request)
 {
     c.kind = RMA_GET_ACCUMULATE;

@@ -20,9 +20,8 @@ struct mpi_type *mpi_type_make(struct mpi_rank *r, int combiner, int npiece)
     return t;
 }
 
-/* The type that refers to another holds a use of it, so that a tree of types ends from
- * the top. */
-/* Types that others are made of live on after their handles. */
+/* Types that others are made of live on after their handles. The type that refers to
+ * another holds a use of it, so that a tree of types ends from the top. */
 void mpi_type_drop(struct mpi_rank *r, struct mpi_type *t)
 {
     if (!t || mpi_type_is_basic(t) || --t->o.uses > 0) return;
@@ -56,9 +55,8 @@ static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
     b->any = true;
 }
 
-/* Every block in between lies within these four, because places are linear in both
- * indices. */
-/* The four corners of a piece bound it, whatever the signs of strides and extents. */
+/* The four corners of a piece bound it, whatever the signs of strides and extents. Every
+ * block in between lies within these four, because places are linear in both indices. */
 static void include_piece(struct bounds *b, const struct mpi_piece *p)
 {
     if (p->count == 0 || p->length == 0) return;

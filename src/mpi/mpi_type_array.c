@@ -99,8 +99,8 @@ int mpi_type_create_subarray(struct mpi_rank *self, int ndims, struct mpi_counts
     return code;
 }
 
-/* Blocks p, p + n, p + 2 n, ... belong to p; the last one of all may be shorter. */
-/* What process `p` of n has of g indices dealt out in blocks of b, round and round. */
+/* What process `p` of n has of g indices dealt out in blocks of b, round and round.
+ * Blocks p, p + n, p + 2 n, ... belong to p; the last one of all may be shorter. */
 static struct runs dealt(int64_t g, int64_t b, int p, int n)
 {
     struct runs x = {.first = p * b, .length = b, .stride = n * b};
@@ -111,9 +111,9 @@ static struct runs dealt(int64_t g, int64_t b, int p, int n)
     return x;
 }
 
-/* Section 5.1.4: by default, blocks are as large as they must be for one each, and cycles
- * have blocks of one. */
-/* The block of a distribution's argument; 0: the two do not fit together. */
+/* The block of a distribution's argument; 0: the two do not fit together. Section 5.1.4:
+ * by default, blocks are as large as they must be for one each, and cycles have blocks of
+ * one. */
 static int64_t block_of(int distribution, int argument, int64_t g, int n)
 {
     if (distribution == MPI_DISTRIBUTE_NONE) return n == 1 ? g : 0;
@@ -139,8 +139,8 @@ int mpi_type_create_darray(struct mpi_rank *self, int size, int rank, int ndims,
         return mpi_error(self, NULL, MPI_ERR_ARG, "rank %d in a grid of %lld processes of %d", rank,
                          (long long)grid, size);
     mpi_type_use(of);
-    /* `below` counts the processes in one step of dimension d. */
-    /* the grid of processes is in C's order whatever the array's */
+    /* The grid of processes is in C's order whatever the array's. `below` counts the
+     * processes in one step of dimension d. */
     for (int i = 0; i < ndims; i++) {
         int d = order == MPI_ORDER_C ? ndims - 1 - i : i, below = 1;
         for (int k = d + 1; k < ndims; k++) below *= array_of_psizes[k];

@@ -54,9 +54,8 @@ enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
                                   .align = alignof(type),                                          \
                                   .name = text}
 
-/* The extent has the gap, the size has not (section 6.9.4), so messages of pairs carry no
- * padding. */
-/* Pairs are two pieces where the compiler leaves a gap behind them. */
+/* Pairs are two pieces where the compiler leaves a gap behind them. The extent has the
+ * gap, the size has not (section 6.9.4), so messages of pairs carry no padding. */
 #define PAIR(handle, type, class_, text, first, gap)                                               \
     [(int)(handle)-FIRST_TYPE] = {.o = {KIND_TYPE, -1, 1},                                         \
                                   .combiner = MPI_COMBINER_NAMED,                                  \

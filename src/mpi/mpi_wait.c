@@ -303,8 +303,8 @@ int mpi_request_get_status(struct mpi_rank *self, MPI_Request request, int *flag
     if (!q) return self->code;
     if (!q->active) return MPI_SUCCESS;
     *flag = mpi_poll(self, 1, &q) >= 0;
-    /* The same words as mpi_message_finish would set. */
-    /* what the status will be, without completing the request */
+    /* What the status will be, without completing the request. The same words as
+     * mpi_message_finish would set. */
     if (*flag && q->what == REQUEST_RECEIVE && !q->cancelled && q->peer != MPI_PROC_NULL) {
         int source =
             q->peer != MPI_ANY_SOURCE ? q->peer : mpi_group_find(self, q->comm->group, q->q.peer);

@@ -77,9 +77,9 @@ struct share {
     char *place;
 };
 
-/* All ranks are in one process, so memory of one is memory of all; that they are on one
- * node is not checked, as MPI_Comm_split_type is how programs get such a communicator. */
-/* The first rank takes the memory of all, one part behind the other. */
+/* The first rank takes the memory of all, one part behind the other. All ranks are in one
+ * process, so memory of one is memory of all; that they are on one node is not checked,
+ * as MPI_Comm_split_type is how programs get such a communicator. */
 int mpi_win_allocate_shared(struct mpi_rank *self, MPI_Aint size, MPI_Count disp_unit,
                             MPI_Info info, MPI_Comm comm, void *baseptr, MPI_Win *win)
 {

@@ -15,9 +15,9 @@ static int peer_of(const struct vp *v)
     return v->waiting_for == WAITING_RECEIVE || v->waiting_for == WAITING_SEND ? v->waiting->peer : -1;
 }
 
-/* Room mpi keeps context and plane above the lower 32 bits, which mean nothing to a
- * reader. */
-/* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its lower 32 bits. */
+/* "at most 80 bytes, any tag, from any rank": a tag may carry further numbers above its
+ * lower 32 bits. Room mpi keeps context and plane above the lower 32 bits, which mean
+ * nothing to a reader. */
 static int describe_receive(const struct comm_request *r, char *s, int size)
 {
     char tag[48] = "any tag", from[24] = "any rank";
@@ -58,8 +58,8 @@ static int describe(const struct vp *v, char *s, int size)
     }
 }
 
-/* Three are enough to see a pattern; a list of 65,536 would not be read. */
-/* Anybody could end the wait of `v`: all others have finished or wait, too. Three of them are told. */
+/* Anybody could end the wait of `v`: all others have finished or wait, too. Three of them
+ * are told. Three are enough to see a pattern; a list of 65,536 would not be read. */
 static void describe_others(struct world *w, const struct vp *v, char *s, int size)
 {
     int finished = 0, told = 0, used = 0;
@@ -85,9 +85,9 @@ static struct vp *first_blocked(struct world *w)
     return NULL;
 }
 
-/* After P steps along waits for single ranks one is on a cycle, if there is one: the
- * first steps may lead into it from outside. */
-/* A rank on the cycle that starts from `v`, or the end of the chain when it leads to a finished rank or a barrier. */
+/* A rank on the cycle that starts from `v`, or the end of the chain when it leads to a
+ * finished rank or a barrier. After P steps along waits for single ranks one is on a
+ * cycle, if there is one: the first steps may lead into it from outside. */
 static struct vp *walk_into_cycle(struct world *w, struct vp *v)
 {
     for (int steps = 0; steps < w->nrank; steps++) {

@@ -11,9 +11,9 @@
 
 enum { CLASS_BYTES = 64, SMALL_CLASSES = 65, CHUNK_MESSAGES = 64 };
 
-/* Quarters of an octave waste at most a quarter of a block, and 160 classes reach as far
- * as 2^52 bytes. */
-/* Of more than 4 KiB: the class of the next quarter of an octave, whose size *bytes becomes. */
+/* Of more than 4 KiB: the class of the next quarter of an octave, whose size *bytes
+ * becomes. Quarters of an octave waste at most a quarter of a block, and 160 classes
+ * reach as far as 2^52 bytes. */
 static int large_class(int64_t *bytes)
 {
     const int octave = 63 - __builtin_clzll((uint64_t)*bytes - 1); /* 2^octave <= bytes - 1 */

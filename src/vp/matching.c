@@ -198,9 +198,9 @@ struct unmatched *matching_find(struct vp *v, const struct comm_request *r, sim_
         const struct comm_request *p = v->posted;
         while (p && p != r && !message_fits(u->m, u->source->rank, p)) p = p->detail;
         if (p && p != r) continue;
-        /* An earlier message of its sender is still on its way and fits, too: that one
-         * must come first. A receive marks u, so that it is tried again when the other
-         * has been taken; a probe takes nothing and marks nothing. */
+        /* Else an earlier message of its sender, not here yet or claimed by another receive,
+         * fits, too, and must come first. A receive marks u, so that it is tried again when
+         * that one has been taken; a probe takes nothing and marks nothing. */
         if (first_sent(u, r)) return u;
         if (r->kind == RECEIVE_PROBE) continue;
         if (!u->held) u->source->held++;
@@ -319,9 +319,9 @@ static bool try(struct vp *v, struct unmatched *u, bool arrived)
     return false;
 }
 
-/* Else a receive would find it earlier than one that was sent before it. */
-/* A message that had to wait for another of its sender has not come before that one, which came at
- * `floor`. */
+/* A message that had to wait for another of its sender has not come before that one,
+ * which came at `floor`. Else a receive would find it earlier than one that was sent
+ * before it. */
 static void arrives_behind(struct matching *k, struct unmatched *u, sim_ps floor)
 {
     if (!u->known || u->m->net.arrival >= floor) return;
@@ -464,8 +464,8 @@ static struct unmatched *first_of_source(struct vp *v, const struct comm_request
     return u;
 }
 
-/* From the last backwards, up to those that have arrived. */
-/* Messages that are known to arrive later, and whose coming nobody has asked for so far. */
+/* Messages that are known to arrive later, and whose coming nobody has asked for so far.
+ * From the last backwards, up to those that have arrived. */
 static void expect(struct vp *v, const struct comm_request *r, sim_ps now)
 {
     for (struct unmatched *u = v->matching->last; u && u->m->net.arrival > now; u = u->prev)

@@ -148,9 +148,8 @@ int vp_cancel(struct comm *c, struct comm_request *r)
     if (r->active == REQUEST_POSTED) {
         matching_withdraw(v, r);
     } else if (r->active == REQUEST_MATCHED) {
-        /* bound ahead of time to a message that is still on its way Its own clock counts:
-         * for this rank a message that arrives later has not come. A hand-shake cannot be
-         * taken back. */
+        /* Bound ahead of time to a message that is still on its way. The rank's own clock
+         * counts: what arrives later has not come. A hand-shake cannot be taken back. */
         struct message *m = r->detail;
         if (m->kind != MESSAGE_EAGER || m->net.arrival <= v->clock) return 0;
         matching_put_back(v, m);

@@ -24,8 +24,9 @@ static void bind_path(struct vp *v, sim_ps now, int64_t bytes)
     w->served_stage = v->stage;
 }
 
-/* The clock of a rank that runs ahead says nothing about order; the event queue does. */
-/* An event, so that those who come at one time are served in the order of the queue, by rank. */
+/* An event, so that those who come at one time are served in the order of the queue, by
+ * rank. The clock of a rank that runs ahead says nothing about order; the event queue
+ * does. */
 static void begin_service(void *subject, uint64_t bytes, sim_ps now)
 {
     struct vp *v = subject;
