@@ -4,12 +4,7 @@
  * outcome is the one stable matching, whichever side asks first. So an event per message that may
  * go to a receive from anybody, and one per such receive, find what a step-by-step account of
  * arrivals and postings would. Messages of one sender pass each other only where no receive fits
- * both.
- *
- * The rules are MPI's (section 3.5 of MPI 5.0): of two messages of one sender that fit a
- * receive the one sent first comes first, and of two receives that fit a message the one
- * posted first takes it. Times are simulated [ps]; requests belong to the program,
- * messages and the records of unmatched ones to the run's scratch memory. */
+ * both. The rules are MPI's (section 3.5 of MPI 5.0), times are simulated [ps]. */
 #include "vp/matching.h"
 
 #include "base/check.h"
@@ -18,7 +13,6 @@ enum { FIRST_CAPACITY = 16 };
 
 struct matching *matching_create(struct world *w)
 {
-    /* -1: not even the arrivals at time 0 are known before the first event. */
     struct matching *k = TAKE(w->scratch, 1, struct matching);
     k->capacity = FIRST_CAPACITY;
     k->table = TAKE(w->scratch, FIRST_CAPACITY, struct source *);
@@ -38,8 +32,6 @@ static struct source **place_of(const struct matching *k, int rank)
     }
 }
 
-/* The old table stays in the arena; doubling makes the sum of all no longer than the
- * last. */
 static void grow(struct world *w, struct matching *k)
 {
     struct source **old = k->table;
@@ -50,8 +42,6 @@ static void grow(struct world *w, struct matching *k)
         if (old[i]) *place_of(k, old[i]->rank) = old[i];
 }
 
-/* Senders are entered when their first message sets out. Half of the places stay free, so
- * that searches are short. */
 static struct source *source_of(struct world *w, struct matching *k, int rank)
 {
     struct source **s = place_of(k, rank);
@@ -66,8 +56,6 @@ static struct source *source_of(struct world *w, struct matching *k, int rank)
 /* The sender's messages stand in the order sent; put back, one may belong before others. */
 static void join_source(struct source *s, struct unmatched *u)
 {
-    /* Numbers count a sender's messages upwards (net.id), and a new one is nearly always
-     * the last. */
     struct unmatched *before = s->last;
     while (before && before->m->net.id > u->m->net.id) before = before->before;
     u->source = s;
@@ -77,7 +65,6 @@ static void join_source(struct source *s, struct unmatched *u)
     *(u->after ? &u->after->before : &s->last) = u;
 }
 
-/* `held` counts messages of the sender that wait for an earlier one of it. */
 static void leave_source(struct unmatched *u)
 {
     struct source *s = u->source;
@@ -97,15 +84,12 @@ static bool first_sent(const struct unmatched *u, const struct comm_request *r)
 
 /* ---- order of arrival ---- */
 
-/* Ties are decided by the sender's rank, then by its count: both are in the number. */
 static bool earlier(const struct unmatched *a, const struct unmatched *b)
 {
     const struct net_message *x = &a->m->net, *y = &b->m->net;
     return x->arrival != y->arrival ? x->arrival < y->arrival : x->id < y->id;
 }
 
-/* Arrivals become known in the order of events, not of arrival: fresh ones are sorted
- * when somebody looks. */
 static void append_known(struct matching *k, struct unmatched *u)
 {
     u->known = true;
@@ -124,8 +108,7 @@ static void leave_known(struct matching *k, struct unmatched *u)
     u->known = false;
 }
 
-/* Two sorted chains become one; `prev` is set later. Of equals the first chain's comes
- * first, so that sorting is stable. */
+/* Two sorted chains become one; `prev` is set later. */
 static struct unmatched *merge(struct unmatched *a, struct unmatched *b)
 {
     struct unmatched *first = NULL, **end = &first;
@@ -165,8 +148,8 @@ static void order_known(struct matching *k)
     if (!k->fresh) return;
     struct unmatched *old = k->fresh->prev, *fresh = sorted(k->fresh);
     while (old && earlier(fresh, old)) old = old->prev;
-    /* The old part from `tail` on may have to be mixed with fresh ones; what lies before
-     * it stays as it is. */
+    /* The old part from `tail` on may have to be mixed with fresh ones; what lies before it stays
+     * as it is. */
     struct unmatched *tail = old ? old->next : k->first;
     if (tail == k->fresh || !tail) tail = NULL;
     /* what stands behind `old` up to the fresh ones is a sorted chain of its own */
@@ -177,7 +160,6 @@ static void order_known(struct matching *k)
     }
     struct unmatched *rest = merge(tail, fresh);
     *(old ? &old->next : &k->first) = rest;
-    /* One more walk sets the links back and finds the end. */
     for (struct unmatched *prev = old, *u = rest; u; prev = u, u = u->next) {
         u->prev = prev;
         k->last = u;
@@ -189,8 +171,6 @@ struct unmatched *matching_find(struct vp *v, const struct comm_request *r, sim_
 {
     struct matching *k = v->matching;
     order_known(k);
-    /* In the order of arrival up to `now`; later ones are known, but have not happened
-     * for this rank. */
     for (struct unmatched *u = k->first; u && u->m->net.arrival <= now; u = u->next) {
         if (!message_fits(u->m, u->source->rank, r)) continue;
         /* MPI's order: a receive posted earlier has the first claim, an earlier message comes first
@@ -198,9 +178,9 @@ struct unmatched *matching_find(struct vp *v, const struct comm_request *r, sim_
         const struct comm_request *p = v->posted;
         while (p && p != r && !message_fits(u->m, u->source->rank, p)) p = p->detail;
         if (p && p != r) continue;
-        /* Else an earlier message of its sender, not here yet or claimed by another receive,
-         * fits, too, and must come first. A receive marks u, so that it is tried again when
-         * that one has been taken; a probe takes nothing and marks nothing. */
+        /* Else an earlier message of its sender, not here yet or claimed by another receive, fits,
+         * too, and must come first. A receive marks u, so that it is tried again when that one has
+         * been taken; a probe takes nothing and marks nothing. */
         if (first_sent(u, r)) return u;
         if (r->kind == RECEIVE_PROBE) continue;
         if (!u->held) u->source->held++;
@@ -211,14 +191,12 @@ struct unmatched *matching_find(struct vp *v, const struct comm_request *r, sim_
 
 /* ---- finding each other ---- */
 
-/* What such a receive takes is not known before the clock of events has come to it. */
 static bool depends_on_time(const struct comm_request *r)
 {
     return r->peer < 0 || r->kind == RECEIVE_PROBE;
 }
 
-/* The record is free again unless an event still points to it; that event then gives it
- * back. */
+/* The record is free again unless an event still points to it; that event then gives it back. */
 struct message *matching_take(struct vp *v, struct unmatched *u)
 {
     struct matching *k = v->matching;
@@ -234,7 +212,6 @@ struct message *matching_take(struct vp *v, struct unmatched *u)
     return m;
 }
 
-/* Requests are chained through `detail` while they are posted. */
 void matching_withdraw(struct vp *v, struct comm_request *r)
 {
     struct comm_request **p = &v->posted;
@@ -264,10 +241,8 @@ static void keep_order(struct source *s, const struct comm_request *r, struct me
 
 static void bind(struct vp *v, struct comm_request *r, struct unmatched *u)
 {
-    /* The match takes place when both are there, but not before the event that found it. */
     const sim_ps now = sim_now(v->world->sim);
     matching_withdraw(v, r);
-    /* A probe leaves the message among the unmatched ones and tells which it is. */
     if (r->kind == RECEIVE_PROBE) {
         r->active = REQUEST_MATCHED;
         r->detail = u;
@@ -283,8 +258,6 @@ static void bind(struct vp *v, struct comm_request *r, struct unmatched *u)
 
 static void arrives(void *subject, uint64_t argument, sim_ps now);
 
-/* One event for each message at most, on a lane before all looks and postings of that
- * time. */
 static void announce(struct sim *sim, struct unmatched *u, sim_ps now)
 {
     const sim_ps arrival = u->m->net.arrival;
@@ -299,12 +272,10 @@ static bool try(struct vp *v, struct unmatched *u, bool arrived)
 {
     struct sim *sim = v->world->sim;
     const sim_ps now = sim_now(sim), arrival = u->m->net.arrival;
-    /* The first posted receive that fits has the claim, even if a later one could be
-     * served now. */
+    /* The first posted receive that fits has the claim, even if a later one could be served now. */
     struct comm_request *r = v->posted;
     while (r && !message_fits(u->m, u->source->rank, r)) r = r->detail;
     if (!r) return false;
-    /* Held until the earlier one is taken (release_held). */
     if (!first_sent(u, r)) {
         if (!u->held) u->source->held++;
         u->held = true;
@@ -319,9 +290,8 @@ static bool try(struct vp *v, struct unmatched *u, bool arrived)
     return false;
 }
 
-/* A message that had to wait for another of its sender has not come before that one,
- * which came at `floor`. Else a receive would find it earlier than one that was sent
- * before it. */
+/* A message that had to wait for another of its sender has not come before that one, which came at
+ * `floor`. */
 static void arrives_behind(struct matching *k, struct unmatched *u, sim_ps floor)
 {
     if (!u->known || u->m->net.arrival >= floor) return;
@@ -334,8 +304,6 @@ static void arrives_behind(struct matching *k, struct unmatched *u, sim_ps floor
  * have another try. */
 static void release_held(struct vp *v, struct source *s, sim_ps floor)
 {
-    /* In the order sent. Taking one changes the list, so the walk begins again; it ends
-     * when none is held. */
     struct unmatched *u = s->first;
     while (u && s->held) {
         bool taken = false;
@@ -362,7 +330,6 @@ static void arrives(void *subject, uint64_t argument, sim_ps now)
 {
     (void)argument, (void)now;
     struct unmatched *u = subject;
-    /* The message may have been taken meanwhile: then the record becomes free here. */
     u->due = false;
     if (u->m) {
         offer(u->m->to, u, true);
@@ -375,8 +342,6 @@ static void arrives(void *subject, uint64_t argument, sim_ps now)
 
 /* ---- messages ---- */
 
-/* From the moment it sets out a message counts in its sender's order, though its arrival
- * is not known yet. */
 static struct unmatched *unmatched_make(struct message *m)
 {
     struct matching *k = m->to->matching;
@@ -406,13 +371,11 @@ void matching_deliver(struct vp *v, struct message *m)
         sim_at(v->world->sim, m->net.arrival, LANE_ARRIVAL, message_key(m), request_arrives, m, 0);
         return;
     }
-    /* A rank that looks around may have to look again at this arrival. */
     append_known(v->matching, m->unmatched);
     if (v->waiting_for == WAITING_POLL) poll_notify(v, m->net.arrival);
     offer(v, m->unmatched, false);
 }
 
-/* Only of a cancelled receive: the message is offered to the others, as if it came now. */
 void matching_put_back(struct vp *v, struct message *m)
 {
     struct unmatched *u = unmatched_make(m);
@@ -448,8 +411,8 @@ static void hold_behind(const struct unmatched *u, const struct comm_request *r)
  * r claims it. */
 static struct unmatched *first_of_source(struct vp *v, const struct comm_request *r)
 {
-    /* A receive from one source needs no event: its message follows from the order of
-     * sending alone. */
+    /* A receive from one source needs no event: its message follows from the order of sending
+     * alone. */
     struct source *s = *place_of(v->matching, r->peer);
     struct unmatched *u = s ? s->first : NULL;
     while (u && !message_fits(u->m, r->peer, r)) u = u->after;
@@ -464,16 +427,13 @@ static struct unmatched *first_of_source(struct vp *v, const struct comm_request
     return u;
 }
 
-/* Messages that are known to arrive later, and whose coming nobody has asked for so far.
- * From the last backwards, up to those that have arrived. */
+/* Messages that are known to arrive later, and whose coming nobody has asked for so far. */
 static void expect(struct vp *v, const struct comm_request *r, sim_ps now)
 {
     for (struct unmatched *u = v->matching->last; u && u->m->net.arrival > now; u = u->prev)
         if (!u->due && message_fits(u->m, u->source->rank, r)) announce(v->world->sim, u, now);
 }
 
-/* A receive that finds nothing waits in the list of posted ones, where the next message
- * finds it. */
 static void look(struct vp *v, struct comm_request *r, sim_ps now)
 {
     struct unmatched *u = depends_on_time(r) ? matching_find(v, r, now) : first_of_source(v, r);
@@ -494,7 +454,6 @@ static void open_receives(void *subject, uint64_t argument, sim_ps now)
     struct vp *v = subject;
     struct comm_request *r = v->posted;
     while (r && r->posted_ps <= now) {
-        /* One event opens all receives posted by now; each looks once. */
         const bool fresh = !r->open;
         r->open = 1;
         if (fresh) look(v, r, now);
@@ -510,8 +469,8 @@ void matching_post(struct vp *v, struct comm_request *r)
     r->detail = NULL;
     *v->posted_end = r;
     v->posted_end = (struct comm_request **)&r->detail;
-    /* Behind a receive from anybody even one from a given source depends on time: the
-     * other may take its message. */
+    /* Behind a receive from anybody even one from a given source depends on time: the other may
+     * take its message. */
     if (depends_on_time(r) || behind_wild(v, r)) {
         v->matching->nwild += depends_on_time(r);
         r->open = 0;
