@@ -3,7 +3,10 @@
  *
  * What the program's header calls struct comm is a struct guest_rank. A request of the program
  * holds one of ours in its reserved bytes. Whatever is wrong in a call ends the run as failed: the
- * program is somebody's, and its mistakes are no reason to end the simulator. */
+ * program is somebody's, and its mistakes are no reason to end the simulator.
+ *
+ * docs/own-program.md describes the calls for their users. Images reach them through a
+ * table (guest_calls), so that they need no symbol of the simulator. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,6 +19,8 @@
 #include "guest/guest_world.h"
 #include "program/program.h"
 
+/* Half of the 31 bits each, so that no receive with a mask can take a collective's
+ * message. */
 enum { TAGS = 1 << 30 }; /* of programs: those from here on are the collectives' */
 
 _Static_assert(sizeof(struct comm_request) <= sizeof((struct mimdsim_request *)0)->reserved,
@@ -23,7 +28,9 @@ _Static_assert(sizeof(struct comm_request) <= sizeof((struct mimdsim_request *)0
 
 static struct guest_rank *rank_of(const struct comm *handle) { return (struct guest_rank *)handle; }
 
-/* The rank's comm, which from now on is called from `file`, line `line`. */
+/* The rank's comm, which from now on is called from `file`, line `line`. Call sites are
+ * the program's (keep_site): collectives inside must not overwrite them with places in
+ * the simulator. */
 static struct comm *at(const struct comm *handle, const char *file, int line)
 {
     struct comm *c = rank_of(handle)->comm;
@@ -33,6 +40,7 @@ static struct comm *at(const struct comm *handle, const char *file, int line)
     return c;
 }
 
+/* end_run does not return; the compiler cannot know that of a pointer to a function. */
 static _Noreturn void stop(struct comm *c, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static _Noreturn void stop(struct comm *c, const char *format, ...)
@@ -48,6 +56,7 @@ static _Noreturn void stop(struct comm *c, const char *format, ...)
 
 /* --- messages --------------------------------------------------------------------------------- */
 
+/* The program owns the memory; whatever it does to it, only its own run suffers. */
 static struct comm_request *ours(struct mimdsim_request *r)
 {
     return (struct comm_request *)(void *)r->reserved;
@@ -63,6 +72,7 @@ static void tell(struct mimdsim_request *r)
     r->truncated = in->truncated;
 }
 
+/* Checked here in the words of program.h; rooms below would speak of their own terms. */
 static void check_message(struct comm *c, int peer, bool any, int64_t tag, int64_t bytes,
                           const void *data)
 {
@@ -80,12 +90,15 @@ static void call_isend(struct comm *handle, int to, int64_t tag, const void *dat
 {
     struct comm *c = at(handle, file, line);
     check_message(c, to, false, tag, bytes, data);
+    /* A request that the program did not initialise is as good as one that it did. */
     if (r != NULL) *r = (struct mimdsim_request){0};
     if (synchronous && r == NULL) stop(c, "a synchronous send needs a request to wait for");
     if (synchronous) c->type->isend_synchronous(c, to, tag, data, bytes, ours(r));
     else c->type->isend(c, to, tag, data, bytes, r != NULL ? ours(r) : NULL);
 }
 
+/* A receive of exactly that size: a message of another one is a mistake that the run
+ * names. */
 static void call_irecv(struct comm *handle, int from, int64_t tag, void *buffer, int64_t bytes,
                        struct mimdsim_request *r, const char *file, int line)
 {
@@ -101,6 +114,7 @@ static int64_t whole_mask(int64_t mask)
     return (mask & (TAGS - 1)) | (COMM_WHOLE_TAG & ~(int64_t)(TAGS - 1));
 }
 
+/* Up to `capacity`: what is longer is cut, and the request says so. */
 static void call_irecv_matching(struct comm *handle, int from, int64_t tag, int64_t mask,
                                 void *buffer, int64_t capacity, struct mimdsim_request *r,
                                 const char *file, int line)
@@ -111,6 +125,8 @@ static void call_irecv_matching(struct comm *handle, int from, int64_t tag, int6
     c->type->irecv_matching(c, from, tag, whole_mask(mask), buffer, capacity, ours(r));
 }
 
+/* Waiting for a request that is not active does nothing, so loops over requests need no
+ * special case. */
 static void call_wait(struct comm *handle, struct mimdsim_request *r, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
@@ -119,7 +135,9 @@ static void call_wait(struct comm *handle, struct mimdsim_request *r, const char
     tell(r);
 }
 
-/* The requests of a list as ours; NULL and complete ones are passed over by the simulator. */
+/* The requests of a list as ours; NULL and complete ones are passed over by the
+ * simulator. The list is rebuilt at each call, as the program's structures are larger
+ * than ours. */
 static int complete_any(struct comm *c, int n, struct mimdsim_request **r, int block)
 {
     struct comm_request **list = calloc((size_t)n + 1, sizeof *list);
@@ -131,6 +149,7 @@ static int complete_any(struct comm *c, int n, struct mimdsim_request **r, int b
     return done;
 }
 
+/* A request that is complete needs no look and costs no time. */
 static int call_test(struct comm *handle, struct mimdsim_request *r, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
@@ -152,6 +171,7 @@ static int call_probe(struct comm *handle, int from, int64_t tag, int64_t mask, 
     struct comm_envelope seen = {0};
     check_message(c, from, true, tag, 0, NULL);
     const int there = c->type->probe(c, from, tag, whole_mask(mask), block, &seen, NULL);
+    /* `out` is an envelope here and no request: it is never active. */
     *out = (struct mimdsim_request){.source = seen.source, .tag = seen.tag, .bytes = seen.bytes};
     return there;
 }
@@ -164,6 +184,7 @@ static int call_cancel(struct comm *handle, struct mimdsim_request *r, const cha
 
 /* --- collectives ------------------------------------------------------------------------------ */
 
+/* Elements are eight bytes wide; one operation each is charged, as in room mpi. */
 #define COMBINE(name, type, expression)                                                     \
     static void name(void *into_, const void *with_, bool before, int64_t n, void *context, \
                      struct work *w)                                                        \
@@ -196,6 +217,7 @@ static const struct collective_op ops[] = {
     {.combine = most_int64, .commutative = true, .idempotent = true},
 };
 
+/* The program's numbers are part of its binary interface, the simulator's are not. */
 static enum collective_kind kind_of(struct comm *c, int kind)
 {
     static const enum collective_kind kinds[] = {[MIMDSIM_BARRIER] = COLLECTIVE_BARRIER,
@@ -217,6 +239,7 @@ static bool is_reduction(enum collective_kind kind)
     return kind == COLLECTIVE_REDUCE || kind == COLLECTIVE_ALLREDUCE || kind == COLLECTIVE_SCAN;
 }
 
+/* Sizes are those of this rank; whether ranks agree is seen when messages meet. */
 static void check_collective(struct comm *c, const struct mimdsim_collective *k,
                              enum collective_kind kind)
 {
@@ -234,6 +257,8 @@ static void check_collective(struct comm *c, const struct mimdsim_collective *k,
 /* A call of ours; buffers that the program leaves out where they do not count stand for nothing. */
 static struct collective_call make_call(struct comm *c, const struct mimdsim_collective *k)
 {
+    /* Reductions count elements, all others bytes. The tags from TAGS on belong to
+     * collectives, which are called one at a time. */
     struct collective_call call = {.kind = kind_of(c, k->kind),
                                    .comm = c,
                                    .tag = TAGS,
@@ -265,17 +290,22 @@ static void call_collective(struct comm *handle, const struct mimdsim_collective
         c->type->barrier(c);
         return;
     }
+    /* By name if the program chose one, else by the machine's rules, as built-in programs
+     * do. A named one that does not apply ends the run: silently taking another would
+     * falsify a measurement. */
     const struct collective_shape shape = collective_shape(&call);
     if (by != NULL && !collective_applies(by, &shape))
         stop(c, "%s by '%s' on %d ranks: it needs %s", collective_name(call.kind), by->name,
              c->size, by->needs);
     if (by == NULL) by = collective_choose(&shape, g->world->rule, g->world->nrule);
+    /* From the heap and not from the run's arena, which would keep it until the run ends. */
     call.scratch = malloc((size_t)collective_scratch(by, &shape, c->rank) + 64);
     CHECK(call.scratch != NULL);
     collective_run(by, &call);
     free(call.scratch);
 }
 
+/* For this rank from now on; all ranks must choose alike, as on a machine. */
 static void call_algorithm(struct comm *handle, const char *collective, const char *name,
                            const char *file, int line)
 {
@@ -297,6 +327,8 @@ static void call_algorithm(struct comm *handle, const char *collective, const ch
 static int call_rank(const struct comm *handle) { return rank_of(handle)->comm->rank; }
 static int call_ranks(const struct comm *handle) { return rank_of(handle)->comm->size; }
 
+/* A serial code that asks depends on the number of ranks, so its answer is kept for that
+ * number alone (serial_answers.c). */
 static int call_run_ranks(const struct comm *handle)
 {
     struct guest_world *w = rank_of(handle)->world;
@@ -313,6 +345,8 @@ static void call_count(struct comm *handle, const struct mimdsim_counts *n)
                            .trig = n->trig,
                            .bytes = n->bytes,
                            .call = n->call};
+    /* Counted blocks or host time tell the cost otherwise: then the author's counts do
+     * nothing. */
     const double factor = g->world->spec->program.factor;
     if (g->world->cost != PROGRAM_COST_AUTHOR) return;
     /* Operations are counted by stage, unless a factor makes their time another one. */
@@ -320,6 +354,7 @@ static void call_count(struct comm *handle, const struct mimdsim_counts *n)
     else comm_elapse(g->comm, ps_rounded((double)node_cost_ps(&g->world->node, &w) * factor));
 }
 
+/* A serial code has one stage, whatever the program declares. */
 static void call_stage(struct comm *handle, int stage, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
@@ -331,6 +366,7 @@ static void call_stage(struct comm *handle, int stage, const char *file, int lin
 
 static int64_t call_now_ps(struct comm *handle) { return comm_now_ps(rank_of(handle)->comm); }
 
+/* Memory of the run, given back when it ends: programs need not free. */
 static void *call_memory(struct comm *handle, int64_t bytes, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
@@ -345,6 +381,7 @@ static void check_output(struct comm *handle, struct comm *c, int output)
         stop(c, "names result %d, which the program does not declare", output);
 }
 
+/* Results are gathered on the host and take no simulated time. */
 static void call_publish(struct comm *handle, int output, int64_t first, int64_t n,
                          const double *data, const char *file, int line)
 {
@@ -356,6 +393,7 @@ static void call_publish(struct comm *handle, int output, int64_t first, int64_t
         stop(c, "%s, '%s'", why, rank_of(handle)->declared->output[output]);
 }
 
+/* The check sees what ranks published, whole; ranks do not see each other's. */
 static const double *call_output(struct comm *handle, int output, int64_t *n, const char *file,
                                  int line)
 {
@@ -367,6 +405,7 @@ static const double *call_output(struct comm *handle, int output, int64_t *n, co
     return *n > 0 ? seen->of[output].x : NULL;
 }
 
+/* Compared with the declared tolerance where results are judged (program_check_add). */
 static void call_error(struct comm *handle, const char *quantity, double relative, const char *file,
                        int line)
 {
@@ -377,6 +416,7 @@ static void call_error(struct comm *handle, const char *quantity, double relativ
     program_check_add(w->check, quantity, "check", relative, w->tolerance);
 }
 
+/* Lines that were begun are printed before the message that ends the run. */
 static void call_fail(struct comm *handle, const char *text, const char *file, int line)
 {
     guest_rank_end_lines(rank_of(handle));

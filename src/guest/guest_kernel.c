@@ -2,7 +2,11 @@
  *
  * Its results are those that its ranks publish. They are compared with what its first serial code
  * publishes, by its own check, or by both. Serial codes run on one processor of the same machine,
- * and their computing is counted as the ranks' is; so does the parallel code on one processor. */
+ * and their computing is counted as the ranks' is; so does the parallel code on one processor.
+ *
+ * A declared program is data in the image, so it can be read without running any of its
+ * code: the reader's copy of the image is for that, and the ranks' copies are made by the
+ * run. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,6 +32,7 @@ struct guest_run {
 
 static const char *const one_stage[] = {"program"};
 
+/* The program's own memory is its image's and comm_memory's. */
 static size_t workspace_bytes(const void *job, int rank)
 {
     (void)job, (void)rank;
@@ -36,6 +41,8 @@ static size_t workspace_bytes(const void *job, int rank)
 
 /* --- open, close ------------------------------------------------------------------------------ */
 
+/* Only one copy is reserved. Its variables get the run's parameters, so that estimate
+ * sees them. */
 static bool read_declaration(struct guest_run *g, const struct run_spec *spec, struct arena *a,
                              struct err *e)
 {
@@ -45,18 +52,22 @@ static bool read_declaration(struct guest_run *g, const struct run_spec *spec, s
     g->copy = loader_instantiate(g->reader, 0, NULL, e);
     if (g->copy == NULL) return false;
     g->declared = guest_declared(g->copy);
+    /* The file may have changed since its sheet was read. */
     if (g->declared == NULL)
         return err_set(e, ERR_DATA, "%s declares no program any more", spec->program.file);
     guest_parameters_set(g->declared, spec->program.parameters, a);
     return true;
 }
 
+/* The run's setting goes before the program's wish; counted blocks are the default. */
 static enum program_cost cost_of(const struct guest_run *g, const struct program_spec *p)
 {
     if (p->cost != PROGRAM_COST_DECLARED) return p->cost;
     return g->declared->cost == MIMDSIM_COST_AUTHOR ? PROGRAM_COST_AUTHOR : PROGRAM_COST_BLOCKS;
 }
 
+/* A program without stages has one. Matching in simulated time costs events, so a program
+ * says if it uses wildcards, tests or probes (.wildcards). */
 static void make_rank(struct guest_run *g)
 {
     const struct mimdsim_program *p = g->declared;
@@ -73,6 +84,7 @@ static void make_rank(struct guest_run *g)
     };
 }
 
+/* Set first, so that close finds what was made when this fails half-way. */
 static bool kernel_open(struct program_run *r, struct err *e)
 {
     struct guest_run *g = TAKE(r->arena, 1, struct guest_run);
@@ -97,6 +109,7 @@ static void kernel_close(struct program_run *r)
     loader_close(g->reader);
 }
 
+/* The ranks' world is on the run's arena and refers to the run, which outlives it. */
 static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct err *e)
 {
     struct guest_run *g = r->own;
@@ -124,6 +137,8 @@ static void lose(struct run_result *out, const char *what, const char *why)
     out->status = RUN_INVALID;
 }
 
+/* Every element up to the last must come from some rank; NaN in its place would only say
+ * that something is wrong. */
 static void check_gaps(const struct guest_run *g, struct run_result *out)
 {
     for (int i = 0; i < MIMDSIM_OUTPUTS && g->declared->output[i] != NULL; i++) {
@@ -138,6 +153,8 @@ static void compare(const struct guest_run *g, const char *reference,
                     const struct guest_results *with, struct run_result *out)
 {
     for (int i = 0; i < MIMDSIM_OUTPUTS && g->declared->output[i] != NULL; i++) {
+        /* Results are compared by name. The serial code may publish fewer, and not other
+         * lengths. */
         const struct guest_result *x = &g->results.of[i], *y = &with->of[i];
         if (y->n == 0) continue; /* the serial code does not know it */
         char text[160];
@@ -149,6 +166,8 @@ static void compare(const struct guest_run *g, const char *reference,
     }
 }
 
+/* The check is the program's code on one processor, in a world of its own that may look
+ * at the results. Its time counts nowhere. */
 static void run_check(struct program_run *r, struct run_result *out)
 {
     struct guest_run *g = r->own;
@@ -172,6 +191,8 @@ static void run_check(struct program_run *r, struct run_result *out)
     arena_destroy(memory);
 }
 
+/* First whether there is a whole answer, then whether it is that of the serial code, then
+ * what the program says itself. */
 static void kernel_check(struct program_run *r, struct arena *scratch, struct run_result *out)
 {
     struct guest_run *g = r->own;
@@ -198,6 +219,7 @@ static void add_baseline(struct program_run *r, int part, const char *name, stru
         serial_answer(r->cache, &r->spec, part, g->cost, g->rank.stack_bytes, why, (int)sizeof why);
     if (a == NULL)
         return; /* the first one's failure has been told; a parallel code may need more ranks */
+    /* Time and counted work of one processor: what the speedup divides by. */
     struct baseline *b = &out->baseline[out->nbaseline++];
     text_copy(b->name, sizeof b->name, name);
     b->time_ps = a->time_ps;
@@ -212,6 +234,7 @@ static void kernel_baselines(struct program_run *r, const struct work_price *pri
     (void)price, (void)scratch;
     for (; n < MIMDSIM_SERIALS && g->declared->serial[n].run != NULL; n++)
         add_baseline(r, GUEST_SERIAL + n, g->declared->serial[n].name, out);
+    /* Speedup is against the fastest serial code, not against the first. */
     program_fastest_add(out, 0);
     /* Without a serial code the parallel one on one processor is all there is. */
     if (n == 0 || r->spec.record.baselines == BASELINES_ALL)
@@ -221,6 +244,7 @@ static void kernel_baselines(struct program_run *r, const struct work_price *pri
 static void kernel_estimate(const struct program_run *r, struct program_estimate *out)
 {
     const struct guest_run *g = r->own;
+    /* What the program leaves alone stays unknown. */
     struct mimdsim_estimate e = {NAN, NAN, NAN, NAN};
     if (g->declared->estimate != NULL) {
         const int64_t argument[4] = {r->spec.nrank, (int64_t)(intptr_t)&e};

@@ -7,7 +7,9 @@
 
 #include "base/check.h"
 
-/* One whole line goes to the result, up to a limit, and to people. */
+/* One whole line goes to the result, up to a limit, and to people. Ranks share the host's
+ * output, so lines are whole or not there: those of ranks that write at the same
+ * simulated time do not mix. */
 static void emit(const struct guest_line *line, int rank, int stream, enum program_output output,
                  struct text *said)
 {
@@ -27,6 +29,7 @@ void guest_line_add(struct guest_line *line, int rank, int stream, const char *d
     if (line->text == NULL) line->text = malloc(GUEST_LINE);
     CHECK(line->text != NULL);
     for (size_t i = 0; i < n; i++) {
+        /* Lines that are too long are cut into several; an empty line is a line. */
         const bool end = data[i] == '\n';
         if (!end) line->text[line->n++] = data[i] != '\0' ? data[i] : '?'; /* texts end at a NUL */
         if (!end && line->n < GUEST_LINE) continue;

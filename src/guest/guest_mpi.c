@@ -48,12 +48,14 @@ static intptr_t call_program(void *host, void (*function)(void), const intptr_t 
     return (intptr_t)o.value;
 }
 
+/* The world's owner is the run that made it. */
 static struct mpi_run *run_of(const struct guest_rank *g) { return g->world->owner; }
 
 static _Noreturn void end_with(struct guest_rank *g, const char *what, int status)
 {
     char text[80];
     struct mpi_run *m = run_of(g);
+    /* The first failure on the host is the one that `mimdsim mpirun` returns. */
     if (*m->exit_status == 0) *m->exit_status = status;
     snprintf(text, sizeof text, "%s %d", what, status);
     guest_rank_end_lines(g);
@@ -77,6 +79,8 @@ static void rank_run(struct comm *c, const void *job, void *workspace)
     struct mpi_run *m = *(struct mpi_run *const *)job;
     struct guest_rank *g = workspace;
     guest_rank_begin(g, c, &m->ranks);
+    /* Every copy of the image has a host table of its own: the rank behind it is the
+     * copy's. */
     struct mimdsim_host *host = loader_host(g->instance);
     host->mpi = &mpi_functions;
     host->mpi_rank = mpi_rank_create(m->world, c, g);

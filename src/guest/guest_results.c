@@ -1,4 +1,6 @@
-/* guest_results.c - see guest_results.h. */
+/* guest_results.c - see guest_results.h.
+ *
+ * On the host's heap and outside of simulated time: results are there to be checked. */
 #include "guest/guest_results.h"
 
 #include <math.h>
@@ -11,6 +13,8 @@
 /* Room for `n` elements; those that are new are not numbers, and given by nobody. */
 static void grow(struct guest_result *r, int64_t n)
 {
+    /* At least doubled, so that ranks may publish piece by piece. `given` says which
+     * elements have come: a published NaN is a number that came. */
     if (n > r->capacity) {
         const int64_t capacity = n > 2 * r->capacity ? n : 2 * r->capacity;
         r->x = realloc(r->x, (size_t)capacity * sizeof *r->x);
@@ -25,6 +29,7 @@ static void grow(struct guest_result *r, int64_t n)
 bool guest_results_put(struct guest_results *r, int output, int64_t first, int64_t n,
                        const double *data, char *why, int size)
 {
+    /* No sum here can wrap: the limit is far below 2^63. */
     if (first < 0 || n < 0 || first > GUEST_MOST_NUMBERS - n) {
         snprintf(why, (size_t)size, "publishes elements %lld to %lld of a result; expected 0 to %d",
                  (long long)first, (long long)first + n - 1, GUEST_MOST_NUMBERS - 1);
@@ -45,12 +50,15 @@ bool guest_results_put(struct guest_results *r, int output, int64_t first, int64
     return true;
 }
 
+/* -1: all elements up to the last have been published. */
 int64_t guest_results_gap(const struct guest_result *r)
 {
     const unsigned char *gap = r->n > 0 ? memchr(r->given, 0, (size_t)r->n) : NULL;
     return gap != NULL ? gap - r->given : -1;
 }
 
+/* The largest difference over the largest magnitude: relative to the result as a whole,
+ * so that elements near zero do not spoil it. All zeros: the plain difference. */
 double guest_results_difference(const struct guest_result *x, const struct guest_result *y)
 {
     double largest = 0, scale = 0;

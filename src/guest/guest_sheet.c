@@ -1,4 +1,8 @@
-/* guest_sheet.c - what images declare, read and checked before any of their code runs. */
+/* guest_sheet.c - what images declare, read and checked before any of their code runs.
+ *
+ * A wrong declaration is refused with the file's name and what was expected: from here on
+ * others may rely on it. The image is mapped and relocated, and its constructors have not
+ * run, so what is read is what the compiler wrote. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +18,8 @@
 
 /* --- parameters as fields --------------------------------------------------------------------- */
 
+/* Units in which parameters may be declared: those that settings of machines have, so
+ * that values are written alike (`64 KiB`, `2 us`). */
 static const struct {
     const char *name;
     enum unit unit;
@@ -38,7 +44,8 @@ static bool find_unit(const char *name, enum unit *unit)
     return false;
 }
 
-/* A word that can stand in scenarios and in SQL. */
+/* A word that can stand in scenarios and in SQL. 31 letters, as columns of the database
+ * have room for them; no letters beyond ASCII. */
 static bool is_name(const char *s)
 {
     if (s == NULL || !isalpha((unsigned char)*s) || strlen(s) > 31) return false;
@@ -47,7 +54,8 @@ static bool is_name(const char *s)
     return true;
 }
 
-/* "ring|doubling" as a list that NULL ends; NULL: a word is missing. */
+/* "ring|doubling" as a list that NULL ends; NULL: a word is missing. TAKE zeroes the
+ * list, which therefore ends with NULL; as many places as letters are always enough. */
 static const char *const *split_choices(const char *text, struct arena *a)
 {
     if (text == NULL) return NULL;
@@ -72,6 +80,8 @@ static const char *fallback_of(const struct mimdsim_parameter *p, const struct f
 {
     union program_value v = {0};
     struct text t = {0};
+    /* Kinds fix the C types of variables: int64_t, double, int and int
+     * (mimdsim/program.h). */
     switch (p->kind) {
     case MIMDSIM_WHOLE:
         v.whole = *(const int64_t *)p->at;
@@ -99,12 +109,15 @@ static const char *fallback_of(const struct mimdsim_parameter *p, const struct f
 bool guest_parameter_field(const struct mimdsim_parameter *p, struct field *f, struct arena *a,
                            char *why, int size)
 {
+    /* Declared kinds are part of the binary interface, kinds of fields are not. */
     static const enum field_kind kinds[] = {[MIMDSIM_WHOLE] = FIELD_INT64,
                                             [MIMDSIM_REAL] = FIELD_REAL,
                                             [MIMDSIM_FLAG] = FIELD_BOOL,
                                             [MIMDSIM_CHOICE] = FIELD_CHOICE};
     *f = (struct field){
         .key = p->name, .doc = p->doc != NULL ? p->doc : "", .min = p->least, .max = p->most};
+    /* From here on in the order of the declaration, so that the first thing wrong is
+     * told. */
     if (!is_name(p->name)) return clause(why, size, "a name is letters, digits and _, at most 31");
     if (p->kind < MIMDSIM_WHOLE || p->kind > MIMDSIM_CHOICE)
         return clause(why, size, "it has no such kind");
@@ -115,12 +128,14 @@ bool guest_parameter_field(const struct mimdsim_parameter *p, struct field *f, s
         return clause(why, size, "whole numbers have no unit but B");
     if (p->kind == MIMDSIM_CHOICE && (f->choice = split_choices(p->choices, a)) == NULL)
         return clause(why, size, "its choices are not words between bars, such as ring|doubling");
+    /* The image is unmapped after its sheet was read: texts are copied. */
     f->key = arena_text(a, p->name);
     f->doc = arena_text(a, f->doc);
     f->fallback = fallback_of(p, f, a);
     if (f->fallback == NULL)
         return clause(why, size, "its variable is not initialised with a place in its choices");
     char refused[200];
+    /* The default must be within the declared range, by the same check as a user's value. */
     if (program_parameter_text(f, f->fallback, a, refused, (int)sizeof refused) != NULL)
         return true;
     snprintf(why, (size_t)size, "its variable is initialised with %s: %s", f->fallback, refused);
@@ -135,6 +150,8 @@ void guest_parameters_set(const struct mimdsim_program *p, const char *lines, st
         struct field f;
         char text[256], why[256];
         if (!program_value_find(lines, to->name, text, (int)sizeof text)) continue;
+        /* Lines come from a plan that has checked them against the sheet of the same
+         * image. */
         CHECK(guest_parameter_field(to, &f, a, why, (int)sizeof why));
         CHECK(field_set(&f, &v, text, a, why, (int)sizeof why));
         switch (to->kind) {
@@ -166,7 +183,8 @@ static bool refuse(struct err *e, const char *path, const char *text)
     return err_set_at(e, ERR_DATA, path, 0, "%s", text);
 }
 
-/* Parameters of the declaration; a word that stands twice would be set twice. */
+/* Parameters of the declaration; a word that stands twice would be set twice. The list
+ * ends with the first that has no name, or is full. */
 static bool read_parameters(struct program_sheet *s, const struct mimdsim_program *p,
                             const char *path, struct arena *a, struct err *e)
 {
@@ -188,12 +206,15 @@ static bool read_parameters(struct program_sheet *s, const struct mimdsim_progra
 static bool read_declaration(struct program_sheet *s, const struct mimdsim_program *p,
                              const char *path, struct arena *a, struct err *e)
 {
+    /* Magic and version first: without them the rest is not what it seems. A smaller
+     * struct is an older one, whose missing members are zero. */
     if (p->magic != MIMDSIM_PROGRAM_MAGIC)
         return refuse(e, path, "mimdsim_program is no declaration; PROGRAM(...) makes one");
     if (p->abi != MIMDSIM_PROGRAM_ABI || p->size > sizeof *p)
         return refuse(e, path,
                       "the program was made for another version of mimdsim; compile it again");
     if (p->run == NULL) return refuse(e, path, "the program declares no function .run");
+    /* Written so that NaN is refused, too. */
     if (!(p->tolerance >= 0)) return refuse(e, path, ".tolerance is below zero or not a number");
     if (p->title != NULL) s->title = arena_text(a, p->title);
     if (p->name != NULL) text_copy(s->name, sizeof s->name, p->name);
@@ -204,6 +225,8 @@ static bool read_declaration(struct program_sheet *s, const struct mimdsim_progr
  */
 static void make_name(struct program_sheet *s, const char *path)
 {
+    /* A program's own name goes first, then the file's. Names of built-in programs keep
+     * their meaning in scenarios and databases. */
     static const char *const built_in[] = {
 #define X(word, stem, traits) word,
         PROGRAM_LIST(X)
@@ -226,6 +249,7 @@ static bool read_image(struct program_sheet *s, struct loader_template *t, const
     if (loader_reserve(t, 1, &none, e)) i = loader_instantiate(t, 0, NULL, e);
     if (i == NULL) return false;
     const struct mimdsim_program *p = guest_declared(i);
+    /* A declaration goes before main: a kernel may have both. */
     if (p != NULL) s->kind = PROGRAM_KERNEL;
     else if (loader_symbol(i, "main") != NULL || loader_symbol(i, "mimdsim_main") != NULL)
         s->kind = PROGRAM_MPI;
@@ -236,6 +260,8 @@ static bool read_image(struct program_sheet *s, struct loader_template *t, const
     return sound;
 }
 
+/* SHA-256 of the file identifies the program in databases; for sources the caller hands
+ * over that of source and flags. */
 static bool hash_image(struct program_sheet *s, const char *image, struct err *e)
 {
     struct text file = {0};

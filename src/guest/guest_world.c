@@ -14,6 +14,7 @@
 
 /* --- what the loader asks for ----------------------------------------------------------------- */
 
+/* The rank's clock, for time(), clock() and their like. */
 static int64_t now_ps(void *context) { return comm_now_ps(((struct guest_rank *)context)->comm); }
 
 /* Counted blocks have their price already. What host time costs is taken whenever blocks are told:
@@ -26,6 +27,8 @@ static void elapse_ps(void *context, int64_t ps)
         comm_elapse(g->comm, ps);
         return;
     case PROGRAM_COST_HOST: {
+        /* What the simulator does in comm_elapse is not counted twice: the next stretch
+         * begins after it. */
         const double now = host_seconds();
         comm_elapse(g->comm, ps_rounded((now - g->host_s) * 1e12 * g->world->spec->program.factor));
         g->host_s = host_seconds();
@@ -36,11 +39,13 @@ static void elapse_ps(void *context, int64_t ps)
     }
 }
 
+/* Sleeping is computing of a known length: the rank does nothing else meanwhile. */
 static void sleep_ps(void *context, int64_t ps)
 {
     comm_elapse(((struct guest_rank *)context)->comm, ps);
 }
 
+/* 1 and 2 are the streams; everything that is not standard error is output. */
 static void output(void *context, int stream, const char *data, size_t n)
 {
     struct guest_rank *g = context;
@@ -55,6 +60,7 @@ void guest_rank_end_lines(struct guest_rank *g)
         guest_line_end(&g->line[i], g->comm->rank, i + 1, g->world->output, g->world->said);
 }
 
+/* The loader's texts hold call and place already. */
 static void fail(void *context, const char *text)
 {
     struct guest_rank *g = context;
@@ -78,8 +84,10 @@ static const struct loader_hooks hooks = {now_ps, elapse_ps, sleep_ps, output, f
 
 /* --- images ----------------------------------------------------------------------------------- */
 
-/* Every block of the code gets its price on this machine before copies are made. Where host time is
- * the cost, blocks only tell that something was computed since the last call. */
+/* Every block of the code gets its price on this machine before copies are made. Where
+ * host time is the cost, blocks only tell that something was computed since the last
+ * call. Prices are patched into the code once, since all ranks are on processors of one
+ * kind. */
 static bool price_blocks(struct guest_world *w, struct err *e)
 {
     const struct node_cost told = {.instruction = 1};
@@ -94,6 +102,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
     const struct program_spec *p = &w->spec->program;
     w->node = node_cost_make(node);
     w->image = loader_open(p->image, e);
+    /* What was made so far is given back by guest_world_close. */
     if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
         return false;
     /* From here on a crash, or a loop that calls nothing, is this program's. */
@@ -106,6 +115,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
     return true;
 }
 
+/* Watching ends before the image goes: a crash from here on is the simulator's. */
 void guest_world_close(struct guest_world *w)
 {
     crash_limit(0);
@@ -116,6 +126,7 @@ void guest_world_close(struct guest_world *w)
 
 /* --- ranks ------------------------------------------------------------------------------------ */
 
+/* Functions in this rank's own copy, whose variables they use. */
 static void *function_of(const struct mimdsim_program *p, int part)
 {
     if (part == GUEST_RUN) return (void *)p->run;
@@ -137,6 +148,7 @@ void guest_rank_begin(struct guest_rank *g, struct comm *c, struct guest_world *
     err_clear(&e);
     g->comm = c;
     g->world = w;
+    /* This runs on the rank's fiber, so a failure is told as the rank's. */
     g->instance = loader_instantiate(w->image, comm_rank(c), g, &e);
     if (g->instance == NULL) c->type->end_run(c, e.text);
     struct mimdsim_host *host = loader_host(g->instance);
@@ -155,6 +167,8 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
     /* Its parameters are written before anything of it runs, constructors included. */
     g->declared = guest_declared(g->instance);
     guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
+    /* Constructors, the part, destructors, as in a process and all on the simulated
+     * clock. */
     struct loader_outcome end = loader_start(g->instance, 1, argv);
     const int64_t argument[4] = {(int64_t)(intptr_t)g};
     if (!end.exited) end = loader_call(g->instance, function_of(g->declared, w->part), argument);
@@ -165,7 +179,8 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
 
 /* --- one processor ---------------------------------------------------------------------------- */
 
-/* The run's machine with one processor of one node: no network, no noise. */
+/* The run's machine with one processor of one node: no network, no noise. Copied and
+ * changed where a network or a second processor would matter. */
 static struct machine_spec one_processor(const struct machine_spec *m)
 {
     struct machine_spec one = *m;
@@ -183,6 +198,7 @@ static struct machine_spec one_processor(const struct machine_spec *m)
     return one;
 }
 
+/* A rank's state lies in memory that outlasts its fiber. */
 static void one_rank(struct comm *c, void *context)
 {
     struct guest_world *w = context;
@@ -198,6 +214,8 @@ bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct ar
     const struct record_spec nothing = {0};
     w->part = part;
     w->alone = true;
+    /* A run of its own beside the run that it belongs to; nothing of it is recorded but
+     * time and work. */
     const struct world_load load = {.nrank = 1,
                                     .program = one_rank,
                                     .context = w,

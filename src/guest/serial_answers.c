@@ -1,4 +1,8 @@
-/* serial_answers.c - see serial_answers.h. */
+/* serial_answers.c - see serial_answers.h.
+ *
+ * A sweep over numbers of ranks would run the same serial code once for each of them.
+ * Answers are kept in memory of this process only, so nothing stale can be met in
+ * another. */
 #include "guest/serial_answers.h"
 
 #include <stdio.h>
@@ -29,7 +33,9 @@ void serial_answers_destroy(struct program_cache *c)
     free(c);
 }
 
-/* What decides the answer, but for the number of ranks. */
+/* What decides the answer, but for the number of ranks. Prices of blocks depend on the
+ * node, choices of algorithms on the rules of collectives. The struct is hashed as bytes:
+ * padding that differs costs a second run, never a wrong answer. */
 static void make_key(const struct run_spec *s, int part, enum program_cost cost, char key[65])
 {
     char node[65];
@@ -42,6 +48,7 @@ static void make_key(const struct run_spec *s, int part, enum program_cost cost,
     text_free(&t);
 }
 
+/* nrank 0: the code never asked how many ranks there are. */
 static struct serial_answer *find(struct program_cache *c, const char *key, int nrank)
 {
     for (int i = 0; i < c->n; i++) {
@@ -51,7 +58,8 @@ static struct serial_answer *find(struct program_cache *c, const char *key, int 
     return NULL;
 }
 
-/* A place for a new one: the oldest goes. */
+/* A place for a new one: the oldest goes. A ring: pointers that a run was given stay
+ * good, because one run asks for fewer than MOST_ANSWERS. */
 static struct serial_answer *place(struct program_cache *c)
 {
     struct serial_answer *a = &c->answer[c->next];
@@ -62,7 +70,8 @@ static struct serial_answer *place(struct program_cache *c)
     return a;
 }
 
-/* Time and counted work of the one rank. */
+/* Time and counted work of the one rank. The one rank's makespan and its operations over
+ * all stages. */
 static void take_times(struct serial_answer *a, const struct run_result *r)
 {
     a->time_ps = r->makespan_ps;
@@ -84,11 +93,13 @@ const struct serial_answer *serial_answer(struct program_cache *cache, const str
         .spec = spec, .cost = cost, .calls = &guest_calls, .memory = memory, .results = &results};
     struct err e;
     err_clear(&e);
+    /* Only answers of runs that ended well are kept; a failure is told each time. */
     const bool made = guest_alone(&w, part, stack_bytes, memory, out, &e);
     if (made && out->status == RUN_OK) {
         a = place(cache);
         text_copy(a->key, sizeof a->key, key);
         a->nrank = w.asked_size ? spec->nrank : 0;
+        /* The results change hands: the cache frees them. */
         a->results = results;
         take_times(a, out);
     } else {

@@ -2,7 +2,11 @@
  *
  * The language of LogGOPSim's txt2bin (Hoefler, Schneider and Lumsdaine, 2010): one operation or
  * dependency to a line, comments as in C++. Stricter: every rank comes once, labels are unique
- * within a rank, peers exist, what follows an operation on its line belongs to it. */
+ * within a rank, peers exist, what follows an operation on its line belongs to it.
+ *
+ * docs/schedules.md has the language for people. One pass, one token of look-ahead and no
+ * recursion, so that nothing in a file sets a depth. Words are kept as places in the
+ * file's text, which outlives the reader. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +20,8 @@ enum token { TOKEN_END, TOKEN_LINE, TOKEN_WORD, TOKEN_NUMBER, TOKEN_SIGN };
 
 static const int64_t most_bytes = INT64_C(1) << 50; /* of one message: no sum of them wraps */
 
-/* A label; one of an earlier rank is a free place. */
+/* A label; one of an earlier rank is a free place. So the table need not be cleared for
+ * each rank. */
 struct label {
     const char *s;
     int length, rank; /* rank: how many came before it in the file, counted from 1 */
@@ -44,12 +49,15 @@ struct reader {
 
 /* ---- words ---- */
 
+/* By hand and not by ctype.h: what a letter is must not depend on the user's locale. */
 static bool is_letter(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/* Every refusal names line, what was found and what was expected; it returns false, so
+ * that callers can hand it on. */
 static bool refuse(struct reader *g, const char *expected)
 {
     char found[64] = "the end of the line";
@@ -60,7 +68,9 @@ static bool refuse(struct reader *g, const char *expected)
                       expected);
 }
 
-/* A remark that other readers pass over says what the unit of computing times is. */
+/* A remark that other readers pass over says what the unit of computing times is.
+ * LogGOPSim's computing times have no unit in the file. A remark keeps the file readable
+ * for it. */
 static bool read_unit(struct reader *g, const char *s, const char *end)
 {
     static const char head[] = " mimdsim time unit:";
@@ -87,6 +97,7 @@ static bool read_unit(struct reader *g, const char *s, const char *end)
 static bool skip(struct reader *g)
 {
     while (g->at < g->end) {
+        /* Lines within a remark count, so that messages name the right one. */
         const char *s = g->at;
         if (*s == ' ' || *s == '\t' || *s == '\r') {
             g->at++;
@@ -107,6 +118,8 @@ static bool skip(struct reader *g)
     return true;
 }
 
+/* Built-ins notice an overflow before it happens; the sign is kept apart, as -1 is the
+ * only negative number that means anything. */
 static bool read_number(struct reader *g)
 {
     g->negative = *g->at == '-';
@@ -123,6 +136,8 @@ static bool read_number(struct reader *g)
 /* The next token; a line's end counts once, however many empty lines follow. */
 static bool next(struct reader *g)
 {
+    /* The line moves on when its end is left behind, not when it is seen: errors at the
+     * end of a line belong to it. */
     if (g->token == TOKEN_LINE) g->line++;
     if (!skip(g)) return false;
     g->s = g->at;
@@ -149,6 +164,7 @@ static bool next(struct reader *g)
     return true;
 }
 
+/* Where the language does not care about line ends. */
 static bool next_but_lines(struct reader *g)
 {
     do {
@@ -188,6 +204,8 @@ static bool number(struct reader *g, int64_t most, bool any, const char *what, i
 
 static bool is_free(const struct reader *g, const struct label *l) { return l->rank != g->rank; }
 
+/* Open addressing with linear steps; the table is at most half full (read_labelled), so a
+ * free place is always near. */
 static struct label *place_of(struct reader *g, const char *s, int length)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
@@ -199,6 +217,7 @@ static struct label *place_of(struct reader *g, const char *s, int length)
     }
 }
 
+/* Only labels of the rank in progress move to the new table. */
 static void more_labels(struct reader *g)
 {
     struct label *old = g->label;
@@ -216,6 +235,8 @@ static void more_labels(struct reader *g)
 /* "tag 3 cpu 0 nic 1" in this order, each at most once; a computing time has a cpu alone. */
 static bool read_options(struct reader *g, struct schedule_op *op)
 {
+    /* Defaults are GOAL's: tag 0, processor 0. `nic` is checked and forgotten, as ports
+     * are the machine's (docs/schedules.md). */
     int64_t cpu = 0, nic;
     const bool message = op->kind != SCHEDULE_COMPUTE;
     if (message && is(g, "tag") &&
@@ -232,6 +253,7 @@ static bool read_options(struct reader *g, struct schedule_op *op)
 
 static bool read_message(struct reader *g, struct schedule_op *op)
 {
+    /* Receives alone may name anybody. */
     int64_t peer;
     const bool receive = op->kind == SCHEDULE_RECEIVE;
     if (!number(g, most_bytes, false, "a number of bytes", &op->size) || !expect(g, "b") ||
@@ -246,6 +268,7 @@ static bool read_operation(struct reader *g, int64_t *number_of)
 {
     struct schedule_op op = {.line = g->line};
     op.kind = is(g, "send") ? SCHEDULE_SEND : is(g, "recv") ? SCHEDULE_RECEIVE : SCHEDULE_COMPUTE;
+    /* The kind decides what follows, in the order that GOAL fixes. */
     if (op.kind == SCHEDULE_COMPUTE && !is(g, "calc")) return refuse(g, "'send', 'recv' or 'calc'");
     if (!next(g)) return false;
     if (op.kind == SCHEDULE_COMPUTE ? !number(g, PS_LAST, false, "a time", &op.size)
@@ -258,6 +281,8 @@ static bool read_operation(struct reader *g, int64_t *number_of)
                       SCHEDULE_MOST_OPERATIONS);
 }
 
+/* Operations must stand above what refers to them: a single pass knows all it needs, and
+ * most mistakes are found where they are made. */
 static bool label_of(struct reader *g, int64_t *op)
 {
     if (g->token != TOKEN_WORD) return refuse(g, "a label");
@@ -276,6 +301,7 @@ static bool read_labelled(struct reader *g, const char *s, int length)
     int64_t op;
     const int line = g->line;
     if (!next(g) || !read_operation(g, &op)) return false;
+    /* The table grows before the search: growing moves its places. */
     if (2 * g->nlabel >= g->label_capacity) more_labels(g);
     struct label *l = place_of(g, s, length);
     if (!is_free(g, l))
@@ -295,6 +321,7 @@ static bool read_dependency(struct reader *g, const char *s, int length)
     if (is_free(g, l))
         return err_set_at(g->err, ERR_DATA, g->path, g->line,
                           "no operation above has the label '%.*s'", length < 80 ? length : 80, s);
+    /* The label's operation waits for the one that is named behind the word. */
     op = l->op;
     if (!next(g) || !label_of(g, &on)) return false;
     return schedule_add_dependency(g->b, op, on, start) ||
@@ -307,6 +334,7 @@ static bool read_statement(struct reader *g)
     const char *s = g->s;
     const int length = g->length;
     if (g->token != TOKEN_WORD) return refuse(g, "an operation, a label or '}'");
+    /* Three kinds of line; a label may not be called like an operation. */
     if (is(g, "send") || is(g, "recv") || is(g, "calc")) {
         if (!read_operation(g, &op)) return false;
     } else {
@@ -329,6 +357,8 @@ static bool read_rank(struct reader *g)
     int64_t rank;
     const int line = g->line;
     if (!expect(g, "rank") || !number(g, g->b->s.nrank - 1, false, "a rank", &rank)) return false;
+    /* Ranks come in any order, each once. A new number of the rank makes all labels
+     * before it free places. */
     if (g->b->begin[rank] >= 0)
         return err_set_at(g->err, ERR_DATA, g->path, line, "rank %lld a second time",
                           (long long)rank);
@@ -353,6 +383,8 @@ static bool read_ranks(struct reader *g)
     if (!next(g) || !number(g, SCHEDULE_MOST_RANKS, false, "a number of ranks", &nrank))
         return false;
     if (nrank == 0) return err_set_at(g->err, ERR_DATA, g->path, g->line, "a schedule of 0 ranks");
+    /* A rank without operations has to be there, too: one that is missing is more often a
+     * file that was cut off. */
     schedule_begin(g->b, (int)nrank);
     if (g->token == TOKEN_LINE && !next_but_lines(g)) return false;
     while (g->token != TOKEN_END)
@@ -378,6 +410,7 @@ struct schedule *goal_read_text(const char *text, size_t n, const char *path, st
                        .b = &b,
                        .token = TOKEN_END};
     struct schedule *s = NULL;
+    /* The first call makes the table. */
     more_labels(&g);
     if (read_ranks(&g)) s = schedule_finish(&b, path, a, e);
     if (s) s->unit_ps = g.unit_ps;

@@ -8,6 +8,8 @@
 #include "base/check.h"
 #include "base/size.h"
 
+/* Doubling: each entry is copied about once in all, and memory peaks at three times the
+ * list for a moment. */
 /* ---- while it is read: growing lists on the heap, since nothing says how many will come ---- */
 
 static void *grown(void *list, int64_t *capacity, size_t size)
@@ -26,9 +28,12 @@ void schedule_begin(struct schedule_builder *b, int nrank)
     b->begin = calloc((size_t)nrank, sizeof *b->begin);
     b->end = calloc((size_t)nrank, sizeof *b->end);
     if (!b->begin || !b->end) check_memory((size_t)nrank * 2 * sizeof *b->begin);
+    /* -1 says that the rank has not come yet. */
     for (int i = 0; i < nrank; i++) b->begin[i] = b->end[i] = -1;
 }
 
+/* The limit keeps an operation's number within a rank in 31 bits, beside the bit of
+ * schedule.edge. */
 int64_t schedule_add_op(struct schedule_builder *b, const struct schedule_op *op)
 {
     struct schedule *s = &b->s;
@@ -41,6 +46,8 @@ int64_t schedule_add_op(struct schedule_builder *b, const struct schedule_op *op
 
 bool schedule_add_dependency(struct schedule_builder *b, int64_t op, int64_t on, bool start)
 {
+    /* More would not fit into memory that such a file could be run in; the reader says so
+     * by line. */
     if (b->ndependency == 2 * (int64_t)SCHEDULE_MOST_OPERATIONS) return false;
     if (b->ndependency == b->dependency_capacity)
         b->dependency = grown(b->dependency, &b->dependency_capacity, sizeof *b->dependency);
@@ -62,6 +69,8 @@ void schedule_discard(struct schedule_builder *b)
 /* Ranks in their order; `moved` is where each operation went. */
 static void order_ranks(const struct schedule_builder *b, struct schedule *s, int64_t *moved)
 {
+    /* Readers number operations as they stand in the file; from here on a rank's follow
+     * each other, in the order of ranks. */
     int64_t n = 0;
     for (int r = 0; r < s->nrank; r++) {
         s->first[r] = n;
@@ -73,7 +82,8 @@ static void order_ranks(const struct schedule_builder *b, struct schedule *s, in
     s->first[s->nrank] = n;
 }
 
-/* The rank of an operation, found by halves. */
+/* The rank of an operation, found by halves. The last rank that begins at or before it;
+ * empty ranks begin where the next one does. */
 static int rank_of(const struct schedule *s, int64_t op)
 {
     int low = 0, high = s->nrank;
@@ -90,6 +100,8 @@ static int rank_of(const struct schedule *s, int64_t op)
 static void order_dependencies(const struct schedule_builder *b, struct schedule *s,
                                const int64_t *moved)
 {
+    /* Linear, and stable: those that wait for one operation stay in the order of the
+     * file, so that runs of one file are the same. */
     for (int64_t i = 0; i < b->ndependency; i++) s->edge_first[moved[b->dependency[i].on] + 1]++;
     for (int64_t i = 0; i < s->nop; i++) s->edge_first[i + 1] += s->edge_first[i];
     int64_t *at = malloc(size_product((size_t)s->nop + 1, sizeof *at));
@@ -98,6 +110,8 @@ static void order_dependencies(const struct schedule_builder *b, struct schedule
     for (int64_t i = 0; i < b->ndependency; i++) {
         const struct schedule_dependency *d = &b->dependency[i];
         const int64_t op = moved[d->op], on = moved[d->on], first = s->first[rank_of(s, on)];
+        /* Numbers within the rank need 32 bits with the bit for `start`; 64 would double
+         * the largest array. */
         s->edge[at[on]++] = (uint32_t)(op - first) << 1 | d->start;
         s->op[op].needs++;
     }
@@ -108,6 +122,7 @@ static void order_dependencies(const struct schedule_builder *b, struct schedule
  * remains waits for itself. A list instead of calls: no depth that a file could choose. */
 static int64_t left_in_circles(const struct schedule *s, int64_t *some)
 {
+    /* A copy: the schedule stays as it was read. */
     int32_t *needs = malloc(size_product((size_t)s->nop + 1, sizeof *needs));
     int64_t *list = malloc(size_product((size_t)s->nop + 1, sizeof *list)), n = 0, done = 0;
     if (!needs || !list) check_memory((size_t)s->nop * (sizeof *needs + sizeof *list));
@@ -122,6 +137,7 @@ static int64_t left_in_circles(const struct schedule *s, int64_t *some)
             if (--needs[op] == 0) list[n++] = op;
         }
     }
+    /* What still has needs lies on a circle or behind one; the first of them is told. */
     for (*some = 0; *some < s->nop && needs[*some] == 0;) ++*some;
     free(needs);
     free(list);
@@ -134,6 +150,8 @@ struct schedule *schedule_finish(struct schedule_builder *b, const char *path, s
     struct schedule *s = TAKE(a, 1, struct schedule);
     int64_t *moved = malloc(size_product((size_t)b->s.nop + 1, sizeof *moved)), some;
     if (!moved) check_memory((size_t)b->s.nop * sizeof *moved);
+    /* Arrays of the builder are on the heap and end with it: these are copies in the
+     * caller's arena, of the exact length. */
     *s = b->s;
     s->nedge = b->ndependency;
     s->op = TAKE(a, s->nop + 1, struct schedule_op);

@@ -1,4 +1,7 @@
-/* schedule_program.c - a schedule is opened, checked against the run, and executed by its ranks. */
+/* schedule_program.c - a schedule is opened, checked against the run, and executed by its ranks.
+ *
+ * The sheet is what is known before a run (name, ranks, settings, identity); the job is
+ * what ranks execute. Rules of both are in docs/schedules.md. */
 #include "schedule/schedule_program.h"
 
 #include <math.h>
@@ -39,9 +42,12 @@ const struct program_sheet *schedule_sheet(const char *path, struct arena *a, st
     struct arena *scratch = arena_create();
     struct program_sheet *sheet = TAKE(a, 1, struct program_sheet);
     struct text file = {0};
+    /* The whole file is read and checked, so that a wrong one is refused before anything
+     * runs; it is read again for each run. */
     const struct schedule *s = schedule_read(path, scratch, e);
     const bool fine = s && text_read_file(&file, path, e);
     if (fine) {
+        /* A schedule is made for its number of ranks, which a scenario may leave out. */
         *sheet = (struct program_sheet){.kind = PROGRAM_SCHEDULE,
                                         .title = "a schedule",
                                         .image = arena_text(a, path),
@@ -49,6 +55,7 @@ const struct program_sheet *schedule_sheet(const char *path, struct arena *a, st
                                         .nparameter = (int)(sizeof parameters / sizeof *parameters),
                                         .parameter = parameters};
         name_of(sheet, path);
+        /* Results of the same bytes are the same, wherever the file lies. */
         digest_sha256_hex(file.s, file.length, sheet->hash);
     }
     text_free(&file);
@@ -56,6 +63,7 @@ const struct program_sheet *schedule_sheet(const char *path, struct arena *a, st
     return fine ? sheet : NULL;
 }
 
+/* Sizes are known, but a promise would save events only. */
 static int64_t no_promise(const void *job)
 {
     (void)job;
@@ -64,6 +72,8 @@ static int64_t no_promise(const void *job)
 
 static const char *const stage_name[] = {"schedule"};
 
+/* Receives may name any rank or tag, so matching follows simulated time; no send is
+ * synchronous, which saves events (world.h). */
 static const struct rank_program rank_program = {
     .nstage = 1,
     .stage_name = stage_name,
@@ -80,15 +90,18 @@ static int64_t unit_of(const struct program_run *r, const struct schedule *s)
 {
     char text[64], why[128];
     union program_value v = {0};
+    /* The setting goes before the remark in the file, and that before the default. */
     const bool given =
         program_value_find(r->spec.program.parameters, "time_unit", text, (int)sizeof text) &&
         field_set(&parameters[0], &v, text, r->arena, why, (int)sizeof why);
     if (!given || v.real == 0) return s->unit_ps > 0 ? s->unit_ps : DEFAULT_UNIT_PS;
+    /* 0.1 us is no exact double: a millionth of the unit is forgiven. */
     const int64_t ps = ps_rounded(v.real * 1e12);
     return fabs((double)ps - v.real * 1e12) <= 1e-6 * (double)ps ? ps : 0;
 }
 
-/* Computing times as long as simulated time would wrap in picoseconds. */
+/* Computing times as long as simulated time would wrap in picoseconds. Before the run, by
+ * line: in it the sum would stop at the end of time without a word of which line. */
 static bool times_fit(const struct schedule *s, int64_t unit, const char *path, struct err *e)
 {
     for (int64_t i = 0; i < s->nop; i++)
@@ -107,6 +120,7 @@ static bool open_schedule(struct program_run *r, struct err *e)
     const char *path = r->spec.program.image;
     r->own = job;
     r->rank = &rank_program;
+    /* The database keeps the file's hash, not the file. */
     if (!path)
         return err_set(e, ERR_CONFIG, "schedule '%s' of a stored run is not at hand",
                        r->spec.kernel.name);
@@ -115,6 +129,8 @@ static bool open_schedule(struct program_run *r, struct err *e)
     *job = (struct schedule_job){.schedule = s, .path = path, .unit_ps = unit_of(r, s)};
     if (job->unit_ps == 0)
         return err_set(e, ERR_CONFIG, "program.time_unit is no whole number of picoseconds");
+    /* More ranks would idle, fewer would lack their peers: neither is what the file
+     * means. */
     if (r->spec.nrank != s->nrank)
         return err_set(e, ERR_CONFIG,
                        "the schedule '%s' has %d ranks, the run %d; expected ranks: %d",
@@ -127,11 +143,13 @@ static bool prepare_schedule(struct program_run *r, struct arena *scratch, struc
     (void)e;
     struct schedule_job *job = r->own;
     memset(r->output, 0, sizeof r->output);
+    /* Records of messages under way last as long as the run. */
     job->arena = scratch;
     r->job = job;
     return true;
 }
 
+/* Exact but for memory: the mean of the operations that a rank has. */
 static void estimate_schedule(const struct program_run *r, struct program_estimate *out)
 {
     const struct schedule *s = ((const struct schedule_job *)r->own)->schedule;

@@ -4,6 +4,8 @@
 
 struct schedule *schedule_read(const char *path, struct arena *a, struct err *e)
 {
+    /* The first bytes decide and not the name: binary schedules are called .goal, too.
+     * Readers copy what they keep, so the file's text ends here. */
     struct text file = {0};
     struct schedule *s = NULL;
     if (text_read_file(&file, path, e)) {
