@@ -85,6 +85,8 @@ static void check_message(struct comm *c, int peer, bool any, int64_t tag, int64
         stop(c, "names a message of %lld bytes at NULL", (long long)bytes);
 }
 
+/* Without a request nobody waits for the end of the send, which a synchronous one would
+ * make pointless. */
 static void call_isend(struct comm *handle, int to, int64_t tag, const void *data, int64_t bytes,
                        int synchronous, struct mimdsim_request *r, const char *file, int line)
 {
@@ -176,6 +178,7 @@ static int call_probe(struct comm *handle, int from, int64_t tag, int64_t mask, 
     return there;
 }
 
+/* 1: the receive was taken back; 0: its message is there or on its way into it. */
 static int call_cancel(struct comm *handle, struct mimdsim_request *r, const char *file, int line)
 {
     struct comm *c = at(handle, file, line);
@@ -234,6 +237,7 @@ static enum collective_kind kind_of(struct comm *c, int kind)
     return kinds[kind];
 }
 
+/* These have an operation and elements; all others move bytes. */
 static bool is_reduction(enum collective_kind kind)
 {
     return kind == COLLECTIVE_REDUCE || kind == COLLECTIVE_ALLREDUCE || kind == COLLECTIVE_SCAN;
@@ -374,6 +378,7 @@ static void *call_memory(struct comm *handle, int64_t bytes, const char *file, i
     return arena_take(rank_of(handle)->world->memory, (size_t)(bytes > 0 ? bytes : 1));
 }
 
+/* By number in the program's declaration, which its header names by an enumeration. */
 static void check_output(struct comm *handle, struct comm *c, int output)
 {
     const char *const *name = rank_of(handle)->declared->output;

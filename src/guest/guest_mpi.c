@@ -39,6 +39,8 @@ static size_t workspace_bytes(const void *job, int rank)
 
 /* --- what room mpi asks for ------------------------------------------------------------------- */
 
+/* Callbacks of MPI have up to six arguments, all of them words. The loader counts what
+ * they compute. */
 static intptr_t call_program(void *host, void (*function)(void), const intptr_t argument[6])
 {
     const struct guest_rank *g = host;
@@ -64,6 +66,7 @@ static _Noreturn void end_with(struct guest_rank *g, const char *what, int statu
     __builtin_unreachable();
 }
 
+/* MPI_Abort ends the run as failed, with its code as the exit status. */
 static void abort_run(void *host, int code) { end_with(host, "called MPI_Abort with code", code); }
 
 static void tell_place(void *host, const void *address, char *text, int size)
@@ -84,7 +87,8 @@ static void rank_run(struct comm *c, const void *job, void *workspace)
     struct mimdsim_host *host = loader_host(g->instance);
     host->mpi = &mpi_functions;
     host->mpi_rank = mpi_rank_create(m->world, c, g);
-    /* A program may change its arguments: each rank has its own. */
+    /* A program may change its arguments: each rank has its own. Copies lie in the run's
+     * memory and end with it. */
     struct arena *a = m->ranks.memory;
     char **argv = TAKE(a, m->argc + 1, char *);
     for (int i = 0; i < m->argc; i++) argv[i] = arena_text(a, m->argv[i]);
@@ -161,6 +165,7 @@ static bool mpi_prepare(struct program_run *r, struct arena *scratch, struct err
     m->job = m;
     r->job = &m->job;
     if (!guest_world_open(&m->ranks, &r->spec.machine.node, r->spec.nrank, e)) return false;
+    /* Rules of collectives come from the machine, by way of guest_world_open. */
     m->setup =
         (struct mpi_setup){.processor_name = node_name(&r->spec, scratch),
                            .rule = m->ranks.rule,

@@ -44,8 +44,8 @@ static bool find_unit(const char *name, enum unit *unit)
     return false;
 }
 
-/* A word that can stand in scenarios and in SQL. 31 letters, as columns of the database
- * have room for them; no letters beyond ASCII. */
+/* A word that can stand in scenarios and in SQL. At most 31 letters, digits
+ * and lines below. */
 static bool is_name(const char *s)
 {
     if (s == NULL || !isalpha((unsigned char)*s) || strlen(s) > 31) return false;
@@ -68,6 +68,7 @@ static const char *const *split_choices(const char *text, struct arena *a)
     return list;
 }
 
+/* A clause, because the caller puts file and parameter before it. */
 static bool clause(char *why, int size, const char *text)
 {
     snprintf(why, (size_t)size, "%s", text);
@@ -96,7 +97,8 @@ static const char *fallback_of(const struct mimdsim_parameter *p, const struct f
         v.choice = *(const int *)p->at;
         break;
     }
-    /* Printing looks a choice up by its number. */
+    /* Printing looks a choice up by its number. Also for a choice that the declaration
+     * initialises out of its range. */
     int n = 0;
     while (f->choice != NULL && f->choice[n] != NULL) n++;
     if (f->choice != NULL && (v.choice < 0 || v.choice >= n)) return NULL;
@@ -155,6 +157,7 @@ void guest_parameters_set(const struct mimdsim_program *p, const char *lines, st
         CHECK(guest_parameter_field(to, &f, a, why, (int)sizeof why));
         CHECK(field_set(&f, &v, text, a, why, (int)sizeof why));
         switch (to->kind) {
+        /* Written into this copy alone: every rank and every part has its own variables. */
         case MIMDSIM_WHOLE:
             *(int64_t *)to->at = v.whole;
             break;
@@ -173,6 +176,7 @@ void guest_parameters_set(const struct mimdsim_program *p, const char *lines, st
 
 /* --- declarations ----------------------------------------------------------------------------- */
 
+/* PROGRAM(...) of mimdsim/program.h makes this symbol; it points into the instance. */
 const struct mimdsim_program *guest_declared(const struct loader_instance *i)
 {
     return loader_symbol(i, "mimdsim_program");
@@ -206,8 +210,8 @@ static bool read_parameters(struct program_sheet *s, const struct mimdsim_progra
 static bool read_declaration(struct program_sheet *s, const struct mimdsim_program *p,
                              const char *path, struct arena *a, struct err *e)
 {
-    /* Magic and version first: without them the rest is not what it seems. A smaller
-     * struct is an older one, whose missing members are zero. */
+    /* Magic and version first: without them the rest is not what it seems. A larger
+     * struct is a newer one, of which this simulator does not know all. */
     if (p->magic != MIMDSIM_PROGRAM_MAGIC)
         return refuse(e, path, "mimdsim_program is no declaration; PROGRAM(...) makes one");
     if (p->abi != MIMDSIM_PROGRAM_ABI || p->size > sizeof *p)
@@ -245,6 +249,7 @@ static bool read_image(struct program_sheet *s, struct loader_template *t, const
                        struct arena *a, struct err *e)
 {
     static const struct loader_hooks none;
+    /* One copy with no hooks: nothing of it will run. */
     struct loader_instance *i = NULL;
     if (loader_reserve(t, 1, &none, e)) i = loader_instantiate(t, 0, NULL, e);
     if (i == NULL) return false;

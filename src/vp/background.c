@@ -28,8 +28,7 @@ static void pass(void *subject, uint64_t argument, sim_ps now)
     struct background *b = subject;
     struct world *w = b->world;
     /* Background must not keep a dead run alive: when nothing but background events is left, they
-     * end, too, and the deadlock is seen. */
-    /* all else is stuck */
+     * end, too, and the deadlock is seen. `alone`: all else is stuck. */
     bool alone = w->ready_count == 0 && sim_pending(w->sim) < w->background_events;
     w->background_events--;
     if (alone || w->nfinished == w->nrank || !net_occupy(w->net, b->link, now, b->busy)) return;

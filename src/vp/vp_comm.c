@@ -17,7 +17,7 @@ enum { BARRIER_TAG = 1 << 30 };
 
 /* Overhead and copying by the machine's segments (docs/network.md). Where one kernel
  * server serves the whole machine, the rank waits for its turn first and is busy for the
- * longer of the two. */
+ * longer of the two. The span covers waiting for the server, too. */
 static void charge_send(struct vp *v, const struct message *m)
 {
     const struct world *w = v->world;
@@ -72,6 +72,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
      * time, whichever way the host runs ranks. */
     m->net.id = (int64_t)v->comm.rank << 32 | v->sent++;
     m->sent = v->clock;
+    /* Counted at the sender, so that totals over ranks count each message once. */
     vp_stage_time(v)->messages++;
     vp_stage_time(v)->bytes += bytes;
     /* It is ready for the network when the sender's software has done its part. */
@@ -119,6 +120,7 @@ static void post(struct vp *v, struct comm_request *r)
     else r->posted_ps = v->clock, mailbox_post(v, r);
 }
 
+/* The size is exact: kernels know what they expect. */
 static void vp_irecv(struct comm *c, int src, int64_t tag, void *buffer, int64_t bytes, struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
@@ -161,6 +163,7 @@ static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask
 static void finish_receive(struct vp *v, struct comm_request *r)
 {
     struct message *m = r->detail;
+    /* The whole barrier is one span, whatever happens inside. */
     sim_ps begin = v->clock;
     vp_path_join(v, m->net.path);
     vp_wait_until(v, m->net.arrival, m->net.uncontended);
@@ -272,6 +275,8 @@ static inline void compute(struct vp *v, sim_ps cost, const struct work *work)
     if (w->record->spans) vp_span(v, SPAN_COMPUTE, begin, v->clock, -1, 0, -1);
 }
 
+/* Operations are counted by stage, and their time follows from the node's rates
+ * (machine/node_cost.h). */
 static void vp_work(struct comm *c, const struct work *work)
 {
     struct vp *v = (struct vp *)c;

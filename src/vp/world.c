@@ -1,4 +1,9 @@
-/* world.c - build a machine for one run, let its ranks go, collect what they did. */
+/* world.c - build a machine for one run, let its ranks go, collect what they did.
+ *
+ * Two memories: the result's arena, which the caller keeps, and the run's scratch, which
+ * ends with the run and with it every message and table. Stacks, event
+ * queue and path log are freed one by one. Everything is built anew for each run, so that
+ * no run can leave anything to the next one. */
 #include "vp/world.h"
 
 #include <stdlib.h>
@@ -20,6 +25,7 @@ enum { STACK_BYTES = 64 * 1024 };
 static void arrived(struct message *m)
 {
     switch ((enum message_kind)m->kind) {
+    /* Timed programs match by simulated time, all others by order alone. */
     case MESSAGE_EAGER:
     case MESSAGE_REQUEST_TO_SEND:
         if (m->to->matching) matching_deliver(m->to, m);
@@ -32,6 +38,7 @@ static void arrived(struct message *m)
     }
 }
 
+/* The network knows its own part of a message, which is the first member of ours. */
 static void deliver(void *context, struct net_message *m)
 {
     (void)context;
@@ -71,6 +78,8 @@ static void make_ranks(struct world *w, uint64_t seed)
         /* The stream depends on seed and rank alone. */
         if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
         v->fiber = fiber_start(w->fibers, i, rank_main, v);
+        /* Tables of matching only where they are used: at 65,536 ranks they would take
+         * memory for nothing. */
         if (w->load->timed) v->matching = matching_create(w);
     }
     /* All start at time 0; the host's order acts on no result. */
@@ -85,7 +94,9 @@ static inline struct vp *ready_ahead(const struct world *w, int ahead)
     return &w->vp[w->ready[at >= w->nrank ? at - w->nrank : at]];
 }
 
-/* With many ranks each lies cold in memory when its turn comes: the ring tells early enough who is next. */
+/* With many ranks each lies cold in memory when its turn comes: the ring tells early
+ * enough who is next. Six ahead the rank's state, three ahead its stack and request, one
+ * ahead its message: each is reached through the one before. */
 static inline void warm_up(const struct world *w)
 {
     const struct vp *far = ready_ahead(w, 6), *near = ready_ahead(w, 3);
@@ -127,6 +138,8 @@ static void loop(struct world *w)
 {
     unsigned quiet_events = PULSE_EVENTS;
     do {
+        /* All that can run without a further event runs; then one event is taken, which
+         * may wake others. */
         while (w->ready_count && !w->stopped) {
             warm_up(w);
             struct vp *v = &w->vp[w->ready[w->ready_head]];
@@ -158,7 +171,8 @@ static void collect(struct world *w)
 {
     struct run_result *r = w->result;
     uint64_t digest = digest_mix(DIGEST_START, sim_digest(w->sim));
-    /* Idle time at the end makes every rank's parts add up to the makespan. */
+    /* Idle time at the end makes every rank's parts add up to the makespan. The end of
+     * the run is the clock of the last rank, not the time of the last event. */
     for (int i = 0; i < w->nrank; i++) {
         const struct vp *v = &w->vp[i];
         r->finish_ps[i] = v->finish;
@@ -180,7 +194,8 @@ static void collect(struct world *w)
     r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
 }
 
-/* The critical path ends with the rank that ends last, the first of several. */
+/* The critical path ends with the rank that ends last, the first of several. Any of
+ * several that end together would do; the first makes it the same in each run. */
 static void trace_path(struct world *w)
 {
     struct run_result *r = w->result;
@@ -225,6 +240,7 @@ static bool build(struct world *w, struct err *e)
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
     net_set_in_order(w->net, w->eager_only);
+    /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
     w->fibers = fiber_pool_create(w->nrank, w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES, e);
     return w->fibers != NULL;
@@ -248,7 +264,8 @@ static void run(struct world *w, uint64_t seed)
         return;
     }
     /* One of three causes: the program failed, simulated time ended, or nobody can go on.
-     * A deadlock's times are kept, since they show who waited where. */
+     * A deadlock's times are kept, since they show who waited where. What an event or a
+     * rank would do beyond the end of time cannot be simulated, so such a run has failed. */
     const bool late = w->late || sim_beyond(w->sim), deadlock = !w->failed && !late;
     if (deadlock) deadlock_explain(w);
     else if (!w->failed) late_explain(w);
@@ -281,6 +298,7 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .software = software_cost_make(&m->software),
         .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
+        /* Then a node's messages come in order and the network may use fewer events. */
         .eager_only = (!load->timed || load->no_synchronous) && all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
