@@ -101,6 +101,9 @@ static void closing_reference(const struct scene *x, const struct closing *c, re
         }
         w->flop += (uint64_t)(l->c * (XFORM_FORCE_FLOP + BODY_ACCELERATE_FLOP + SCREW_DOT_FLOP + 1));
     }
+    /* A loop between the base and a massless body has no scale of its own (loops_reference). */
+    for (int k = 0; k < c->n; k++)
+        if (!(reference[k] > 0)) reference[k] = 1;
 }
 
 /* closed_forward: S = J M^-1 J^T column by column, lambda of least norm, then the open scene under the loops'

@@ -166,7 +166,7 @@ static bool add_ring(struct model *m, const struct model_spec *spec, struct err 
      * frames are the same, and the cut joint is at its zero, too. */
     struct loop_def loop = {.name = "closure", .body_a = floating ? 0 : -1, .body_b = n - 1};
     loop.joint = closing_joint(spec);
-    loop.alpha = loop.beta = spec->stabilisation;
+    loop.alpha = loop.beta = spec->stabilisation * m->second; /* a rate, in own units */
     loop.frame_b.p[0] = length;
     turn_z(loop.frame_b.quat, turn);
     return model_add_loop(m, &loop, e) >= 0;
@@ -188,7 +188,7 @@ static bool add_four_bar(struct model *m, const struct model_spec *spec, struct 
         if (model_add_body(m, &b, e) < 0) return false;
     }
     struct loop_def loop = {.name = "closure", .body_a = -1, .body_b = 2, .joint = JOINT_REVOLUTE};
-    loop.alpha = loop.beta = spec->stabilisation;
+    loop.alpha = loop.beta = spec->stabilisation * m->second; /* a rate, in own units */
     /* The rocker's tip is pinned to the far end of the ground. */
     loop.frame_a.p[0] = 1.5 * spec->length;
     loop.frame_b.p[0] = spec->length;

@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include <cmocka.h>
 
@@ -87,6 +88,42 @@ static void closed_chains_agree_too(void **state)
     }
     print_message("%d scenes, largest error %.1e\n", compared, error);
     assert_true(compared > 20 && error < 1e-9);
+}
+
+/* The loop joins the base and a body without mass, whose child has some: there is nothing to scale its equation by. */
+static void a_loop_on_a_massless_body_has_an_answer(void **state)
+{
+    (void)state;
+    struct arena *a = arena_create();
+    struct err e = {0};
+    struct model *m = model_begin(a, NULL);
+    for (int i = 0; i < 3; i++) {
+        struct body_def def = {.parent = i - 1, .joint = JOINT_REVOLUTE, .mass = i == 1 ? 0 : 1};
+        snprintf(def.name, sizeof def.name, "b%d", i);
+        def.axis[2] = 1;
+        def.placement.p[0] = i > 0;
+        def.placement.quat[3] = 1;
+        def.com[0] = i == 1 ? 0 : 0.5;
+        for (int k = 0; k < 6; k++) def.inertia[k] = i != 1 && (k == 0 || k == 3 || k == 5) ? 0.1 : 0;
+        assert_true(model_add_body(m, &def, &e) >= 0);
+    }
+    struct loop_def def = {.name = "closure", .body_a = -1, .body_b = 1, .joint = JOINT_REVOLUTE};
+    def.frame_a.quat[3] = def.frame_b.quat[3] = 1;
+    def.frame_a.p[0] = 1.5;
+    def.frame_b.p[0] = 0.5;
+    m->gravity[1] = -9.81;
+    if (model_add_loop(m, &def, &e) < 0 || !model_finish(m, true, &e)) fail_msg("%s", e.text);
+    const struct planar_options o = {.n = 3, .joint = JOINT_REVOLUTE, .seed = 1};
+    struct state *s = planar_state(&o, m, a);
+    memset(s->q, 0, (size_t)m->nq * sizeof *s->q);
+    double *x = TAKE(a, m->nu, double), *y = TAKE(a, m->nu, double);
+    struct work w = {0};
+    struct forward_report report = {0};
+    assert_true(planar_forward(m, s, a, x, &w));
+    assert_true(dynamics_type_of(PRECISION_DOUBLE)->forward(m, s, FORWARD_ABA, a, y, NULL, &report, &w));
+    for (int i = 0; i < m->nu; i++) assert_true(isfinite(x[i]));
+    assert_true(relative_error(m->nu, x, y) < 1e-9);
+    arena_destroy(a);
 }
 
 /* Operations of one body more in a chain of revolute joints, as counted by hand in planar_dynamics.c. */
@@ -206,6 +243,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(serial_codes_agree_with_the_spatial_ones),
         cmocka_unit_test(closed_chains_agree_too),
+        cmocka_unit_test(a_loop_on_a_massless_body_has_an_answer),
         cmocka_unit_test(each_body_costs_what_was_counted),
         cmocka_unit_test(planar_scenes_are_found),
         cmocka_unit_test(a_tilted_axis_leaves_the_plane),
