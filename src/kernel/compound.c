@@ -63,6 +63,7 @@ static bool soft_compliance(const struct joint_view *v, const real *Z, real *N, 
     dense_solve(SPACE, SPACE, G, inverse, w);
     pack(inverse, N, w);
     w->flop += (uint64_t)(v->s->d * 2 * PACKED);
+    w->div += (uint64_t)(v->s->d * PACKED);
     return true;
 }
 

@@ -133,6 +133,8 @@ static void merge(struct contraction *k, const struct tree_op *op, real *record)
         body_place(b, q, &pose);
         t->work.flop += (uint64_t)body_cost(b)->place;
         t->work.trig += (uint64_t)body_cost(b)->place_trig;
+        t->work.div += (uint64_t)body_cost(b)->place_div;
+        t->work.call++;
         joint = (struct joint_view){&pose.x, &pose.s, nactive ? active : NULL, nbias ? bias : NULL,
                                     spring_resistance(b, implicit_step(t->job))};
         below = compound_at(k->message, m);
