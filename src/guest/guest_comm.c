@@ -19,8 +19,8 @@
 #include "guest/guest_world.h"
 #include "program/program.h"
 
-/* Half of the 31 bits each, so that no receive with a mask can take a collective's
- * message. */
+/* Half of the tags of 31 bits each, so that no receive with a mask can take a
+ * collective's message. */
 enum { TAGS = 1 << 30 }; /* of programs: those from here on are the collectives' */
 
 _Static_assert(sizeof(struct comm_request) <= sizeof((struct mimdsim_request *)0)->reserved,

@@ -103,7 +103,7 @@ int mpi_win_set_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *a
 }
 
 /* The window's own attributes first: MPI_WIN_BASE is the address itself, the others are
- * pointers (section 12.2.7). */
+ * pointers (section 12.2.6). */
 int mpi_win_get_attr(struct mpi_rank *self, MPI_Win win, int win_keyval, void *attribute_val,
                      int *flag)
 {

@@ -5,7 +5,8 @@
  * Sections are those of chapter 6 of MPI 5.0. */
 #include "mpi/mpi_collective.h"
 
-/* What a started operation holds on to until it is completed for good. */
+/* What a started operation holds on to until it is completed for good. The communicator
+ * is held by the request itself. */
 static void hold(struct mpi_collective *x)
 {
     if (x->send_type) mpi_type_use(x->send_type);
@@ -25,6 +26,7 @@ static void release(struct mpi_rank *r, void *argument)
 static void run(struct mpi_rank *r, void *call)
 {
     const struct mpi_collective *x = call;
+    /* An intercommunicator has no topology, so the two cannot meet. */
     if (x->comm->remote) mpi_intercomm_run(r, x);
     else if (x->what >= WHAT_NEIGHBOR_ALLGATHER) mpi_neighbor_run(r, x);
     else mpi_collective_run(r, x);
@@ -70,6 +72,7 @@ static int operate(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
     /* The sequence is taken by the call and not when the operation runs: ranks may start
      * several, and these may go on in another order on each rank. */
     x->sequence = x->comm->sequence++;
+    /* A blocking call runs on the rank's own stack and needs no request. */
     if (start.mode == MPI_BLOCKING) {
         run(r, x);
         return MPI_SUCCESS;
@@ -115,6 +118,7 @@ int mpi_barrier(struct mpi_rank *self, struct mpi_start start, MPI_Comm comm)
     return operate(self, start, &x);
 }
 
+/* The buffer is `recv` on every rank: the root's holds what the others receive. */
 int mpi_bcast(struct mpi_rank *self, struct mpi_start start, void *buffer, MPI_Count count,
               MPI_Datatype datatype, int root, MPI_Comm comm)
 {
@@ -161,6 +165,7 @@ int mpi_gather(struct mpi_rank *self, struct mpi_start start, const void *sendbu
     return gather(self, start, &x, sendtype, recvtype, comm);
 }
 
+/* Counts and displacements are read at the root alone. */
 int mpi_gatherv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
                 MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf,
                 struct mpi_counts recvcounts, struct mpi_counts displs, MPI_Datatype recvtype,
@@ -199,6 +204,7 @@ int mpi_scatter(struct mpi_rank *self, struct mpi_start start, const void *sendb
     return scatter(self, start, &x, sendtype, recvtype, comm);
 }
 
+/* As MPI_Gatherv: `sendcounts` and `displs` mean something at the root alone. */
 int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
                  struct mpi_counts sendcounts, struct mpi_counts displs, MPI_Datatype sendtype,
                  void *recvbuf, MPI_Count recvcount, MPI_Datatype recvtype, int root, MPI_Comm comm)
@@ -214,7 +220,8 @@ int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *send
 /* --- everybody to everybody --- */
 
 /* MPI_IN_PLACE takes data and counts from the receiving side; what is given for the
- * sending side is not looked at. */
+ * sending side is not looked at. On an intercommunicator MPI_IN_PLACE has no meaning
+ * (section 6.2.3); programs do not use it there. */
 static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                      MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
@@ -320,6 +327,7 @@ int mpi_neighbor_alltoallw(struct mpi_rank *self, struct mpi_start start, const 
 static int combine(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
                    MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)
 {
+    /* Only the check of it is wanted here: the operation is made again where it runs. */
     struct mpi_reduction check;
     if (!comm_of(r, comm, x) || !type_of(r, datatype, &x->recv_type, x)) return r->code;
     x->op = mpi_op_of(r, op);

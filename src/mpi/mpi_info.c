@@ -7,6 +7,7 @@
 
 #include "mpi/mpi_internal.h"
 
+/* MPI_INFO_NULL is no info here: calls that accept it do not look at it. */
 static struct mpi_info *info_of(struct mpi_rank *r, MPI_Info handle)
 {
     struct mpi_info *i = mpi_object(r, handle, KIND_INFO);
@@ -56,6 +57,7 @@ static void put(struct mpi_rank *r, struct mpi_info *i, const char *key, const c
         (struct mpi_entry){mpi_take_text(r->world, key), mpi_take_text(r->world, value)};
 }
 
+/* Room comes with the first key. */
 int mpi_info_create(struct mpi_rank *self, MPI_Info *info)
 {
     struct mpi_info *i = mpi_take_zero(self->world, sizeof *i);
@@ -86,6 +88,8 @@ int mpi_info_delete(struct mpi_rank *self, MPI_Info info, const char *key)
     struct mpi_entry *e = i ? entry_of(i, key) : NULL;
     if (!i) return self->code;
     if (!e) return mpi_error(self, NULL, MPI_ERR_INFO_NOKEY, "there is no key '%s'", key);
+    /* A key that is not there is an error in this call alone; the others say so by a
+     * flag. */
     mpi_give(self->world, e->key);
     mpi_give(self->world, e->value);
     memmove(e, e + 1, (size_t)(i->entry + i->n - e - 1) * sizeof *e);
@@ -120,6 +124,7 @@ int mpi_info_get_string(struct mpi_rank *self, MPI_Info info, const char *key, i
     return MPI_SUCCESS;
 }
 
+/* Without the byte at the end, as in MPI_Info_get; also deprecated. */
 int mpi_info_get_valuelen(struct mpi_rank *self, MPI_Info info, const char *key, int *valuelen,
                           int *flag)
 {

@@ -218,7 +218,7 @@ int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int k
 }
 
 /* The low side comes first; of equals the one whose first rank of the world is the
- * smaller. Section 7.6.3. */
+ * smaller. Section 7.6.2. */
 int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI_Comm *newintracomm)
 {
     struct mpi_comm *c = mpi_comm_of(self, intercomm);

@@ -216,8 +216,8 @@ int mpi_pcontrol(struct mpi_rank *self, const int level)
 }
 
 /* Simulated time: the same clock for all ranks. Looking at it takes 20 ns, so that a
- * program that waits by looking goes on. That is what reading a clock register takes on
- * current processors; it is not a setting of the machine. */
+ * program that waits by looking goes on. Of the order of reading a clock on a current
+ * processor; not a setting of the machine. */
 enum { LOOK = 20000 /* [ps] */ };
 /* Seconds since the run began. 1e-12 is one tick, of which a double tells neighbours
  * apart for about two and a half hours. */

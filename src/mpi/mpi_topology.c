@@ -1,4 +1,7 @@
-/* mpi_topology.c - topologies as data: taken, copied, given back (mpi_topology.h). */
+/* mpi_topology.c - topologies as data: taken, copied, given back (mpi_topology.h).
+ *
+ * A communicator owns its topology. Any list may be NULL: kinds differ in which they
+ * have. */
 #include "mpi/mpi_topology.h"
 
 /* One element more than n, so that a list of none still has an address: NULL means that
@@ -10,6 +13,7 @@ int *mpi_topology_ints(struct mpi_rank *r, const int *from, int n)
                   (size_t)n * sizeof *from);
 }
 
+/* Zeroed, so that every list that the kind does not have is NULL. */
 struct mpi_topology *mpi_topology_take(struct mpi_rank *r, int kind)
 {
     struct mpi_topology *t = mpi_take_zero(r->world, sizeof *t);
@@ -17,6 +21,7 @@ struct mpi_topology *mpi_topology_take(struct mpi_rank *r, int kind)
     return t;
 }
 
+/* The communicator is about to end, too: its pointer is not cleared. */
 void mpi_topology_end(struct mpi_rank *r, struct mpi_comm *c)
 {
     struct mpi_topology *t = c->topology;

@@ -67,7 +67,8 @@ static void include_piece(struct bounds *b, const struct mpi_piece *p)
     include(b, p->at + last + end, p->of);
 }
 
-/* Whether piece i is one run of bytes from `at` on; the run's end in *end. */
+/* Whether piece i is one run of bytes from `at` on; the run's end in *end. A block of one
+ * type that is dense is itself a run; several are one if the stride is their length. */
 static bool is_run(const struct mpi_piece *p, int64_t *end)
 {
     if (!p->of->dense) return false;
@@ -88,6 +89,8 @@ void mpi_type_finish(struct mpi_type *t)
     bool run = true;
     t->size = t->basics = 0;
     t->align = 1;
+    /* Empty pieces count neither for bounds nor for runs (section 5.1.7 speaks of entries
+     * of the type map, and they have none). */
     for (int i = 0; i < t->npiece; i++) {
         const struct mpi_piece *p = &t->piece[i];
         int64_t n = p->count * p->length;
@@ -101,6 +104,7 @@ void mpi_type_finish(struct mpi_type *t)
         run = run && p->at == end && is_run(p, &next);
         if (run) end = next;
     }
+    /* A type without data has all bounds 0. */
     t->lb = b.low;
     t->extent = b.high - b.low;
     t->true_lb = b.true_low;
@@ -162,6 +166,7 @@ static struct mpi_type *one_piece(struct mpi_rank *r, int combiner, struct mpi_p
     return t;
 }
 
+/* One block of `count` elements, each an extent behind the last. */
 int mpi_type_contiguous(struct mpi_rank *self, MPI_Count count, MPI_Datatype oldtype,
                         MPI_Datatype *newtype)
 {
@@ -208,8 +213,8 @@ int mpi_type_hvector(struct mpi_rank *self, int count, int blocklength, MPI_Aint
     return vector(self, MPI_COMBINER_HVECTOR, count, blocklength, stride, oldtype, newtype);
 }
 
-/* The four kinds of indexed types: blocks of `length` or lengths[i] at places in elements or bytes.
- */
+/* The four kinds of indexed types: blocks of `length` or lengths[i] at places in elements
+ * or bytes. Displacements in elements become bytes here: pieces know bytes alone. */
 static int indexed(struct mpi_rank *r, int combiner, int64_t count, int64_t length,
                    struct mpi_counts lengths, struct mpi_counts places, MPI_Datatype oldtype,
                    MPI_Datatype *newtype)
@@ -336,6 +341,7 @@ int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Cou
     struct mpi_piece piece = {.count = 1, .length = 1, .of = of};
     struct mpi_type *t = one_piece(self, MPI_COMBINER_RESIZED, piece, 0, 2);
     t->address[0] = lb;
+    /* Whatever the bounds were, the program's count. True bounds stay those of the data. */
     t->address[1] = extent;
     mpi_type_finish(t);
     t->lb = lb;

@@ -4,8 +4,7 @@
  * Both are built from the fastest dimension outwards: runs of indices of a dimension are pieces of
  * the type below it, and the extent is that of the whole dimension.
  *
- * Sections 5.1.3 and 5.1.4 of MPI 5.0. The standard defines both as nested vectors and
- * resized types; one type for each dimension is the same tree with fewer levels. */
+ * Sections 5.1.3 and 5.1.4 of MPI 5.0. The standard defines both dimension by dimension, too. */
 #include "mpi/mpi_internal.h"
 
 /* Indices first .. first + length - 1, count times, each `stride` further; then a shorter rest. */

@@ -40,7 +40,8 @@ struct long_double_int {
 enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
 
 /* One run of bytes, dense and committed; constants without a number, so nobody counts or
- * frees them. */
+ * frees them. Alignment is the compiler's for the C type: structs are padded by it
+ * (mpi_type_finish). */
 #define BASIC(handle, type, class_, text)                                                          \
     [(int)(handle)-FIRST_TYPE] = {.o = {KIND_TYPE, -1, 1},                                         \
                                   .combiner = MPI_COMBINER_NAMED,                                  \
@@ -81,6 +82,7 @@ enum { FIRST_TYPE = 0x200, TYPES = 0x100 };
          .of = (struct mpi_type *)&basic[0x209 - FIRST_TYPE]}}
 
 static const struct mpi_type basic[TYPES];
+/* The number is the handle of the value's type; the index is an int (0x209). */
 PAIR_PIECES(CLASS_FLOAT_INT, struct float_int, 0x210);
 PAIR_PIECES(CLASS_DOUBLE_INT, struct double_int, 0x214);
 PAIR_PIECES(CLASS_LONG_INT, struct long_int, 0x20a);
@@ -105,12 +107,13 @@ typedef struct {
     _Float128 re, im;
 } quad_pair;
 
-/* CLASS_NONE: bytes can be moved, but no operation is defined, or the host has no
- * arithmetic for it. */
+/* CLASS_NONE: bytes can be moved, but no operation is defined, or the simulator has none
+ * for it. */
 static const struct mpi_type basic[TYPES] = {
     BASIC(0x201, MPI_Aint, CLASS_INT64, "MPI_AINT"),
     BASIC(0x202, MPI_Count, CLASS_INT64, "MPI_COUNT"),
     BASIC(0x203, MPI_Offset, CLASS_INT64, "MPI_OFFSET"),
+    /* MPI_PACKED counts bytes; what is in them only MPI_Unpack knows. */
     BASIC(0x207, char, CLASS_NONE, "MPI_PACKED"),
     BASIC(0x208, short, CLASS_INT16, "MPI_SHORT"),
     BASIC(0x209, int, CLASS_INT32, "MPI_INT"),
@@ -121,11 +124,14 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x20e, unsigned long, CLASS_UINT64, "MPI_UNSIGNED_LONG"),
     BASIC(0x20f, unsigned long long, CLASS_UINT64, "MPI_UNSIGNED_LONG_LONG"),
     BASIC(0x210, float, CLASS_FLOAT, "MPI_FLOAT"),
+    /* Types of C++ are those of C: both compilers lay complex numbers out alike. */
     BASIC(0x212, float _Complex, CLASS_COMPLEX_FLOAT, "MPI_C_FLOAT_COMPLEX"),
     BASIC(0x213, float _Complex, CLASS_COMPLEX_FLOAT, "MPI_CXX_FLOAT_COMPLEX"),
     BASIC(0x214, double, CLASS_DOUBLE, "MPI_DOUBLE"),
     BASIC(0x216, double _Complex, CLASS_COMPLEX_DOUBLE, "MPI_C_DOUBLE_COMPLEX"),
     BASIC(0x217, double _Complex, CLASS_COMPLEX_DOUBLE, "MPI_CXX_DOUBLE_COMPLEX"),
+    /* Fortran's default kinds: a LOGICAL is as wide as an INTEGER, and any value but 0 is
+     * taken as true. */
     BASIC(0x218, int32_t, CLASS_LOGICAL32, "MPI_LOGICAL"),
     BASIC(0x219, int32_t, CLASS_INT32, "MPI_INTEGER"),
     BASIC(0x21a, float, CLASS_FLOAT, "MPI_REAL"),
@@ -136,6 +142,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x220, long double, CLASS_LONG_DOUBLE, "MPI_LONG_DOUBLE"),
     BASIC(0x224, long double _Complex, CLASS_COMPLEX_LONG_DOUBLE, "MPI_C_LONG_DOUBLE_COMPLEX"),
     BASIC(0x225, long double _Complex, CLASS_COMPLEX_LONG_DOUBLE, "MPI_CXX_LONG_DOUBLE_COMPLEX"),
+    /* The gap is there where the value is wider than an int or narrower. */
     PAIR(0x228, struct float_int, CLASS_FLOAT_INT, "MPI_FLOAT_INT", float, 0),
     PAIR(0x229, struct double_int, CLASS_DOUBLE_INT, "MPI_DOUBLE_INT", double, 1),
     PAIR(0x22a, struct long_int, CLASS_LONG_INT, "MPI_LONG_INT", long, 1),
@@ -154,6 +161,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x243, char, CLASS_INT8, "MPI_CHAR"),
     BASIC(0x244, signed char, CLASS_INT8, "MPI_SIGNED_CHAR"),
     BASIC(0x245, unsigned char, CLASS_UINT8, "MPI_UNSIGNED_CHAR"),
+    /* Bytes have bit operations and no others (section 6.9.2). */
     BASIC(0x247, char, CLASS_BYTE, "MPI_BYTE"),
     BASIC(0x248, int16_t, CLASS_INT16, "MPI_INT16_T"),
     BASIC(0x249, uint16_t, CLASS_UINT16, "MPI_UINT16_T"),
@@ -161,6 +169,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x251, uint32_t, CLASS_UINT32, "MPI_UINT32_T"),
     BASIC(0x258, int64_t, CLASS_INT64, "MPI_INT64_T"),
     BASIC(0x259, uint64_t, CLASS_UINT64, "MPI_UINT64_T"),
+    /* Types of Fortran with their sizes in bytes in the name. */
     BASIC(0x2c0, int8_t, CLASS_LOGICAL8, "MPI_LOGICAL1"),
     BASIC(0x2c1, int8_t, CLASS_INT8, "MPI_INTEGER1"),
     BASIC(0x2c8, int16_t, CLASS_LOGICAL16, "MPI_LOGICAL2"),

@@ -15,6 +15,7 @@ int mpi_type_size(struct mpi_rank *self, MPI_Datatype datatype, MPI_Count *size)
     return MPI_SUCCESS;
 }
 
+/* The forms with _x are of MPI 3.0; counts are 64 bits wide in all of ours. */
 int mpi_type_size_x(struct mpi_rank *self, MPI_Datatype datatype, MPI_Count *size)
 {
     return mpi_type_size(self, datatype, size);
@@ -68,6 +69,7 @@ int mpi_type_lb(struct mpi_rank *self, MPI_Datatype datatype, MPI_Aint *displace
     return mpi_type_get_extent(self, datatype, displacement, &extent);
 }
 
+/* The upper bound is one behind the last byte of the extent. */
 int mpi_type_ub(struct mpi_rank *self, MPI_Datatype datatype, MPI_Aint *displacement)
 {
     struct mpi_type *t = mpi_type_of(self, datatype);
@@ -83,6 +85,7 @@ static int told_types(const struct mpi_type *t)
     return array ? 1 : t->ntype;
 }
 
+/* Sizes of the arrays that MPI_Type_get_contents fills. */
 int mpi_type_get_envelope(struct mpi_rank *self, MPI_Datatype datatype, int *num_integers,
                           int *num_addresses, int *num_datatypes, int *combiner)
 {
@@ -114,6 +117,7 @@ int mpi_type_get_contents(struct mpi_rank *self, MPI_Datatype datatype, int max_
     struct mpi_type *t = mpi_type_of(self, datatype);
     if (!t) return self->code;
     if (mpi_type_is_basic(t))
+        /* Section 5.1.13 forbids the call for named types. */
         return mpi_error(self, NULL, MPI_ERR_TYPE, "%s is not made of others", t->name);
     if (max_integers < t->ninteger || max_addresses < t->naddress || max_datatypes < told_types(t))
         return mpi_error(self, NULL, MPI_ERR_ARG,
@@ -136,6 +140,7 @@ int mpi_type_get_name(struct mpi_rank *self, MPI_Datatype datatype, char *type_n
     return MPI_SUCCESS;
 }
 
+/* Also of basic types, whose names this changes for the rank alone. */
 int mpi_type_set_name(struct mpi_rank *self, MPI_Datatype datatype, const char *type_name)
 {
     struct mpi_type *t = mpi_type_of(self, datatype);
@@ -178,6 +183,7 @@ int mpi_type_create_f90_real(struct mpi_rank *self, int p, int r, MPI_Datatype *
     return MPI_SUCCESS;
 }
 
+/* As for reals, two of which make a complex number. */
 int mpi_type_create_f90_complex(struct mpi_rank *self, int p, int r, MPI_Datatype *newtype)
 {
     if (p == MPI_UNDEFINED) p = 0;

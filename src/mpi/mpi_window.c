@@ -190,7 +190,7 @@ int mpi_win_get_group(struct mpi_rank *self, MPI_Win win, MPI_Group *group)
     return MPI_SUCCESS;
 }
 
-/* Section 12.2.7: pointers to the values, but for the base, which is the address itself
+/* Section 12.2.6: pointers to the values, but for the base, which is the address itself
  * and may be NULL. */
 bool mpi_window_attribute(struct mpi_window *w, int keyval, void *value)
 {

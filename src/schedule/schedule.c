@@ -46,8 +46,7 @@ int64_t schedule_add_op(struct schedule_builder *b, const struct schedule_op *op
 
 bool schedule_add_dependency(struct schedule_builder *b, int64_t op, int64_t on, bool start)
 {
-    /* More would not fit into memory that such a file could be run in; the reader says so
-     * by line. */
+    /* Twice as many as operations; beyond that readers refuse the file. */
     if (b->ndependency == 2 * (int64_t)SCHEDULE_MOST_OPERATIONS) return false;
     if (b->ndependency == b->dependency_capacity)
         b->dependency = grown(b->dependency, &b->dependency_capacity, sizeof *b->dependency);

@@ -84,7 +84,7 @@ struct candidates {
     sim_ps time;         /* when it is */
 };
 
-/* Requests are few here: rooms that have thousands under way use vp_watch. */
+/* O(n) for each look; vp_watch is for thousands of requests. */
 static struct candidates survey(int n, struct comm_request *const *r)
 {
     struct candidates s = {0, 0, -1, SIM_NEVER};
