@@ -130,41 +130,40 @@ static int source_of(struct mpi_rank *r, const struct mpi_request *q)
     return mpi_group_find(r, q->comm->remote ? q->comm->remote : q->comm->group, q->q.peer);
 }
 
+/* mpi_message_status: what a complete message tells, also when it is only looked at. */
+void mpi_message_status(struct mpi_rank *r, const struct mpi_request *q, MPI_Status *status)
+{
+    /* A send has nothing to tell, and a message from nobody comes from there. */
+    if (q->cancelled || q->what == REQUEST_SEND)
+        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+    else if (q->peer == MPI_PROC_NULL) mpi_status_set(status, MPI_PROC_NULL, MPI_ANY_TAG, 0);
+    else
+        mpi_status_set(status, source_of(r, q), (int)(q->q.tag & 0xffffffff),
+                       q->q.truncated ? q->room : q->q.bytes);
+    /* The third internal word is what MPI_Test_cancelled reads (mpi_status.c). */
+    if (q->cancelled && status) status->MPI_internal[2] = 1;
+}
+
 /* mpi_message_finish: the message is there: unpack it, tell its status, or that it was too long. */
 int mpi_message_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status)
 {
-    /* The third internal word is what MPI_Test_cancelled reads (mpi_status.c). */
-    if (q->cancelled) {
-        mpi_give(r->world, q->staging);
-        /* An empty status, section 3.7.3: a send has nothing to tell. */
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
-        if (status) status->MPI_internal[2] = 1;
-        return MPI_SUCCESS;
-    }
-    if (q->what == REQUEST_SEND) {
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
-        return MPI_SUCCESS;
-    }
-    if (q->peer == MPI_PROC_NULL) {
-        mpi_status_set(status, MPI_PROC_NULL, MPI_ANY_TAG, 0);
-        return MPI_SUCCESS;
-    }
-    /* What does not fit is cut: bytes that are there are delivered, and the error says
-     * the rest. */
-    int64_t bytes = q->q.truncated ? q->room : q->q.bytes;
-    int source = source_of(r, q), tag = (int)(q->q.tag & 0xffffffff);
+    mpi_message_status(r, q, status);
+    if (q->cancelled) mpi_give(r->world, q->staging);
+    if (q->cancelled || q->what == REQUEST_SEND || q->peer == MPI_PROC_NULL) return MPI_SUCCESS;
     /* A message may be shorter than the type has room for: unpacking stops where the
-     * bytes end. */
+     * bytes end. What does not fit is cut: bytes that are there are delivered, and the
+     * error says the rest. */
     if (q->staging) {
+        int64_t bytes = q->q.truncated ? q->room : q->q.bytes;
         mpi_unpack_bytes((void *)(uintptr_t)q->buffer, q->staging, bytes, q->count, q->type);
         mpi_charge_copy(r, bytes);
         mpi_give(r->world, q->staging);
         q->staging = NULL;
     }
-    mpi_status_set(status, source, tag, bytes);
     if (!q->q.truncated) return MPI_SUCCESS;
     return mpi_error(r, q->comm, MPI_ERR_TRUNCATE,
                      "the message of %lld bytes from rank %d with tag %d is longer "
                      "than the buffer of %lld",
-                     (long long)q->q.bytes, source, tag, (long long)q->room);
+                     (long long)q->q.bytes, source_of(r, q), (int)(q->q.tag & 0xffffffff),
+                     (long long)q->room);
 }

@@ -3,7 +3,8 @@
 #ifndef MPI_MPI_REQUEST_H
 #define MPI_MPI_REQUEST_H
 
-/* --- mpi_message.c: check: arguments into *q; begin: send or post; finish: unpack and tell --- */
+/* --- mpi_message.c: check: arguments into *q; begin: send or post; finish: unpack and tell;
+ * status: tell alone --- */
 struct mpi_message {
     enum mpi_mode mode;
     bool receive;
@@ -15,9 +16,11 @@ struct mpi_message {
 };
 int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_message m);
 int mpi_message_begin(struct mpi_rank *r, struct mpi_request *q);
+void mpi_message_status(struct mpi_rank *r, const struct mpi_request *q, MPI_Status *status);
 int mpi_message_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Status *status);
 void *mpi_receive_room(struct mpi_rank *r, struct mpi_request *q);
 void mpi_status_set(MPI_Status *s, int source, int tag, int64_t bytes);
+void mpi_status_empty(MPI_Status *s);
 
 /* --- mpi_request.c, mpi_wait.c: poll: the first that is ready after a look, -1 --- */
 struct mpi_request *mpi_request_make(struct mpi_rank *r, enum mpi_request_kind what);

@@ -15,6 +15,13 @@ void mpi_status_set(MPI_Status *s, int source, int tag, int64_t bytes)
     s->MPI_internal[2] = 0;
 }
 
+/* Section 3.7.3: what null and inactive requests tell. Here the error field is told, too. */
+void mpi_status_empty(MPI_Status *s)
+{
+    mpi_status_set(s, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+    if (s) s->MPI_ERROR = MPI_SUCCESS;
+}
+
 /* By memcpy: the internal words are ints and may lie on a boundary of four bytes. */
 static int64_t bytes_of(const MPI_Status *s)
 {

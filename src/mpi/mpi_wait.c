@@ -107,13 +107,13 @@ static void wait_one(struct mpi_rank *r, struct mpi_request *q)
 int mpi_wait(struct mpi_rank *self, MPI_Request *request, MPI_Status *status)
 {
     if (*request == MPI_REQUEST_NULL) {
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        mpi_status_empty(status);
         return MPI_SUCCESS;
     }
     struct mpi_request *q = mpi_request_of(self, *request);
     if (!q) return self->code;
     if (!q->active) {
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        mpi_status_empty(status);
         return MPI_SUCCESS;
     }
     wait_one(self, q);
@@ -125,13 +125,13 @@ int mpi_test(struct mpi_rank *self, MPI_Request *request, int *flag, MPI_Status 
 {
     *flag = 1;
     if (*request == MPI_REQUEST_NULL) {
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        mpi_status_empty(status);
         return MPI_SUCCESS;
     }
     struct mpi_request *q = mpi_request_of(self, *request);
     if (!q) return self->code;
     if (!q->active) {
-        mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        mpi_status_empty(status);
         return MPI_SUCCESS;
     }
     *flag = mpi_poll(self, 1, &q) >= 0;
@@ -152,7 +152,7 @@ static int finish_all(struct mpi_rank *r, struct set *s, MPI_Request *handle, MP
         MPI_Status *own = status ? &status[i] : MPI_STATUS_IGNORE;
         int one = MPI_SUCCESS;
         if (s->q[i]) one = mpi_request_finish(r, s->q[i], &handle[i], own);
-        else mpi_status_set(own, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+        else mpi_status_empty(own);
         if (own) own->MPI_ERROR = one;
         if (one != MPI_SUCCESS) code = MPI_ERR_IN_STATUS;
     }
@@ -208,7 +208,7 @@ static int finish_any(struct mpi_rank *r, struct set *s, int found, MPI_Request 
 {
     *index = found < 0 ? MPI_UNDEFINED : found;
     if (found >= 0) return mpi_request_finish(r, s->q[found], &handle[found], status);
-    mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+    mpi_status_empty(status);
     return MPI_SUCCESS;
 }
 
@@ -297,21 +297,15 @@ int mpi_request_get_status(struct mpi_rank *self, MPI_Request request, int *flag
                            MPI_Status *status)
 {
     *flag = 1;
-    mpi_status_set(status, MPI_ANY_SOURCE, MPI_ANY_TAG, 0);
+    mpi_status_empty(status);
     if (request == MPI_REQUEST_NULL) return MPI_SUCCESS;
     struct mpi_request *q = mpi_request_of(self, request);
     if (!q) return self->code;
     if (!q->active) return MPI_SUCCESS;
     *flag = mpi_poll(self, 1, &q) >= 0;
-    /* What the status will be, without completing the request. The same words as
-     * mpi_message_finish would set. */
-    if (*flag && q->what == REQUEST_RECEIVE && !q->cancelled && q->peer != MPI_PROC_NULL) {
-        int source =
-            q->peer != MPI_ANY_SOURCE ? q->peer : mpi_group_find(self, q->comm->group, q->q.peer);
-        mpi_status_set(status, source, (int)(q->q.tag & 0xffffffff),
-                       q->q.truncated ? q->room : q->q.bytes);
-    }
-    if (*flag && q->cancelled && status) status->MPI_internal[2] = 1;
+    /* What its completion will tell, without completing it. */
+    if (*flag && (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE))
+        mpi_message_status(self, q, status);
     if (*flag && q->what == REQUEST_GENERAL && status) {
         void *const *f = q->argument;
         return (int)mpi_call_program(self, f[0], (intptr_t[6]){(intptr_t)f[3], (intptr_t)status});

@@ -261,6 +261,79 @@ static void requests_of_the_program_complete(void **state)
     assert_int_equal(freed, 10);
 }
 
+/* --- statuses --- */
+
+static void assert_empty(const MPI_Status *s)
+{
+    int count;
+    MPI_Get_count(s, MPI_INT, &count);
+    assert_true(s->MPI_SOURCE == MPI_ANY_SOURCE && s->MPI_TAG == MPI_ANY_TAG);
+    assert_true(s->MPI_ERROR == MPI_SUCCESS && count == 0);
+}
+
+/* What is not there has an empty status, its error field included (section 3.7.3). */
+static void nothing(void *context)
+{
+    MPI_Request none = MPI_REQUEST_NULL, idle;
+    MPI_Status s;
+    int flag, index, data = 0;
+    (void)context;
+    memset(&s, 0x55, sizeof s);
+    MPI_Request_get_status(none, &flag, &s);
+    assert_true(flag);
+    assert_empty(&s);
+    memset(&s, 0x55, sizeof s);
+    MPI_Wait(&none, &s);
+    assert_empty(&s);
+    memset(&s, 0x55, sizeof s);
+    MPI_Waitany(1, &none, &index, &s);
+    assert_int_equal(index, MPI_UNDEFINED);
+    assert_empty(&s);
+    MPI_Recv_init(&data, 1, MPI_INT, 0, 0, MPI_COMM_WORLD, &idle);
+    memset(&s, 0x55, sizeof s);
+    MPI_Test(&idle, &flag, &s);
+    assert_true(flag);
+    assert_empty(&s);
+    MPI_Request_free(&idle);
+}
+
+/* A look at a request tells what its completion will: of a receive from nobody, and of one from any
+ * rank of the other side, whose ranks are not those of the world. */
+static void looks(void *context)
+{
+    int rank = own_rank(), side = rank / 2, data = rank, flag = 0;
+    MPI_Comm half, inter;
+    MPI_Request q;
+    MPI_Status seen, told;
+    (void)context;
+    MPI_Irecv(&data, 1, MPI_INT, MPI_PROC_NULL, 3, MPI_COMM_WORLD, &q);
+    MPI_Request_get_status(q, &flag, &seen);
+    assert_true(flag && seen.MPI_SOURCE == MPI_PROC_NULL);
+    MPI_Wait(&q, &told);
+    assert_int_equal(told.MPI_SOURCE, MPI_PROC_NULL);
+    MPI_Comm_split(MPI_COMM_WORLD, side, rank, &half);
+    MPI_Intercomm_create(half, 0, MPI_COMM_WORLD, side ? 0 : 2, 3, &inter);
+    data = rank;
+    if (side == 1) MPI_Send(&data, 1, MPI_INT, 1 - rank % 2, rank, inter);
+    else {
+        MPI_Irecv(&data, 1, MPI_INT, MPI_ANY_SOURCE, MPI_ANY_TAG, inter, &q);
+        while (flag = 0, MPI_Request_get_status(q, &flag, &seen), !flag) continue;
+        MPI_Wait(&q, &told);
+        assert_int_equal(told.MPI_SOURCE, 1 - rank);
+        assert_true(seen.MPI_SOURCE == told.MPI_SOURCE && seen.MPI_TAG == told.MPI_TAG);
+        assert_true(told.MPI_TAG == 3 - rank && data == 3 - rank);
+    }
+    MPI_Comm_free(&inter);
+    MPI_Comm_free(&half);
+}
+
+static void statuses_tell_what_happened(void **state)
+{
+    (void)state;
+    mpi_ok(1, nothing, NULL);
+    mpi_ok(4, looks, NULL);
+}
+
 /* --- time --- */
 
 static void clocks(void *context)
@@ -292,6 +365,7 @@ int main(void)
         cmocka_unit_test(wildcards_and_probes_find_everything_in_order),
         cmocka_unit_test(exchanges_and_cancels_do_as_the_standard_says),
         cmocka_unit_test(requests_of_the_program_complete),
+        cmocka_unit_test(statuses_tell_what_happened),
         cmocka_unit_test(time_is_simulated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
