@@ -46,8 +46,8 @@ struct mpi_part {
 };
 
 /* mpi_exchange: post all receives, send everything, wait. Ranks MPI_PROC_NULL are left out. */
-void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin,
-                  const struct mpi_part *in, int nout, const struct mpi_part *out);
+void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin, const struct mpi_part *in,
+                  int nout, const struct mpi_part *out);
 
 /* mpi_collective_run: a checked call to its end, on whichever stack. mpi_collective_now: the same
  * with the next sequence of its communicator. */
@@ -58,14 +58,17 @@ void mpi_collective_now(struct mpi_rank *r, struct mpi_collective *x);
 void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x);
 void mpi_intercomm_run(struct mpi_rank *r, const struct mpi_collective *x);
 
+/* mpi_block_type: of a block in an operation with a type for each; the run ends if it is gone. */
+struct mpi_type *mpi_block_type(struct mpi_rank *r, MPI_Datatype handle, int64_t count);
+
+/* mpi_neighbor_edges: how many blocks a rank of a topology receives and sends. */
+void mpi_neighbor_edges(struct mpi_rank *r, const struct mpi_comm *c, int *nin, int *nout);
+
 /* mpi_collective_call: by the algorithm that the machine's rules choose; `irregular` where only the
  * root has counts. */
 void mpi_collective_call(struct mpi_rank *r, struct collective_call *k, bool irregular);
 
 /* mpi_collective_tag: where the tags of a communicator's operation begin. */
-static inline int mpi_collective_tag(unsigned sequence)
-{
-    return (int)(sequence % (1u << 25)) * COLLECTIVE_TAGS;
-}
+static inline int mpi_collective_tag(unsigned sequence) { return (int)(sequence % (1u << 25)) * COLLECTIVE_TAGS; }
 
 #endif

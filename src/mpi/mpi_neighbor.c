@@ -11,6 +11,15 @@ struct neighbours {
     int nin, nout, *in, *out;
 };
 
+void mpi_neighbor_edges(struct mpi_rank *r, const struct mpi_comm *c, int *nin, int *nout)
+{
+    const struct mpi_topology *t = c->topology;
+    if (!t) mpi_fail(r, "the communicator has no topology");
+    if (t->kind == MPI_CART) *nin = *nout = 2 * t->ndim;
+    else if (t->kind == MPI_DIST_GRAPH) *nin = t->nin, *nout = t->nout;
+    else *nin = *nout = t->index[c->rank] - (c->rank ? t->index[c->rank - 1] : 0);
+}
+
 /* Of a grid: in each dimension the one before, then the one behind. Of a graph: both ways
  * the same. MPI_PROC_NULL beyond the edge of a grid keeps its block: the place in the
  * program's buffers stays, and nothing is sent (section 8.6.1). */
@@ -18,10 +27,7 @@ static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm
 {
     const struct mpi_topology *t = c->topology;
     struct neighbours n = {0};
-    if (!t) mpi_fail(r, "the communicator has no topology");
-    if (t->kind == MPI_CART) n.nin = n.nout = 2 * t->ndim;
-    else if (t->kind == MPI_DIST_GRAPH) n.nin = t->nin, n.nout = t->nout;
-    else n.nin = n.nout = t->index[c->rank] - (c->rank ? t->index[c->rank - 1] : 0);
+    mpi_neighbor_edges(r, c, &n.nin, &n.nout);
     /* One block for both lists; whoever asked gives it back. */
     n.in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *n.in);
     n.out = n.in + n.nin;
@@ -34,8 +40,7 @@ static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm
     return n;
 }
 
-static struct mpi_part part(int peer, void *buffer, int64_t place, int64_t count,
-                            struct mpi_type *t)
+static struct mpi_part part(int peer, void *buffer, int64_t place, int64_t count, struct mpi_type *t)
 {
     return (struct mpi_part){peer, (char *)buffer + place, count, t};
 }
@@ -46,7 +51,7 @@ static struct mpi_part in_part(struct mpi_rank *r, const struct mpi_collective *
     int64_t count = x->recv_counts.at ? mpi_count_at(x->recv_counts, i) : x->recv_count;
     int64_t place = x->recv_places.at ? mpi_count_at(x->recv_places, i) : i * x->recv_count;
     if (x->what == WHAT_NEIGHBOR_ALLTOALLW)
-        return part(peer, x->recv, place, count, mpi_type_of(r, x->recv_types[i]));
+        return part(peer, x->recv, place, count, mpi_block_type(r, x->recv_types[i], count));
     return part(peer, x->recv, place * x->recv_type->extent, count, x->recv_type);
 }
 
@@ -58,7 +63,7 @@ static struct mpi_part out_part(struct mpi_rank *r, const struct mpi_collective 
     int64_t count = x->send_counts.at ? mpi_count_at(x->send_counts, i) : x->send_count;
     int64_t place = x->send_places.at ? mpi_count_at(x->send_places, i) : i * x->send_count;
     if (x->what == WHAT_NEIGHBOR_ALLTOALLW)
-        return part(peer, send, place, count, mpi_type_of(r, x->send_types[i]));
+        return part(peer, send, place, count, mpi_block_type(r, x->send_types[i], count));
     return part(peer, send, place * x->send_type->extent, count, x->send_type);
 }
 
@@ -77,8 +82,7 @@ static void order_grid(int n, struct mpi_part *part)
 void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct neighbours n = neighbours_of(r, x->comm);
-    struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in),
-                    *out = in + n.nin;
+    struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in), *out = in + n.nin;
     /* Blocks are numbered by edge, not by rank: several edges may lead to one rank. */
     for (int i = 0; i < n.nin; i++) in[i] = in_part(r, x, n.in[i], i);
     for (int i = 0; i < n.nout; i++) out[i] = out_part(r, x, n.out[i], i);
