@@ -87,7 +87,8 @@ static void side_end(struct mpi_rank *r, const struct blocks *b, struct side *s,
  * only read. */
 static struct blocks send_blocks(const struct mpi_collective *x, int n)
 {
-    return (struct blocks){n, (void *)(uintptr_t)x->send, x->send_count, x->send_type, x->send_counts, x->send_places};
+    return (struct blocks){
+        n, (void *)(uintptr_t)x->send, x->send_count, x->send_type, x->send_counts, x->send_places};
 }
 static struct blocks recv_blocks(const struct mpi_collective *x, int n)
 {
@@ -96,9 +97,11 @@ static struct blocks recv_blocks(const struct mpi_collective *x, int n)
 
 /* The channel counts ranks of the communicator, so that the algorithm never sees ranks of
  * the world. */
-static struct collective_call call_of(const struct mpi_collective *x, enum collective_kind kind, unsigned sequence)
+static struct collective_call call_of(const struct mpi_collective *x, enum collective_kind kind,
+                                      unsigned sequence)
 {
-    struct collective_call k = {.kind = kind, .comm = &x->comm->channel.comm, .root = x->root, .element = 1};
+    struct collective_call k = {
+        .kind = kind, .comm = &x->comm->channel.comm, .root = x->root, .element = 1};
     k.tag = mpi_collective_tag(sequence);
     return k;
 }
@@ -121,9 +124,11 @@ static void broadcast(struct mpi_rank *r, const struct mpi_collective *x, unsign
 }
 
 /* One block from each; the root has them all. MPI_IN_PLACE: the root's lies where it belongs. */
-static void gather(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence, bool everywhere)
+static void gather(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence,
+                   bool everywhere)
 {
-    struct collective_call k = call_of(x, everywhere ? COLLECTIVE_ALLGATHER : COLLECTIVE_GATHER, sequence);
+    struct collective_call k =
+        call_of(x, everywhere ? COLLECTIVE_ALLGATHER : COLLECTIVE_GATHER, sequence);
     /* With MPI_IN_PLACE the own block is among those received. In packed form it must be
      * brought there first, and must not be written back over itself. */
     bool all = everywhere || x->comm->rank == x->root, place = x->send == MPI_IN_PLACE;
@@ -138,7 +143,8 @@ static void gather(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
     k.counts = to.size;
     k.places = to.place;
     k.count = !place ? from.each : to.size ? to.size[x->comm->rank] : to.each;
-    k.send = !place ? from.at : to.at + (to.place ? to.place[x->comm->rank] : to.each * x->comm->rank);
+    k.send =
+        !place ? from.at : to.at + (to.place ? to.place[x->comm->rank] : to.each * x->comm->rank);
     mpi_collective_call(r, &k, x->recv_places.at != NULL);
     if (!place) side_end(r, &out, &from, false, -1);
     if (all) side_end(r, &in, &to, true, place ? x->comm->rank : -1);
@@ -170,7 +176,8 @@ static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigne
 {
     struct collective_call k = call_of(x, COLLECTIVE_ALLTOALL, sequence);
     bool place = x->send == MPI_IN_PLACE;
-    struct blocks in = recv_blocks(x, x->comm->size), out = place ? in : send_blocks(x, x->comm->size);
+    struct blocks in = recv_blocks(x, x->comm->size),
+                  out = place ? in : send_blocks(x, x->comm->size);
     struct side from, to;
     side_make(r, &in, &to, false);
     side_make(r, &out, &from, true);
@@ -203,8 +210,8 @@ static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigne
 /* Elements cannot be cut: the algorithm moves whole ones of `element` bytes, from the
  * type's first byte on (true lower bound). Types stay as they lie, without packing,
  * because the operation expects them so. */
-static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence, enum collective_kind kind,
-                   bool exclusive)
+static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence,
+                   enum collective_kind kind, bool exclusive)
 {
     struct collective_call k = call_of(x, kind, sequence);
     struct mpi_reduction op;
@@ -249,7 +256,8 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x, u
     /* in place: the result would overwrite what is still to be combined */
     void *copy = NULL;
     if (x->send == MPI_IN_PLACE) {
-        copy = memcpy(mpi_take(r->world, total * k.element + 1), k.recv, (size_t)(total * k.element));
+        copy =
+            memcpy(mpi_take(r->world, total * k.element + 1), k.recv, (size_t)(total * k.element));
         k.send = copy;
         mpi_charge_copy(r, total * k.element);
     }
@@ -284,12 +292,13 @@ static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsign
     for (int d = 0; d < size; d++) {
         int from = (rank - d + size) % size, to = (rank + d) % size;
         in[d] = (struct mpi_part){from, (char *)x->recv + mpi_count_at(x->recv_places, from),
-                                  mpi_count_at(x->recv_counts, from),
-                                  mpi_block_type(r, x->recv_types[from], mpi_count_at(x->recv_counts, from))};
+                                  mpi_count_at(x->recv_counts, from), NULL};
+        in[d].type = mpi_block_type(r, x->recv_types[from], in[d].count);
         if (!place) {
-            out[d] = (struct mpi_part){to, (char *)(uintptr_t)x->send + mpi_count_at(x->send_places, to),
-                                       mpi_count_at(x->send_counts, to),
-                                       mpi_block_type(r, x->send_types[to], mpi_count_at(x->send_counts, to))};
+            out[d] = (struct mpi_part){
+                to, (char *)(uintptr_t)x->send + mpi_count_at(x->send_places, to),
+                mpi_count_at(x->send_counts, to),
+                mpi_block_type(r, x->send_types[to], mpi_count_at(x->send_counts, to))};
             continue;
         }
         /* In place: the block for `to` is what the program has in the place of what comes
@@ -302,7 +311,8 @@ static void alltoallw(struct mpi_rank *r, const struct mpi_collective *x, unsign
         out[d] = (struct mpi_part){to, copy[d], bytes, mpi_type_basic(MPI_BYTE)};
     }
     /* The own block is at distance 0 and needs no message. */
-    mpi_copy_typed(r, in[0].buffer, in[0].count, in[0].type, out[0].buffer, out[0].count, out[0].type);
+    mpi_copy_typed(r, in[0].buffer, in[0].count, in[0].type, out[0].buffer, out[0].count,
+                   out[0].type);
     mpi_exchange(r, x->comm, sequence, size - 1, in + 1, size - 1, out + 1);
     for (int d = 0; d < size; d++) mpi_give(r->world, copy[d]);
     mpi_give(r->world, copy);

@@ -46,8 +46,8 @@ struct mpi_part {
 };
 
 /* mpi_exchange: post all receives, send everything, wait. Ranks MPI_PROC_NULL are left out. */
-void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin, const struct mpi_part *in,
-                  int nout, const struct mpi_part *out);
+void mpi_exchange(struct mpi_rank *r, struct mpi_comm *c, unsigned sequence, int nin,
+                  const struct mpi_part *in, int nout, const struct mpi_part *out);
 
 /* mpi_collective_run: a checked call to its end, on whichever stack. mpi_collective_now: the same
  * with the next sequence of its communicator. */
@@ -69,6 +69,9 @@ void mpi_neighbor_edges(struct mpi_rank *r, const struct mpi_comm *c, int *nin, 
 void mpi_collective_call(struct mpi_rank *r, struct collective_call *k, bool irregular);
 
 /* mpi_collective_tag: where the tags of a communicator's operation begin. */
-static inline int mpi_collective_tag(unsigned sequence) { return (int)(sequence % (1u << 25)) * COLLECTIVE_TAGS; }
+static inline int mpi_collective_tag(unsigned sequence)
+{
+    return (int)(sequence % (1u << 25)) * COLLECTIVE_TAGS;
+}
 
 #endif

@@ -52,11 +52,13 @@ static int check_root(struct mpi_rank *r, const struct mpi_collective *x)
     int n = c->remote ? c->remote->size : c->size;
     if (c->remote && (x->root == MPI_ROOT || x->root == MPI_PROC_NULL)) return MPI_SUCCESS;
     if (x->root >= 0 && x->root < n) return MPI_SUCCESS;
-    return mpi_error(r, c, MPI_ERR_ROOT, "root %d is not in the communicator of %d ranks", x->root, n);
+    return mpi_error(r, c, MPI_ERR_ROOT, "root %d is not in the communicator of %d ranks", x->root,
+                     n);
 }
 
 /* Only committed types may be used in communication (section 5.1.9). */
-static bool type_of(struct mpi_rank *r, MPI_Datatype handle, struct mpi_type **t, const struct mpi_collective *x)
+static bool type_of(struct mpi_rank *r, MPI_Datatype handle, struct mpi_type **t,
+                    const struct mpi_collective *x)
 {
     *t = mpi_type_of(r, handle);
     if (!*t) return false;
@@ -136,10 +138,11 @@ int mpi_barrier(struct mpi_rank *self, struct mpi_start start, MPI_Comm comm)
 }
 
 /* The buffer is `recv` on every rank: the root's holds what the others receive. */
-int mpi_bcast(struct mpi_rank *self, struct mpi_start start, void *buffer, MPI_Count count, MPI_Datatype datatype,
-              int root, MPI_Comm comm)
+int mpi_bcast(struct mpi_rank *self, struct mpi_start start, void *buffer, MPI_Count count,
+              MPI_Datatype datatype, int root, MPI_Comm comm)
 {
-    struct mpi_collective x = {.what = WHAT_BCAST, .recv = buffer, .recv_count = count, .root = root};
+    struct mpi_collective x = {
+        .what = WHAT_BCAST, .recv = buffer, .recv_count = count, .root = root};
     if (!comm_of(self, comm, &x) || !type_of(self, datatype, &x.recv_type, &x)) return self->code;
     return operate(self, start, &x);
 }
@@ -148,8 +151,8 @@ int mpi_bcast(struct mpi_rank *self, struct mpi_start start, void *buffer, MPI_C
 
 /* Arguments that are significant at the root alone are not looked at elsewhere: programs
  * pass anything there, often uninitialized variables (section 6.5). */
-static int gather(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x, MPI_Datatype sendtype,
-                  MPI_Datatype recvtype, MPI_Comm comm)
+static int gather(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
+                  MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
     if (!comm_of(r, comm, x)) return r->code;
     bool place = x->send == MPI_IN_PLACE;
@@ -165,24 +168,30 @@ static int gather(struct mpi_rank *r, struct mpi_start start, struct mpi_collect
 /* Whether a call is of the kind with counts must be known where they are not read too.
  * All ranks must choose one algorithm, also those to which the counts mean nothing. */
 static const int none_here;
-static struct mpi_counts places_of(const int *places) { return (struct mpi_counts){places ? places : &none_here, 0}; }
-
-int mpi_gather(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, MPI_Count sendcount,
-               MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount, MPI_Datatype recvtype, int root,
-               MPI_Comm comm)
+static struct mpi_counts places_of(const int *places)
 {
-    struct mpi_collective x = {.what = WHAT_GATHER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
+    return (struct mpi_counts){places ? places : &none_here, 0};
+}
+
+int mpi_gather(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
+               MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount,
+               MPI_Datatype recvtype, int root, MPI_Comm comm)
+{
+    struct mpi_collective x = {
+        .what = WHAT_GATHER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
     x.recv_count = recvcount;
     x.root = root;
     return gather(self, start, &x, sendtype, recvtype, comm);
 }
 
 /* Counts and displacements are read at the root alone. */
-int mpi_gatherv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, MPI_Count sendcount,
-                MPI_Datatype sendtype, void *recvbuf, struct mpi_counts recvcounts, struct mpi_counts displs,
-                MPI_Datatype recvtype, int root, MPI_Comm comm)
+int mpi_gatherv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
+                MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf,
+                struct mpi_counts recvcounts, struct mpi_counts displs, MPI_Datatype recvtype,
+                int root, MPI_Comm comm)
 {
-    struct mpi_collective x = {.what = WHAT_GATHER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
+    struct mpi_collective x = {
+        .what = WHAT_GATHER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
     x.recv_counts = recvcounts;
     x.recv_places = displs.at ? displs : places_of(NULL);
     x.root = root;
@@ -190,8 +199,8 @@ int mpi_gatherv(struct mpi_rank *self, struct mpi_start start, const void *sendb
 }
 
 /* As gather, with the sides changed over. */
-static int scatter(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x, MPI_Datatype sendtype,
-                   MPI_Datatype recvtype, MPI_Comm comm)
+static int scatter(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
+                   MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
     if (!comm_of(r, comm, x)) return r->code;
     if (!is_leaf(x) || x->recv == MPI_IN_PLACE) x->recv_count = 0;
@@ -203,22 +212,24 @@ static int scatter(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
     return operate(r, start, x);
 }
 
-int mpi_scatter(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, MPI_Count sendcount,
-                MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount, MPI_Datatype recvtype, int root,
-                MPI_Comm comm)
+int mpi_scatter(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
+                MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount,
+                MPI_Datatype recvtype, int root, MPI_Comm comm)
 {
-    struct mpi_collective x = {.what = WHAT_SCATTER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
+    struct mpi_collective x = {
+        .what = WHAT_SCATTER, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};
     x.recv_count = recvcount;
     x.root = root;
     return scatter(self, start, &x, sendtype, recvtype, comm);
 }
 
 /* As MPI_Gatherv: `sendcounts` and `displs` mean something at the root alone. */
-int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, struct mpi_counts sendcounts,
-                 struct mpi_counts displs, MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount,
-                 MPI_Datatype recvtype, int root, MPI_Comm comm)
+int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
+                 struct mpi_counts sendcounts, struct mpi_counts displs, MPI_Datatype sendtype,
+                 void *recvbuf, MPI_Count recvcount, MPI_Datatype recvtype, int root, MPI_Comm comm)
 {
-    struct mpi_collective x = {.what = WHAT_SCATTER, .send = sendbuf, .recv = recvbuf, .recv_count = recvcount};
+    struct mpi_collective x = {
+        .what = WHAT_SCATTER, .send = sendbuf, .recv = recvbuf, .recv_count = recvcount};
     x.send_counts = sendcounts;
     x.send_places = displs.at ? displs : places_of(NULL);
     x.root = root;
@@ -230,8 +241,8 @@ int mpi_scatterv(struct mpi_rank *self, struct mpi_start start, const void *send
 /* MPI_IN_PLACE takes data and counts from the receiving side; what is given for the
  * sending side is not looked at. On an intercommunicator MPI_IN_PLACE has no meaning
  * (section 6.2.3); programs do not use it there. */
-static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x, MPI_Datatype sendtype,
-                     MPI_Datatype recvtype, MPI_Comm comm)
+static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
+                     MPI_Datatype sendtype, MPI_Datatype recvtype, MPI_Comm comm)
 {
     if (!comm_of(r, comm, x)) return r->code;
     if (x->send == MPI_IN_PLACE) {
@@ -243,13 +254,15 @@ static int everybody(struct mpi_rank *r, struct mpi_start start, struct mpi_coll
 }
 
 /* One size for all blocks. */
-#define REGULAR(name, what_)                                                                                           \
-    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, MPI_Count sendcount,                  \
-             MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount, MPI_Datatype recvtype, MPI_Comm comm)          \
-    {                                                                                                                  \
-        struct mpi_collective x = {.what = what_, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};          \
-        x.recv_count = recvcount;                                                                                      \
-        return everybody(self, start, &x, sendtype, recvtype, comm);                                                   \
+#define REGULAR(name, what_)                                                                       \
+    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
+             MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf, MPI_Count recvcount,       \
+             MPI_Datatype recvtype, MPI_Comm comm)                                                 \
+    {                                                                                              \
+        struct mpi_collective x = {                                                                \
+            .what = what_, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};             \
+        x.recv_count = recvcount;                                                                  \
+        return everybody(self, start, &x, sendtype, recvtype, comm);                               \
     }
 REGULAR(mpi_allgather, WHAT_ALLGATHER)
 REGULAR(mpi_alltoall, WHAT_ALLTOALL)
@@ -257,40 +270,44 @@ REGULAR(mpi_neighbor_allgather, WHAT_NEIGHBOR_ALLGATHER)
 REGULAR(mpi_neighbor_alltoall, WHAT_NEIGHBOR_ALLTOALL)
 
 /* One block sent to everybody, of another size from each rank. */
-#define GATHER_V(name, what_)                                                                                          \
-    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, MPI_Count sendcount,                  \
-             MPI_Datatype sendtype, void *recvbuf, struct mpi_counts recvcounts, struct mpi_counts displs,             \
-             MPI_Datatype recvtype, MPI_Comm comm)                                                                     \
-    {                                                                                                                  \
-        struct mpi_collective x = {.what = what_, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};          \
-        x.recv_counts = recvcounts;                                                                                    \
-        x.recv_places = displs;                                                                                        \
-        return everybody(self, start, &x, sendtype, recvtype, comm);                                                   \
+#define GATHER_V(name, what_)                                                                      \
+    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
+             MPI_Count sendcount, MPI_Datatype sendtype, void *recvbuf,                            \
+             struct mpi_counts recvcounts, struct mpi_counts displs, MPI_Datatype recvtype,        \
+             MPI_Comm comm)                                                                        \
+    {                                                                                              \
+        struct mpi_collective x = {                                                                \
+            .what = what_, .send = sendbuf, .send_count = sendcount, .recv = recvbuf};             \
+        x.recv_counts = recvcounts;                                                                \
+        x.recv_places = displs;                                                                    \
+        return everybody(self, start, &x, sendtype, recvtype, comm);                               \
     }
 GATHER_V(mpi_allgatherv, WHAT_ALLGATHER)
 GATHER_V(mpi_neighbor_allgatherv, WHAT_NEIGHBOR_ALLGATHER)
 
 /* Blocks of any size both ways. */
-#define ALL_V(name, what_)                                                                                             \
-    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, struct mpi_counts sendcounts,         \
-             struct mpi_counts sdispls, MPI_Datatype sendtype, void *recvbuf, struct mpi_counts recvcounts,            \
-             struct mpi_counts rdispls, MPI_Datatype recvtype, MPI_Comm comm)                                          \
-    {                                                                                                                  \
-        struct mpi_collective x = {.what = what_, .send = sendbuf, .send_counts = sendcounts, .recv = recvbuf};        \
-        x.send_places = sdispls;                                                                                       \
-        x.recv_counts = recvcounts;                                                                                    \
-        x.recv_places = rdispls;                                                                                       \
-        return everybody(self, start, &x, sendtype, recvtype, comm);                                                   \
+#define ALL_V(name, what_)                                                                         \
+    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,                   \
+             struct mpi_counts sendcounts, struct mpi_counts sdispls, MPI_Datatype sendtype,       \
+             void *recvbuf, struct mpi_counts recvcounts, struct mpi_counts rdispls,               \
+             MPI_Datatype recvtype, MPI_Comm comm)                                                 \
+    {                                                                                              \
+        struct mpi_collective x = {                                                                \
+            .what = what_, .send = sendbuf, .send_counts = sendcounts, .recv = recvbuf};           \
+        x.send_places = sdispls;                                                                   \
+        x.recv_counts = recvcounts;                                                                \
+        x.recv_places = rdispls;                                                                   \
+        return everybody(self, start, &x, sendtype, recvtype, comm);                               \
     }
 ALL_V(mpi_alltoallv, WHAT_ALLTOALL)
 ALL_V(mpi_neighbor_alltoallv, WHAT_NEIGHBOR_ALLTOALL)
 
 /* Types come as arrays and are looked up again when the exchange begins: the arrays must last
  * until then, which the standard asks for (section 6.12). */
-int mpi_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, struct mpi_counts sendcounts,
-                  struct mpi_counts sdispls, const MPI_Datatype sendtypes[], void *recvbuf,
-                  struct mpi_counts recvcounts, struct mpi_counts rdispls, const MPI_Datatype recvtypes[],
-                  MPI_Comm comm)
+int mpi_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
+                  struct mpi_counts sendcounts, struct mpi_counts sdispls,
+                  const MPI_Datatype sendtypes[], void *recvbuf, struct mpi_counts recvcounts,
+                  struct mpi_counts rdispls, const MPI_Datatype recvtypes[], MPI_Comm comm)
 {
     struct mpi_collective x = {.what = WHAT_ALLTOALLW, .send = sendbuf, .recv = recvbuf};
     if (!comm_of(self, comm, &x)) return self->code;
@@ -306,8 +323,9 @@ int mpi_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sen
 /* Displacements are addresses [B] in every form of this call, counts are not: hence the
  * two widths (section 8.6). */
 int mpi_neighbor_alltoallw(struct mpi_rank *self, struct mpi_start start, const void *sendbuf,
-                           struct mpi_counts sendcounts, const MPI_Aint sdispls[], const MPI_Datatype sendtypes[],
-                           void *recvbuf, struct mpi_counts recvcounts, const MPI_Aint rdispls[],
+                           struct mpi_counts sendcounts, const MPI_Aint sdispls[],
+                           const MPI_Datatype sendtypes[], void *recvbuf,
+                           struct mpi_counts recvcounts, const MPI_Aint rdispls[],
                            const MPI_Datatype recvtypes[], MPI_Comm comm)
 {
     struct mpi_collective x = {.what = WHAT_NEIGHBOR_ALLTOALLW, .send = sendbuf, .recv = recvbuf};
@@ -325,8 +343,8 @@ int mpi_neighbor_alltoallw(struct mpi_rank *self, struct mpi_start start, const 
 
 /* Whether the operation is defined on the type is asked before anything is sent: an error
  * half-way would leave other ranks waiting. */
-static int combine(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x, MPI_Datatype datatype,
-                   MPI_Op op, MPI_Comm comm)
+static int combine(struct mpi_rank *r, struct mpi_start start, struct mpi_collective *x,
+                   MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)
 {
     /* Only the check of it is wanted here: the operation is made again where it runs. */
     struct mpi_reduction check;
@@ -337,21 +355,23 @@ static int combine(struct mpi_rank *r, struct mpi_start start, struct mpi_collec
     return code == MPI_SUCCESS ? operate(r, start, x) : code;
 }
 
-int mpi_reduce(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, void *recvbuf, MPI_Count count,
-               MPI_Datatype datatype, MPI_Op op, int root, MPI_Comm comm)
+int mpi_reduce(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, void *recvbuf,
+               MPI_Count count, MPI_Datatype datatype, MPI_Op op, int root, MPI_Comm comm)
 {
-    struct mpi_collective x = {.what = WHAT_REDUCE, .send = sendbuf, .recv = recvbuf, .recv_count = count};
+    struct mpi_collective x = {
+        .what = WHAT_REDUCE, .send = sendbuf, .recv = recvbuf, .recv_count = count};
     x.root = root;
     return combine(self, start, &x, datatype, op, comm);
 }
 
 /* These have no root; they differ in whether counts come as a number or as an array. */
-#define ALL_COMBINE(name, what_, argument, counts, member)                                                             \
-    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, void *recvbuf, counts argument,       \
-             MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)                                                          \
-    {                                                                                                                  \
-        struct mpi_collective x = {.what = what_, .send = sendbuf, .recv = recvbuf, .member = argument};               \
-        return combine(self, start, &x, datatype, op, comm);                                                           \
+#define ALL_COMBINE(name, what_, argument, counts, member)                                         \
+    int name(struct mpi_rank *self, struct mpi_start start, const void *sendbuf, void *recvbuf,    \
+             counts argument, MPI_Datatype datatype, MPI_Op op, MPI_Comm comm)                     \
+    {                                                                                              \
+        struct mpi_collective x = {                                                                \
+            .what = what_, .send = sendbuf, .recv = recvbuf, .member = argument};                  \
+        return combine(self, start, &x, datatype, op, comm);                                       \
     }
 ALL_COMBINE(mpi_allreduce, WHAT_ALLREDUCE, count, MPI_Count, recv_count)
 ALL_COMBINE(mpi_scan, WHAT_SCAN, count, MPI_Count, recv_count)

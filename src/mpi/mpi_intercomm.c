@@ -19,8 +19,8 @@ static struct mpi_part words(int peer, void *buffer, int64_t bytes)
 /* swap: the leaders of both sides exchange bytes over `c`, whose rank `peer` is the other
  * leader. Both directions are under way at once: neither side can wait for the other to
  * begin. Tags are in the plane of making, which the program's messages never reach. */
-static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, void *out, int64_t nout, void *in,
-                 int64_t nin)
+static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, void *out,
+                 int64_t nout, void *in, int64_t nin)
 {
     struct comm_request q[2] = {{0}};
     int world = mpi_group_world(c->remote ? c->remote : c->group, peer);
@@ -34,7 +34,8 @@ static void swap(struct mpi_rank *r, struct mpi_comm *c, int peer, int64_t tag, 
 /* What only a leader knows goes to all of its side, by the machine's broadcast. */
 static void tell(struct mpi_rank *r, struct mpi_comm *local, int root, void *data, int64_t bytes)
 {
-    struct mpi_collective x = {.what = WHAT_BCAST, .comm = local, .recv = data, .recv_count = bytes, .root = root};
+    struct mpi_collective x = {
+        .what = WHAT_BCAST, .comm = local, .recv = data, .recv_count = bytes, .root = root};
     x.recv_type = mpi_type_basic(MPI_BYTE);
     mpi_collective_now(r, &x);
 }
@@ -51,8 +52,9 @@ struct contexts {
 
 /* meet: the other side's word on every rank, and contexts; the larger that a side gives is for
  * both. */
-static struct side_word meet(struct mpi_rank *r, struct mpi_comm *local, int leader, struct mpi_comm *peers, int peer,
-                             int64_t tag, int word, struct contexts *context)
+static struct side_word meet(struct mpi_rank *r, struct mpi_comm *local, int leader,
+                             struct mpi_comm *peers, int peer, int64_t tag, int word,
+                             struct contexts *context)
 {
     /* Two numbers from each side: the first may serve both sides, the second stays the
      * own one's. Both are unique in the run, so the larger of the first two is, too, and
@@ -82,14 +84,17 @@ static struct mpi_comm *make(struct mpi_rank *r, struct mpi_group *local, struct
     return c;
 }
 
-int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_leader, MPI_Comm peer_comm,
-                         int remote_leader, int tag, MPI_Comm *newintercomm)
+int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_leader,
+                         MPI_Comm peer_comm, int remote_leader, int tag, MPI_Comm *newintercomm)
 {
     struct mpi_comm *local = mpi_comm_of(self, local_comm), *peers = NULL;
     if (!local) return self->code;
-    if (local->remote) return mpi_error(self, local, MPI_ERR_COMM, "the local communicator is an intercommunicator");
+    if (local->remote)
+        return mpi_error(self, local, MPI_ERR_COMM,
+                         "the local communicator is an intercommunicator");
     if (local_leader < 0 || local_leader >= local->size)
-        return mpi_error(self, local, MPI_ERR_RANK, "leader %d of %d ranks", local_leader, local->size);
+        return mpi_error(self, local, MPI_ERR_RANK, "leader %d of %d ranks", local_leader,
+                         local->size);
     /* The peer communicator and the other leader are significant at the leader alone
      * (section 7.6.2). */
     bool leads = local->rank == local_leader;
@@ -100,10 +105,13 @@ int mpi_intercomm_create(struct mpi_rank *self, MPI_Comm local_comm, int local_l
     /* An error at the leader under MPI_ERRORS_RETURN leaves the other ranks waiting:
      * nothing was agreed on. */
     if (leads && (remote_leader < 0 || remote_leader >= npeer))
-        return mpi_error(self, local, MPI_ERR_RANK, "remote leader %d of %d ranks", remote_leader, npeer);
-    struct side_word far = meet(self, local, local_leader, peers, remote_leader, 2 * (int64_t)tag, 0, &context);
+        return mpi_error(self, local, MPI_ERR_RANK, "remote leader %d of %d ranks", remote_leader,
+                         npeer);
+    struct side_word far =
+        meet(self, local, local_leader, peers, remote_leader, 2 * (int64_t)tag, 0, &context);
     /* the lists of ranks of the world go the same way */
-    int *own = mpi_take(self->world, (local->size + far.size) * (int64_t)sizeof *own), *list = own + local->size;
+    int *own = mpi_take(self->world, (local->size + far.size) * (int64_t)sizeof *own),
+        *list = own + local->size;
     for (int i = 0; i < local->size; i++) own[i] = mpi_group_world(local->group, i);
     /* The tag is doubled, because one call needs two. */
     int64_t nown = local->size * (int64_t)sizeof *own, nfar = far.size * (int64_t)sizeof *own;
@@ -131,8 +139,8 @@ int mpi_intercomm_dup(struct mpi_rank *r, struct mpi_comm *c, MPI_Comm *newcomm)
 
 /* parts: an intercommunicator out of those ranks of both sides that go together; NULL where there
  * is none on either side or the own rank is not among them. */
-static MPI_Comm parts(struct mpi_rank *r, struct mpi_comm *c, const int *near, int nnear, const int *far, int nfar,
-                      struct contexts context)
+static MPI_Comm parts(struct mpi_rank *r, struct mpi_comm *c, const int *near, int nnear,
+                      const int *far, int nfar, struct contexts context)
 {
     if (nnear == 0 || nfar == 0) return MPI_COMM_NULL;
     struct mpi_group *local = mpi_group_make(r, near, nnear);
@@ -145,7 +153,8 @@ static MPI_Comm parts(struct mpi_rank *r, struct mpi_comm *c, const int *near, i
 
 /* Section 7.4.2: each side's ranks pass the group of their own side; the new communicator
  * joins the two. Sizes travel as the word of the meeting, so that lists have room. */
-int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group *g, MPI_Comm *newcomm)
+int mpi_intercomm_part(struct mpi_rank *r, struct mpi_comm *c, struct mpi_group *g,
+                       MPI_Comm *newcomm)
 {
     struct contexts context;
     struct side_word other = meet(r, c->local, 0, c, 0, 0, g->size, &context);
@@ -186,7 +195,8 @@ static int chosen(struct choice *of, int n, int color, int *list)
 
 /* Both sides split by the same colors; those with ranks on one side only give
  * MPI_COMM_NULL. */
-int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int key, MPI_Comm *newcomm)
+int mpi_intercomm_split(struct mpi_rank *r, struct mpi_comm *c, int color, int key,
+                        MPI_Comm *newcomm)
 {
     struct contexts context;
     int size = c->size, other = c->remote->size;
@@ -214,13 +224,17 @@ int mpi_intercomm_merge(struct mpi_rank *self, MPI_Comm intercomm, int high, MPI
     struct mpi_comm *c = mpi_comm_of(self, intercomm);
     struct contexts context;
     if (!c) return self->code;
-    if (!c->remote) return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
+    if (!c->remote)
+        return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
     struct side_word far = meet(self, c->local, 0, c, 0, 0, high != 0, &context);
     /* `high` of each side travels as the word of the meeting; the world's order decides
      * where both say the same, so that both sides come to one result. */
-    bool first = (high != 0) != far.word ? !high : mpi_group_world(c->group, 0) < mpi_group_world(c->remote, 0);
+    bool first = (high != 0) != far.word
+                     ? !high
+                     : mpi_group_world(c->group, 0) < mpi_group_world(c->remote, 0);
     struct mpi_group *half[2] = {first ? c->group : c->remote, first ? c->remote : c->group};
-    int n = 0, *list = mpi_take(self->world, (c->group->size + c->remote->size) * (int64_t)sizeof *list);
+    int n = 0,
+        *list = mpi_take(self->world, (c->group->size + c->remote->size) * (int64_t)sizeof *list);
     for (int h = 0; h < 2; h++)
         for (int i = 0; i < half[h]->size; i++) list[n++] = mpi_group_world(half[h], i);
     struct mpi_comm *made = mpi_comm_make(self, mpi_group_make(self, list, n), context.both, c);
@@ -234,7 +248,8 @@ int mpi_comm_remote_size(struct mpi_rank *self, MPI_Comm comm, int *size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
     if (!c) return self->code;
-    if (!c->remote) return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
+    if (!c->remote)
+        return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
     *size = c->remote->size;
     return MPI_SUCCESS;
 }
@@ -243,7 +258,8 @@ int mpi_comm_remote_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group *group
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
     if (!c) return self->code;
-    if (!c->remote) return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
+    if (!c->remote)
+        return mpi_error(self, c, MPI_ERR_COMM, "the communicator is not an intercommunicator");
     *group = mpi_group_handle(c->remote);
     return MPI_SUCCESS;
 }
@@ -254,7 +270,8 @@ int mpi_comm_remote_group(struct mpi_rank *self, MPI_Comm comm, MPI_Group *group
  * communicators. Both communicators count operations from 0, and the local one is used by
  * making, too. The added 2^24 takes the upper half of the tags' cycle, so that the two do
  * not meet before 16 million operations. */
-static void among_own(struct mpi_rank *r, const struct mpi_collective *x, enum mpi_what what, void *recv)
+static void among_own(struct mpi_rank *r, const struct mpi_collective *x, enum mpi_what what,
+                      void *recv)
 {
     struct mpi_collective local = *x;
     local.what = what;
@@ -351,7 +368,8 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
 /* part_of: block i of a side of the call. */
 static struct mpi_part part_of(struct mpi_rank *r, const struct mpi_collective *x, bool out, int i)
 {
-    struct mpi_counts counts = out ? x->send_counts : x->recv_counts, places = out ? x->send_places : x->recv_places;
+    struct mpi_counts counts = out ? x->send_counts : x->recv_counts,
+                      places = out ? x->send_places : x->recv_places;
     int64_t each = out ? x->send_count : x->recv_count;
     struct mpi_type *t = out ? x->send_type : x->recv_type;
     char *memory = out ? (char *)(uintptr_t)x->send : x->recv;
@@ -359,7 +377,8 @@ static struct mpi_part part_of(struct mpi_rank *r, const struct mpi_collective *
      * their own. */
     int64_t place = counts.at ? mpi_count_at(places, i) : i * each, scale = 1;
     int64_t count = counts.at ? mpi_count_at(counts, i) : each;
-    if (x->what == WHAT_ALLTOALLW) t = mpi_block_type(r, out ? x->send_types[i] : x->recv_types[i], count);
+    if (x->what == WHAT_ALLTOALLW)
+        t = mpi_block_type(r, out ? x->send_types[i] : x->recv_types[i], count);
     else scale = t->extent;
     return (struct mpi_part){i, memory + place * scale, count, t};
 }
@@ -373,7 +392,8 @@ static void direct(struct mpi_rank *r, const struct mpi_collective *x)
      * no entry for two. */
     int far = x->comm->remote->size, nin = 0, nout = 0;
     bool rooted = x->what == WHAT_GATHER || x->what == WHAT_SCATTER, root = x->root == MPI_ROOT;
-    bool blocks_in = x->what != WHAT_SCATTER, blocks_out = x->what != WHAT_GATHER && x->what != WHAT_ALLGATHER;
+    bool blocks_in = x->what != WHAT_SCATTER,
+         blocks_out = x->what != WHAT_GATHER && x->what != WHAT_ALLGATHER;
     struct mpi_part *in = mpi_take(r->world, 2 * far * (int64_t)sizeof *in), *out = in + far;
     /* The root, or everybody where there is none, has a block for each rank of the other
      * side. Gathering sends one block, the same for all. */

@@ -40,7 +40,8 @@ static struct neighbours neighbours_of(struct mpi_rank *r, const struct mpi_comm
     return n;
 }
 
-static struct mpi_part part(int peer, void *buffer, int64_t place, int64_t count, struct mpi_type *t)
+static struct mpi_part part(int peer, void *buffer, int64_t place, int64_t count,
+                            struct mpi_type *t)
 {
     return (struct mpi_part){peer, (char *)buffer + place, count, t};
 }
@@ -82,7 +83,8 @@ static void order_grid(int n, struct mpi_part *part)
 void mpi_neighbor_run(struct mpi_rank *r, const struct mpi_collective *x)
 {
     struct neighbours n = neighbours_of(r, x->comm);
-    struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in), *out = in + n.nin;
+    struct mpi_part *in = mpi_take(r->world, (n.nin + n.nout + 1) * (int64_t)sizeof *in),
+                    *out = in + n.nin;
     /* Blocks are numbered by edge, not by rank: several edges may lead to one rank. */
     for (int i = 0; i < n.nin; i++) in[i] = in_part(r, x, n.in[i], i);
     for (int i = 0; i < n.nout; i++) out[i] = out_part(r, x, n.out[i], i);

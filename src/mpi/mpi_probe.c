@@ -5,8 +5,8 @@
 #include "mpi/mpi_internal.h"
 
 /* probe: whether a message fits; `take` keeps it from all others. */
-static int probe(struct mpi_rank *r, MPI_Comm comm, int source, int tag, int block, int *flag, MPI_Status *status,
-                 struct mpi_request *take)
+static int probe(struct mpi_rank *r, MPI_Comm comm, int source, int tag, int block, int *flag,
+                 MPI_Status *status, struct mpi_request *take)
 {
     struct mpi_request q;
     struct comm_envelope e;
@@ -31,7 +31,9 @@ static int probe(struct mpi_rank *r, MPI_Comm comm, int source, int tag, int blo
     if (take) *flag = comm_probe_take(r->comm, from, wanted, mask, block, &e, &take->q);
     else *flag = comm_probe(r->comm, from, wanted, mask, block, &e);
     /* The size is in the envelope before the data are here: programs take memory for it. */
-    if (*flag) mpi_status_set(status, mpi_group_find(r, peers, e.source), (int)(e.tag & 0xffffffff), e.bytes);
+    if (*flag)
+        mpi_status_set(status, mpi_group_find(r, peers, e.source), (int)(e.tag & 0xffffffff),
+                       e.bytes);
     return code;
 }
 
@@ -48,15 +50,16 @@ int mpi_probe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, MPI_Sta
     return probe(self, comm, source, tag, 1, &flag, status, NULL);
 }
 
-int mpi_iprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, int *flag, MPI_Status *status)
+int mpi_iprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, int *flag,
+               MPI_Status *status)
 {
     return probe(self, comm, source, tag, 0, flag, status, NULL);
 }
 
 /* The message waits inside a request; its handle is first that of a request, then of a
  * message. */
-static int matched_probe(struct mpi_rank *r, int source, int tag, MPI_Comm comm, int block, int *flag,
-                         MPI_Message *message, MPI_Status *status)
+static int matched_probe(struct mpi_rank *r, int source, int tag, MPI_Comm comm, int block,
+                         int *flag, MPI_Message *message, MPI_Status *status)
 {
     struct mpi_request *m = mpi_request_make(r, REQUEST_RECEIVE);
     int code = probe(r, comm, source, tag, block, flag, status, m);
@@ -74,7 +77,8 @@ static int matched_probe(struct mpi_rank *r, int source, int tag, MPI_Comm comm,
     return code;
 }
 
-int mpi_mprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, MPI_Message *message, MPI_Status *status)
+int mpi_mprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, MPI_Message *message,
+               MPI_Status *status)
 {
     int flag;
     /* as MPI_Probe: operations in progress go on meanwhile */
@@ -85,24 +89,26 @@ int mpi_mprobe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, MPI_Me
     return matched_probe(self, source, tag, comm, 1, &flag, message, status);
 }
 
-int mpi_improbe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, int *flag, MPI_Message *message,
-                MPI_Status *status)
+int mpi_improbe(struct mpi_rank *self, int source, int tag, MPI_Comm comm, int *flag,
+                MPI_Message *message, MPI_Status *status)
 {
     return matched_probe(self, source, tag, comm, 0, flag, message, status);
 }
 
 /* receive_matched: the message of a matched probe becomes a request, its handle ends. */
-static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_Datatype datatype, MPI_Message *message,
-                           MPI_Request *request)
+static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_Datatype datatype,
+                           MPI_Message *message, MPI_Request *request)
 {
     struct mpi_type *t = mpi_type_of(r, datatype);
     if (!t) return r->code;
     /* Section 3.8.3: a message from nobody gives a receive from nobody. */
     if (*message == MPI_MESSAGE_NO_PROC) {
-        struct mpi_message none = {MODE_STANDARD, true, buf, count, datatype, MPI_PROC_NULL, 0, MPI_COMM_SELF};
+        struct mpi_message none = {MODE_STANDARD, true,          buf, count,
+                                   datatype,      MPI_PROC_NULL, 0,   MPI_COMM_SELF};
         struct mpi_request q;
         int code = mpi_message_check(r, &q, none);
-        if (code == MPI_SUCCESS) code = mpi_request_start(r, &q, (struct mpi_start){MPI_NON_BLOCKING, request});
+        if (code == MPI_SUCCESS)
+            code = mpi_request_start(r, &q, (struct mpi_start){MPI_NON_BLOCKING, request});
         return code;
     }
     struct mpi_request *q = mpi_object(r, *message, KIND_MESSAGE);
@@ -110,7 +116,8 @@ static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_D
         mpi_bad_handle(r, *message, KIND_MESSAGE);
         return r->code;
     }
-    if (count < 0) return mpi_error(r, q->comm, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
+    if (count < 0)
+        return mpi_error(r, q->comm, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
     /* From here on the request is like one of MPI_Irecv that has been matched: it holds
      * communicator and type, and counts as pending. */
     mpi_handle_end(r, q);
@@ -128,8 +135,8 @@ static int receive_matched(struct mpi_rank *r, void *buf, MPI_Count count, MPI_D
     return MPI_SUCCESS;
 }
 
-int mpi_imrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype, MPI_Message *message,
-               MPI_Request *request)
+int mpi_imrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype,
+               MPI_Message *message, MPI_Request *request)
 {
     bool none = *message == MPI_MESSAGE_NO_PROC;
     int code = receive_matched(self, buf, count, datatype, message, request);
@@ -138,8 +145,8 @@ int mpi_imrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype d
 }
 
 /* Waiting for a request is all that a blocking receive adds. */
-int mpi_mrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype, MPI_Message *message,
-              MPI_Status *status)
+int mpi_mrecv(struct mpi_rank *self, void *buf, MPI_Count count, MPI_Datatype datatype,
+              MPI_Message *message, MPI_Status *status)
 {
     MPI_Request request;
     int code = mpi_imrecv(self, buf, count, datatype, message, &request);

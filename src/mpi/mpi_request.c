@@ -86,8 +86,8 @@ int mpi_request_start(struct mpi_rank *r, const struct mpi_request *checked, str
 
 /* The argument is copied, as the caller's lies on its stack; in the copy the operation
  * may leave a status. */
-int mpi_request_task(struct mpi_rank *r, struct mpi_comm *c, mpi_task_fn *run, const void *argument, int64_t bytes,
-                     int64_t status_at, struct mpi_start start)
+int mpi_request_task(struct mpi_rank *r, struct mpi_comm *c, mpi_task_fn *run, const void *argument,
+                     int64_t bytes, int64_t status_at, struct mpi_start start)
 {
     struct mpi_request *q = mpi_request_make(r, REQUEST_TASK);
     q->comm = c;
@@ -101,7 +101,8 @@ int mpi_request_task(struct mpi_rank *r, struct mpi_comm *c, mpi_task_fn *run, c
 }
 
 /* Called when the request ends: what it must let go of is known to who started it. */
-void mpi_request_release(struct mpi_rank *r, MPI_Request request, void (*release)(struct mpi_rank *r, void *argument))
+void mpi_request_release(struct mpi_rank *r, MPI_Request request,
+                         void (*release)(struct mpi_rank *r, void *argument))
 {
     mpi_request_of(r, request)->release = release;
 }
@@ -149,12 +150,14 @@ static int finish_general(struct mpi_rank *r, struct mpi_request *q, MPI_Status 
 
 /* The caller has seen that it is ready. A persistent request becomes inactive and keeps
  * its handle. */
-int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *request, MPI_Status *status)
+int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *request,
+                       MPI_Status *status)
 {
     int code = MPI_SUCCESS;
     r->pending--;
     q->active = false;
-    if (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE) code = mpi_message_finish(r, q, status);
+    if (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE)
+        code = mpi_message_finish(r, q, status);
     else if (q->what == REQUEST_GENERAL) code = finish_general(r, q, status);
     /* The status of MPI_Isendrecv is what its receiving half told; collectives have none. */
     else if (q->what == REQUEST_TASK && q->status_at >= 0) {
@@ -175,7 +178,8 @@ int mpi_start(struct mpi_rank *self, MPI_Request *request)
     if (!q) return self->code;
     if (!q->persistent || q->active)
         return mpi_error(self, q->comm, MPI_ERR_REQUEST,
-                         q->active ? "the request is active already" : "the request is not a persistent one");
+                         q->active ? "the request is active already"
+                                   : "the request is not a persistent one");
     return begin(self, q);
 }
 
@@ -183,7 +187,8 @@ int mpi_start(struct mpi_rank *self, MPI_Request *request)
 int mpi_startall(struct mpi_rank *self, int count, MPI_Request array_of_requests[])
 {
     int code = MPI_SUCCESS;
-    for (int i = 0; i < count && code == MPI_SUCCESS; i++) code = mpi_start(self, &array_of_requests[i]);
+    for (int i = 0; i < count && code == MPI_SUCCESS; i++)
+        code = mpi_start(self, &array_of_requests[i]);
     return code;
 }
 
@@ -223,7 +228,8 @@ int mpi_cancel(struct mpi_rank *self, MPI_Request *request)
     }
     /* Section 3.8.4: a receive either is taken back or has its message, and the status of
      * the completing call says which. Cancelling a send is deprecated. */
-    if (q->what == REQUEST_RECEIVE && q->active && q->q.active && comm_cancel(self->comm, &q->q)) q->cancelled = true;
+    if (q->what == REQUEST_RECEIVE && q->active && q->q.active && comm_cancel(self->comm, &q->q))
+        q->cancelled = true;
     return MPI_SUCCESS;
 }
 
@@ -232,12 +238,12 @@ int mpi_cancel(struct mpi_rank *self, MPI_Request *request)
 /* Section 13.2. The program completes such a request itself; until then it is pending
  * like any other. */
 int mpi_grequest_start(struct mpi_rank *self, MPI_Grequest_query_function *query_fn,
-                       MPI_Grequest_free_function *free_fn, MPI_Grequest_cancel_function *cancel_fn, void *extra_state,
-                       MPI_Request *request)
+                       MPI_Grequest_free_function *free_fn, MPI_Grequest_cancel_function *cancel_fn,
+                       void *extra_state, MPI_Request *request)
 {
     struct mpi_request *q = mpi_request_make(self, REQUEST_GENERAL);
-    void *const f[4] = {(void *)(intptr_t)query_fn, (void *)(intptr_t)free_fn, (void *)(intptr_t)cancel_fn,
-                        extra_state};
+    void *const f[4] = {(void *)(intptr_t)query_fn, (void *)(intptr_t)free_fn,
+                        (void *)(intptr_t)cancel_fn, extra_state};
     q->argument = memcpy(mpi_take(self->world, sizeof f), f, sizeof f);
     q->active = true;
     self->pending++;

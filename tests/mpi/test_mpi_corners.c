@@ -42,7 +42,8 @@ static void matched_probe(void *context)
         assert_int_equal(got, 5);
     }
     MPI_Wait(&q, MPI_STATUS_IGNORE);
-    if (own_rank() == 2) MPI_Send(&(int){5}, 1, MPI_INT, 0, 7, MPI_COMM_WORLD);
+    if (own_rank() == 2)
+        MPI_Send(&(int){5}, 1, MPI_INT, 0, 7, MPI_COMM_WORLD);
 }
 
 static void matched_probes_let_operations_go_on(void **state)
@@ -56,23 +57,31 @@ static void block_types(void *context)
 {
     int out[2] = {1, 2}, in[2] = {0}, count[2] = {1, 1}, place[2] = {0, 4};
     MPI_Aint far[2] = {0, 4};
-    MPI_Datatype raw, good[2] = {MPI_INT, MPI_INT}, none[2] = {MPI_INT, MPI_DATATYPE_NULL}, bad[2] = {MPI_INT, NULL};
+    MPI_Datatype raw, good[2] = {MPI_INT, MPI_INT}, none[2] = {MPI_INT, MPI_DATATYPE_NULL},
+                      bad[2] = {MPI_INT, NULL};
     MPI_Comm line;
     (void)context;
     MPI_Type_contiguous(1, MPI_INT, &raw);
     bad[1] = raw;
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     MPI_Cart_create(MPI_COMM_WORLD, 1, &(int){2}, &(int){1}, 0, &line);
-    assert_int_equal(MPI_Alltoallw(out, count, place, none, in, count, place, good, MPI_COMM_WORLD), MPI_ERR_TYPE);
-    assert_int_equal(MPI_Alltoallw(out, count, place, good, in, count, place, none, MPI_COMM_WORLD), MPI_ERR_TYPE);
-    assert_int_equal(MPI_Alltoallw(out, count, place, good, in, count, place, bad, MPI_COMM_WORLD), MPI_ERR_TYPE);
-    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, none, in, count, far, good, line), MPI_ERR_TYPE);
-    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, good, in, count, far, none, line), MPI_ERR_TYPE);
+    assert_int_equal(MPI_Alltoallw(out, count, place, none, in, count, place, good, MPI_COMM_WORLD),
+                     MPI_ERR_TYPE);
+    assert_int_equal(MPI_Alltoallw(out, count, place, good, in, count, place, none, MPI_COMM_WORLD),
+                     MPI_ERR_TYPE);
+    assert_int_equal(MPI_Alltoallw(out, count, place, good, in, count, place, bad, MPI_COMM_WORLD),
+                     MPI_ERR_TYPE);
+    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, none, in, count, far, good, line),
+                     MPI_ERR_TYPE);
+    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, good, in, count, far, none, line),
+                     MPI_ERR_TYPE);
     count[1] = -1;
-    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, good, in, count, far, good, line), MPI_ERR_COUNT);
+    assert_int_equal(MPI_Neighbor_alltoallw(out, count, far, good, in, count, far, good, line),
+                     MPI_ERR_COUNT);
     /* An empty block: rank 0 sends to itself alone, and rank 1 to rank 0. */
     int some[2] = {1, 0}, from[2] = {own_rank() == 0, own_rank() == 0};
-    assert_int_equal(MPI_Alltoallw(out, some, place, none, in, from, place, good, MPI_COMM_WORLD), MPI_SUCCESS);
+    assert_int_equal(MPI_Alltoallw(out, some, place, none, in, from, place, good, MPI_COMM_WORLD),
+                     MPI_SUCCESS);
     assert_int_equal(in[1], own_rank() == 0 ? 1 : 0);
     MPI_Type_free(&raw);
     MPI_Comm_free(&line);
