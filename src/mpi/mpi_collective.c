@@ -208,8 +208,9 @@ static void alltoall(struct mpi_rank *r, const struct mpi_collective *x, unsigne
 /* --- combining --- */
 
 /* Elements cannot be cut: the algorithm moves whole ones of `element` bytes, from the
- * type's first byte on (true lower bound). Types stay as they lie, without packing,
- * because the operation expects them so. */
+ * type's first byte on (true lower bound). They are not packed, because the operation
+ * expects them as they lie; types with gaps go through copies, so that gaps stay as they
+ * are. */
 static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned sequence,
                    enum collective_kind kind, bool exclusive)
 {
@@ -222,7 +223,19 @@ static void reduce(struct mpi_rank *r, const struct mpi_collective *x, unsigned 
     k.exclusive = exclusive;
     k.recv = x->recv ? (char *)x->recv + op.offset : NULL;
     k.send = x->send == MPI_IN_PLACE ? k.recv : (const char *)x->send + op.offset;
+    void *in = NULL, *out = NULL;
+    if (op.copied) {
+        bool place = x->send == MPI_IN_PLACE;
+        k.send = in = mpi_reduction_copy(r, &op, place ? x->recv : x->send, k.count);
+        k.recv = out = place ? in : mpi_reduction_copy(r, &op, NULL, k.count);
+    }
     mpi_collective_call(r, &k, false);
+    /* An exclusive scan tells the first rank nothing. */
+    bool told = exclusive ? x->comm->rank > 0
+                          : kind != COLLECTIVE_REDUCE || x->comm->rank == x->root;
+    if (out && told) mpi_reduction_back(r, &op, x->recv, out, k.count);
+    if (out != in) mpi_give(r->world, out);
+    mpi_give(r->world, in);
 }
 
 /* Each rank receives the reduction of its own block (section 6.10). Both calls end here:
@@ -254,14 +267,20 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x, u
     k.recv = (char *)x->recv + op.offset;
     k.send = (const char *)x->send + op.offset;
     /* in place: the result would overwrite what is still to be combined */
-    void *copy = NULL;
-    if (x->send == MPI_IN_PLACE) {
+    void *copy = NULL, *out = NULL;
+    if (op.copied) {
+        k.send = copy =
+            mpi_reduction_copy(r, &op, x->send == MPI_IN_PLACE ? x->recv : x->send, total);
+        k.recv = out = mpi_reduction_copy(r, &op, NULL, k.count);
+    } else if (x->send == MPI_IN_PLACE) {
         copy =
             memcpy(mpi_take(r->world, total * k.element + 1), k.recv, (size_t)(total * k.element));
         k.send = copy;
         mpi_charge_copy(r, total * k.element);
     }
     mpi_collective_call(r, &k, false);
+    if (out) mpi_reduction_back(r, &op, x->recv, out, k.count);
+    mpi_give(r->world, out);
     mpi_give(r->world, copy);
     mpi_give(r->world, counts);
 }

@@ -305,6 +305,17 @@ static void broadcast(struct mpi_rank *r, const struct mpi_collective *x)
     among_own(r, x, WHAT_BCAST, x->recv);
 }
 
+/* Room for n elements as a buffer of the program's has it: from the first byte of all to the last,
+ * wherever the type's elements begin. `at`: where the buffer begins. */
+static char *vector_room(struct mpi_rank *r, const struct mpi_type *t, int64_t n, char **at)
+{
+    int64_t far = n > 0 ? (n - 1) * t->extent : 0, low = far < 0 ? far : 0;
+    int64_t bytes = (far < 0 ? -far : far) + t->true_extent, whole = n * t->extent;
+    char *room = mpi_take_zero(r->world, (whole > bytes ? whole : bytes) + 1);
+    *at = room - low - t->true_lb;
+    return room;
+}
+
 /* Each side's result goes to the other: to its root, or to its first rank and from there to all. */
 static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
 {
@@ -312,14 +323,15 @@ static void reduce(struct mpi_rank *r, const struct mpi_collective *x)
     /* The side with data reduces to its first rank, which sends the result on. The answer
      * of an MPI_Allreduce is the other side's sum, not one's own (section 6.9.6). */
     bool all = x->what == WHAT_ALLREDUCE, contributes = all || x->root >= 0;
-    int64_t bytes = x->recv_count * x->recv_type->extent;
     struct mpi_part in = {0, x->recv, x->recv_count, x->recv_type}, out = in;
-    out.buffer = c->rank == 0 && contributes ? mpi_take_zero(r->world, bytes + 1) : NULL;
+    char *room = NULL, *at = NULL;
+    if (c->rank == 0 && contributes) room = vector_room(r, x->recv_type, x->recv_count, &at);
+    out.buffer = at;
     if (contributes) among_own(r, x, WHAT_REDUCE, out.buffer);
     if (!all) out.peer = x->root;
-    bool sends = out.buffer != NULL, takes = all ? c->rank == 0 : x->root == MPI_ROOT;
+    bool sends = room != NULL, takes = all ? c->rank == 0 : x->root == MPI_ROOT;
     mpi_exchange(r, c, x->sequence, takes, &in, sends, &out);
-    mpi_give(r->world, out.buffer);
+    mpi_give(r->world, room);
     /* Only now is the receive buffer complete on the first rank, from where the rest of
      * the side gets it. */
     if (all) among_own(r, x, WHAT_BCAST, x->recv);
@@ -338,13 +350,14 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
         place += mpi_count_at(x->recv_counts, i);
     }
     if (x->recv_counts.at) total = place;
-    int64_t bytes = total * x->recv_type->extent + 1;
     struct mpi_part out = {0, NULL, total, x->recv_type}, in = out;
     struct mpi_collective part = *x;
-    /* One block holds both vectors, the own result and the other's. Only first ranks need
-     * them. */
-    if (c->rank == 0) out.buffer = mpi_take_zero(r->world, 2 * bytes);
-    in.buffer = c->rank == 0 ? (char *)out.buffer + bytes : NULL;
+    /* The own result and the other's. Only first ranks need them. */
+    char *room[2] = {NULL}, *at[2] = {NULL};
+    for (int i = 0; i < 2 && c->rank == 0; i++)
+        room[i] = vector_room(r, x->recv_type, total, &at[i]);
+    out.buffer = at[0];
+    in.buffer = at[1];
     part.recv_count = total;
     part.recv_counts = (struct mpi_counts){0};
     among_own(r, &part, WHAT_REDUCE, out.buffer);
@@ -361,7 +374,8 @@ static void reduce_scatter(struct mpi_rank *r, const struct mpi_collective *x)
     }
     part.recv_counts = (struct mpi_counts){0};
     among_own(r, &part, WHAT_SCATTER, x->recv);
-    mpi_give(r->world, out.buffer);
+    mpi_give(r->world, room[0]);
+    mpi_give(r->world, room[1]);
     mpi_give(r->world, places);
 }
 

@@ -184,11 +184,28 @@ static void call(struct mpi_reduction *x, const void *in, void *inout, int64_t n
     /* The function gets pointers to length and type (section 6.9.5). Functions made by
      * MPI_Op_create_c count in MPI_Count, all others in int. */
     MPI_Datatype type = mpi_type_handle(x->type);
-    MPI_Count large = n;
-    int small = (int)n;
-    intptr_t length = x->op->large ? (intptr_t)&large : (intptr_t)&small;
-    const intptr_t argument[6] = {(intptr_t)in, (intptr_t)inout, length, (intptr_t)&type};
-    mpi_call_program(x->self, (void *)(intptr_t)x->op->function, argument);
+    int64_t most = x->op->large ? n : INT32_MAX;
+    /* More elements than an int counts are handed over in several calls. */
+    for (int64_t i = 0; i < n; i += most) {
+        MPI_Count large = n - i < most ? n - i : most;
+        int small = (int)large;
+        intptr_t length = x->op->large ? (intptr_t)&large : (intptr_t)&small;
+        int64_t at = i * x->type->extent;
+        const intptr_t argument[6] = {(intptr_t)in + at, (intptr_t)inout + at, length,
+                                      (intptr_t)&type};
+        mpi_call_program(x->self, (void *)(intptr_t)x->op->function, argument);
+    }
+}
+
+/* call_apart: the same for elements that lie `element` bytes apart. Where that is not the
+ * type's extent, which is all that the function knows, each element needs a call. */
+static void call_apart(struct mpi_reduction *x, const char *in, char *inout, int64_t n)
+{
+    if (x->element == x->type->extent) {
+        call(x, in, inout, n);
+        return;
+    }
+    for (int64_t i = 0; i < n; i++) call(x, in + i * x->element, inout + i * x->element, 1);
 }
 
 /* combine_user: elements are extents of the type; functions expect them where the type's lower
@@ -201,14 +218,14 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
     /* inout is the right operand. When `into` comes from higher ranks it is that already;
      * where order does not matter, no copy is needed either. */
     if (before || x->op->commutative) {
-        call(x, (const char *)with - x->offset, (char *)into - x->offset, n);
+        call_apart(x, (const char *)with - x->offset, (char *)into - x->offset, n);
         return;
     }
     /* into op with: the function writes over its second argument, so that one is a copy */
     int64_t bytes = n * x->element;
     char *copy = mpi_take(x->self->world, bytes);
     memcpy(copy, with, (size_t)bytes);
-    call(x, (const char *)into - x->offset, copy - x->offset, n);
+    call_apart(x, (const char *)into - x->offset, copy - x->offset, n);
     memcpy(into, copy, (size_t)bytes);
     mpi_give(x->self->world, copy);
 }
@@ -217,9 +234,10 @@ static void combine_user(void *into, const void *with, bool before, int64_t n, v
 int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_op *op,
                        struct mpi_type *t, struct mpi_comm *c)
 {
-    /* Elements are as far apart as the type says. Types whose bytes reach beyond their
-     * extent overlap; such an element counts as long as its bytes. */
+    /* Elements must not overlap where an algorithm moves them: of types whose bytes reach
+     * beyond their extent they lie further apart than in the program's memory. */
     *x = (struct mpi_reduction){.self = r, .op = op, .type = t, .offset = t->true_lb};
+    x->copied = !t->dense && !mpi_type_is_basic(t);
     x->element = t->true_extent > t->extent ? t->true_extent : t->extent;
     x->work = (struct collective_op){.commutative = op->commutative, .idempotent = op->idempotent};
     x->work.context = x;
@@ -231,6 +249,31 @@ int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_o
     if (x->work.combine) return MPI_SUCCESS;
     return mpi_error(r, c, MPI_ERR_OP, "%s is not defined on %s", op->name,
                      t->name ? t->name : "a type of the program");
+}
+
+/* Each element from its first byte to its last; `memory` NULL: zeros. */
+void *mpi_reduction_copy(struct mpi_rank *r, const struct mpi_reduction *x, const void *memory,
+                         int64_t n)
+{
+    char *copy = mpi_take_zero(r->world, n * x->element + 1);
+    for (int64_t i = 0; memory && i < n; i++)
+        memcpy(copy + i * x->element, (const char *)memory + i * x->type->extent + x->offset,
+               (size_t)x->type->true_extent);
+    if (memory) mpi_charge_copy(r, n * x->type->size);
+    return copy;
+}
+
+/* Bytes in the gaps of the type stay the program's: other elements may lie there. */
+void mpi_reduction_back(struct mpi_rank *r, const struct mpi_reduction *x, void *memory,
+                        const void *copy, int64_t n)
+{
+    char *packed = mpi_take(r->world, x->type->size + 1);
+    for (int64_t i = 0; i < n; i++) {
+        mpi_pack_bytes(packed, (const char *)copy + i * x->element - x->offset, 1, x->type);
+        mpi_unpack_bytes((char *)memory + i * x->type->extent, packed, x->type->size, 1, x->type);
+    }
+    mpi_charge_copy(r, n * x->type->size);
+    mpi_give(r->world, packed);
 }
 
 int mpi_reduce_local(struct mpi_rank *self, const void *inbuf, void *inoutbuf, MPI_Count count,
@@ -245,6 +288,11 @@ int mpi_reduce_local(struct mpi_rank *self, const void *inbuf, void *inoutbuf, M
         return mpi_error(self, NULL, MPI_ERR_COUNT, "count %lld is negative", (long long)count);
     int code = mpi_reduction_make(self, &x, o, t, NULL);
     if (code != MPI_SUCCESS || count == 0) return code;
+    /* Elements of the program's lie as its functions expect them. */
+    if (!is_standard(o)) {
+        call(&x, inbuf, inoutbuf, count);
+        return MPI_SUCCESS;
+    }
     /* Section 6.9.7: inout = in op inout, on this rank, for the time that its operations
      * take. */
     x.work.combine((char *)inoutbuf + x.offset, (const char *)inbuf + x.offset, true, count,
@@ -259,8 +307,8 @@ int mpi_reduce_local(struct mpi_rank *self, const void *inbuf, void *inoutbuf, M
 static int create(struct mpi_rank *r, MPI_User_function *function, bool large, int commute,
                   MPI_Op *op)
 {
-    struct mpi_op *o = mpi_take_zero(r->world, sizeof *o);
     if (!function) return mpi_error(r, NULL, MPI_ERR_ARG, "the function is NULL");
+    struct mpi_op *o = mpi_take_zero(r->world, sizeof *o);
     *op = mpi_handle_make(r, o, KIND_OP);
     o->commutative = commute != 0;
     o->function = function;

@@ -94,9 +94,14 @@ struct mpi_reduction {
     struct mpi_rank *self;
     struct mpi_op *op;
     struct mpi_type *type;
-    int64_t offset, element; /* [B] */
+    int64_t offset, element; /* [B] of an element's first byte; between elements that combine sees */
+    bool copied;             /* the type has gaps: algorithms work on copies */
     struct collective_op work;
 };
+void *mpi_reduction_copy(struct mpi_rank *r, const struct mpi_reduction *x, const void *memory,
+                         int64_t n);
+void mpi_reduction_back(struct mpi_rank *r, const struct mpi_reduction *x, void *memory,
+                        const void *copy, int64_t n);
 int mpi_reduction_make(struct mpi_rank *r, struct mpi_reduction *x, struct mpi_op *op,
                        struct mpi_type *t, struct mpi_comm *c);
 

@@ -93,12 +93,174 @@ static void types_of_blocks_are_checked(void **state)
     mpi_ok(2, block_types, NULL);
 }
 
+/* --- reductions on types with gaps --- */
+
+/* Two ints, 8 bytes apart from each other, and elements only 4 bytes apart: they interleave. */
+static MPI_Datatype interleaved(void)
+{
+    MPI_Datatype pair, t;
+    MPI_Type_create_indexed_block(2, 1, (int[]){1, 3}, MPI_INT, &pair);
+    MPI_Type_create_resized(pair, 0, 4, &t);
+    MPI_Type_commit(&t);
+    MPI_Type_free(&pair);
+    return t;
+}
+
+/* Elements one by one as the type says: the first int of the second is 4 bytes behind. */
+static void add_pairs(void *in, void *inout, int *n, MPI_Datatype *t)
+{
+    const int *a = in;
+    int *b = inout;
+    (void)t;
+    for (int i = 0; i < *n; i++) b[i + 1] += a[i + 1], b[i + 3] += a[i + 3];
+}
+
+/* Ints 1, 2, 3 and 4 belong to the elements, 0 and 5 are fences. */
+static void expect_pairs(const int *got, int fence, int factor)
+{
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(got[i], i == 0 || i == 5 ? fence : factor * (10 + i));
+}
+
+static void reduce_pairs(void *context)
+{
+    int out[6] = {-7, 11, 12, 13, 14, -7}, n = all_ranks();
+    MPI_Datatype t = interleaved();
+    MPI_Op op[2];
+    (void)context;
+    MPI_Op_create((MPI_User_function *)add_pairs, 1, &op[0]);
+    MPI_Op_create((MPI_User_function *)add_pairs, 0, &op[1]);
+    for (int k = 0; k < 2; k++) {
+        int in[6] = {-8, 0, 0, 0, 0, -8}, place[6];
+        MPI_Allreduce(out, in, 2, t, op[k], MPI_COMM_WORLD);
+        expect_pairs(in, -8, n);
+        memcpy(place, out, sizeof place);
+        MPI_Scan(MPI_IN_PLACE, place, 2, t, op[k], MPI_COMM_WORLD);
+        expect_pairs(place, -7, own_rank() + 1);
+        memcpy(place, out, sizeof place);
+        MPI_Reduce_local(out, place, 2, t, op[k]);
+        expect_pairs(place, -7, 2);
+        MPI_Op_free(&op[k]);
+    }
+    MPI_Type_free(&t);
+}
+
+static void gaps_of_types_stay_as_they_are(void **state)
+{
+    (void)state;
+    mpi_ok(3, reduce_pairs, NULL);
+}
+
+/* Each side's sum goes to the other; the type's first byte is far behind the buffer's begin. */
+static void add_far(void *in, void *inout, int *n, MPI_Datatype *t)
+{
+    (void)t;
+    for (int i = 0; i < *n; i++)
+        ((int *)inout)[2000 * (i + 1) - 1] += ((const int *)in)[2000 * (i + 1) - 1];
+}
+
+static void reduce_across(void *context)
+{
+    static int out[4][4000], in[4][4000];
+    int rank = own_rank(), other = rank % 2 ? 2 : 4, *o = out[rank], *i = in[rank];
+    MPI_Comm side, both;
+    MPI_Datatype raw, t;
+    MPI_Op op;
+    (void)context;
+    MPI_Comm_split(MPI_COMM_WORLD, rank % 2, rank, &side);
+    MPI_Intercomm_create(side, 0, MPI_COMM_WORLD, 1 - rank % 2, 5, &both);
+    MPI_Type_create_indexed_block(1, 1, (int[]){1999}, MPI_INT, &raw);
+    MPI_Type_create_resized(raw, 0, 8000, &t);
+    MPI_Type_commit(&t);
+    MPI_Op_create((MPI_User_function *)add_far, 1, &op);
+    o[1999] = rank + 1, o[3999] = 10 * (rank + 1);
+    MPI_Allreduce(o, i, 2, t, op, both);
+    assert_int_equal(i[1999], other == 2 ? 1 + 3 : 2 + 4);
+    assert_int_equal(i[3999], 10 * i[1999]);
+    i[1999] = 0;
+    MPI_Reduce_scatter_block(o, i, 1, t, op, both);
+    assert_int_equal(i[1999], (rank < 2 ? 1 : 10) * (other == 2 ? 1 + 3 : 2 + 4));
+    MPI_Op_free(&op);
+    MPI_Type_free(&t);
+    MPI_Type_free(&raw);
+    MPI_Comm_free(&both);
+    MPI_Comm_free(&side);
+}
+
+static void reductions_across_know_where_elements_begin(void **state)
+{
+    (void)state;
+    mpi_ok(4, reduce_across, NULL);
+}
+
+/* An element without bytes, so that no memory is needed for more than an int counts. */
+static int64_t counted;
+static void count_elements(void *in, void *inout, int *n, MPI_Datatype *t)
+{
+    (void)in, (void)inout, (void)t;
+    assert_true(*n > 0);
+    counted += *n;
+}
+
+static void reduce_many(void *context)
+{
+    const MPI_Count many = ((MPI_Count)1 << 32) + 5;
+    MPI_Datatype none;
+    MPI_Op op;
+    int x = 0, y = 0;
+    (void)context;
+    MPI_Type_contiguous(0, MPI_INT, &none);
+    MPI_Type_commit(&none);
+    MPI_Op_create((MPI_User_function *)count_elements, 1, &op);
+    counted = 0;
+    MPI_Reduce_local_c(&x, &y, many, none, op);
+    assert_int_equal(counted, many);
+    MPI_Op_free(&op);
+    MPI_Type_free(&none);
+}
+
+static void large_counts_reach_functions_that_count_in_int(void **state)
+{
+    (void)state;
+    mpi_ok(1, reduce_many, NULL);
+}
+
+/* --- operations inside operations --- */
+
+static void start_inside(void *in, void *inout, int *n, MPI_Datatype *t)
+{
+    MPI_Request q;
+    (void)in, (void)inout, (void)n, (void)t;
+    MPI_Ibarrier(MPI_COMM_SELF, &q);
+}
+
+static void nested(void *context)
+{
+    int x = 1, y;
+    MPI_Op op;
+    MPI_Request q;
+    (void)context;
+    MPI_Op_create((MPI_User_function *)start_inside, 1, &op);
+    MPI_Iallreduce(&x, &y, 1, MPI_INT, op, MPI_COMM_WORLD, &q);
+    MPI_Wait(&q, MPI_STATUS_IGNORE);
+}
+
+static void nested_operations_are_refused(void **state)
+{
+    (void)state;
+    mpi_fails(2, nested, NULL, "MPI_Ibarrier: called by a function inside an operation");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(failed_starts_leave_nothing),
         cmocka_unit_test(matched_probes_let_operations_go_on),
         cmocka_unit_test(types_of_blocks_are_checked),
+        cmocka_unit_test(gaps_of_types_stay_as_they_are),
+        cmocka_unit_test(reductions_across_know_where_elements_begin),
+        cmocka_unit_test(large_counts_reach_functions_that_count_in_int),
+        cmocka_unit_test(nested_operations_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
