@@ -1,5 +1,6 @@
 /* mpi_buffer.c - buffers attached for MPI_Bsend. comm.h copies what is sent, so only their sizes
- * matter: a message that a real library could not have buffered is an error here too. */
+ * matter: a message that a real library could not have buffered is an error here too. What
+ * is in them is kept in mpi_buffered.c. */
 #include "mpi/mpi_internal.h"
 
 /* One buffer at a time for the rank, and one for each communicator (MPI 4.1 added those),
@@ -17,10 +18,11 @@ static int attach(struct mpi_rank *r, struct mpi_comm *c, void **at, int64_t *by
     return MPI_SUCCESS;
 }
 
-/* A real library waits here until all buffered messages have left. comm.h has taken its
- * copies when a send returns, so nothing is pending. */
-static int detach(void **at, int64_t *bytes, void *buffer_addr, MPI_Count *size)
+/* Section 3.6: this waits until all messages in the buffer have left. */
+static int detach(struct mpi_rank *r, struct mpi_buffered **list, void **at, int64_t *bytes,
+                  void *buffer_addr, MPI_Count *size)
 {
+    mpi_buffer_drain(r, list);
     *(void **)buffer_addr = *at;
     *size = *bytes;
     *at = NULL;
@@ -35,24 +37,23 @@ int mpi_buffer_attach(struct mpi_rank *self, void *buffer, MPI_Count size)
 
 int mpi_buffer_detach(struct mpi_rank *self, void *buffer_addr, MPI_Count *size)
 {
-    return detach(&self->buffer, &self->buffer_bytes, buffer_addr, size);
+    return detach(self, &self->buffered, &self->buffer, &self->buffer_bytes, buffer_addr, size);
 }
 
-/* For the same reason a flush has nothing to wait for. */
 int mpi_buffer_flush(struct mpi_rank *self)
 {
-    (void)self;
+    mpi_buffer_drain(self, &self->buffered);
     return MPI_SUCCESS;
 }
 
+/* The program may use its memory at once, as comm.h has copies: so this request is complete. */
 int mpi_buffer_iflush(struct mpi_rank *self, MPI_Request *request)
 {
     *request = mpi_request_nothing(self);
     return MPI_SUCCESS;
 }
 
-/* A communicator's own buffer takes precedence over the rank's (buffered_room in
- * mpi_message.c). */
+/* A communicator's own buffer takes precedence over the rank's (mpi_buffer_room). */
 int mpi_comm_attach_buffer(struct mpi_rank *self, MPI_Comm comm, void *buffer, MPI_Count size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
@@ -62,12 +63,16 @@ int mpi_comm_attach_buffer(struct mpi_rank *self, MPI_Comm comm, void *buffer, M
 int mpi_comm_detach_buffer(struct mpi_rank *self, MPI_Comm comm, void *buffer_addr, MPI_Count *size)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
-    return c ? detach(&c->buffer, &c->buffer_bytes, buffer_addr, size) : self->code;
+    if (!c) return self->code;
+    return detach(self, &c->buffered, &c->buffer, &c->buffer_bytes, buffer_addr, size);
 }
 
 int mpi_comm_flush_buffer(struct mpi_rank *self, MPI_Comm comm)
 {
-    return mpi_comm_of(self, comm) ? MPI_SUCCESS : self->code;
+    struct mpi_comm *c = mpi_comm_of(self, comm);
+    if (!c) return self->code;
+    mpi_buffer_drain(self, &c->buffered);
+    return MPI_SUCCESS;
 }
 
 /* The request is complete from the start: the program still has to wait or test for it. */

@@ -28,6 +28,7 @@ struct mpi_world {
 };
 
 struct mpi_task;
+struct mpi_buffered;
 struct mpi_topology;
 struct mpi_attribute;
 struct mpi_window;
@@ -56,6 +57,7 @@ struct mpi_comm {
     struct mpi_info *info;
     void *buffer; /* attached for MPI_Bsend */
     int64_t buffer_bytes;
+    struct mpi_buffered *buffered; /* messages in it */
 };
 
 /* An operation that goes on while its rank does something else: a collective or a window's, on a
@@ -92,6 +94,7 @@ struct mpi_rank {
     struct mpi_window *windows;
     void *buffer; /* attached for MPI_Bsend */
     int64_t buffer_bytes;
+    struct mpi_buffered *buffered; /* messages in it */
     int pending; /* requests that were started and not completed */
 };
 

@@ -43,19 +43,6 @@ int mpi_message_check(struct mpi_rank *r, struct mpi_request *q, struct mpi_mess
     return MPI_SUCCESS;
 }
 
-/* Only one message is looked at: comm.h copies what is sent, so earlier ones take no
- * room. A program is told of a buffer that could never be enough; it is not told of one
- * that is too small for several messages at once. */
-static int buffered_room(struct mpi_rank *r, struct mpi_request *q, int64_t bytes)
-{
-    struct mpi_comm *c = q->comm;
-    int64_t room = c->buffer ? c->buffer_bytes : r->buffer_bytes;
-    if (bytes <= room || (c->buffer ? c->buffer : r->buffer) == MPI_BUFFER_AUTOMATIC)
-        return MPI_SUCCESS;
-    return mpi_error(r, c, MPI_ERR_BUFFER, "%lld bytes do not fit in the attached buffer of %lld",
-                     (long long)bytes, (long long)room);
-}
-
 /* send: comm.h copies the data, so that packed ones are not needed any more when it returns. */
 static int send(struct mpi_rank *r, struct mpi_request *q)
 {
@@ -65,20 +52,21 @@ static int send(struct mpi_rank *r, struct mpi_request *q)
      * the message. */
     const void *data = q->buffer;
     void *packed = NULL;
-    if (q->mode == MODE_BUFFERED && buffered_room(r, q, bytes) != MPI_SUCCESS)
+    struct comm_request *buffered = NULL;
+    if (q->mode == MODE_BUFFERED && !(buffered = mpi_buffer_room(r, c, bytes)))
         return MPI_ERR_BUFFER;
     if (!q->type->dense && bytes) {
         data = packed = mpi_take(r->world, bytes);
         mpi_pack_bytes(packed, q->buffer, q->count, q->type);
         mpi_charge_copy(r, bytes);
     }
-    /* Modes of section 3.4. Synchronous sends wait until they are matched. Buffered ones
-     * have no request, so that the call is local whatever the size. Ready sends go as
+    /* Modes of section 3.4. Synchronous sends wait until they are matched. Those of
+     * buffered ones are the buffer's, so that the call is local whatever the size. Ready sends go as
      * standard ones: that the receive is posted is the program's promise. */
     int to = world_rank(c, q->peer);
     int64_t tag = mpi_tag(c->context, PLANE_PROGRAM, q->tag);
     if (q->mode == MODE_SYNCHRONOUS) comm_isend_synchronous(r->comm, to, tag, data, bytes, &q->q);
-    else if (q->mode == MODE_BUFFERED) comm_isend(r->comm, to, tag, data, bytes, NULL);
+    else if (q->mode == MODE_BUFFERED) comm_isend(r->comm, to, tag, data, bytes, buffered);
     else comm_isend(r->comm, to, tag, data, bytes, &q->q);
     mpi_give(r->world, packed);
     return MPI_SUCCESS;

@@ -22,6 +22,11 @@ void *mpi_receive_room(struct mpi_rank *r, struct mpi_request *q);
 void mpi_status_set(MPI_Status *s, int source, int tag, int64_t bytes);
 void mpi_status_empty(MPI_Status *s);
 
+/* --- mpi_buffered.c: room for a message of MPI_Bsend, sent by the request returned, NULL: none;
+ * drain: wait until all of a list have left --- */
+struct comm_request *mpi_buffer_room(struct mpi_rank *r, struct mpi_comm *c, int64_t bytes);
+void mpi_buffer_drain(struct mpi_rank *r, struct mpi_buffered **list);
+
 /* --- mpi_request.c, mpi_wait.c: poll: the first that is ready after a look, -1 --- */
 struct mpi_request *mpi_request_make(struct mpi_rank *r, enum mpi_request_kind what);
 int mpi_request_start(struct mpi_rank *r, const struct mpi_request *checked,

@@ -261,6 +261,68 @@ static void requests_of_the_program_complete(void **state)
     assert_int_equal(freed, 10);
 }
 
+/* --- the buffer of MPI_Bsend, where more than 100 bytes wait for their receiver --- */
+
+static int buffered(char *data, int bytes)
+{
+    int class;
+    MPI_Error_class(MPI_Bsend(data, bytes, MPI_CHAR, 1, 0, MPI_COMM_WORLD), &class);
+    return class;
+}
+
+static void one_millisecond(void)
+{
+    double end = MPI_Wtime() + 1e-3;
+    while (MPI_Wtime() < end) continue;
+}
+
+/* Rank 1 receives what has left, after a millisecond each time. */
+static void full(void *context)
+{
+    static char data[1000];
+    char room[2500];
+    void *back;
+    int size;
+    double *detached = context;
+    MPI_Init(NULL, NULL);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    if (own_rank() == 1) {
+        for (int i = 0; i < 10; i++) {
+            if (i < 2) one_millisecond();
+            MPI_Recv(data, 1000, MPI_CHAR, 0, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+            if (i == 1) MPI_Send(data, 1, MPI_CHAR, 0, 1, MPI_COMM_WORLD);
+        }
+        one_millisecond();
+        MPI_Recv(data, 1000, MPI_CHAR, 0, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    } else {
+        MPI_Buffer_attach(room, sizeof room);
+        assert_int_equal(buffered(data, 1000), MPI_SUCCESS);
+        assert_int_equal(buffered(data, 1000), MPI_SUCCESS);
+        assert_int_equal(buffered(data, 1000), MPI_ERR_BUFFER);
+        /* eager ones take no room once they are sent */
+        for (int i = 0; i < 8; i++) assert_int_equal(buffered(data, 100), MPI_SUCCESS);
+        MPI_Recv(data, 1, MPI_CHAR, 1, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        assert_int_equal(buffered(data, 1000), MPI_SUCCESS);
+        MPI_Buffer_detach(&back, &size);
+        *detached = MPI_Wtime();
+        assert_true(back == room && size == sizeof room);
+    }
+    MPI_Finalize();
+}
+
+static void a_buffer_is_full_until_messages_leave(void **state)
+{
+    static const struct mpi_setup setup;
+    struct machine_spec m = crossbar(2);
+    double detached = 0;
+    (void)state;
+    m.software.eager_bytes = 100;
+    struct outcome o = mpi_bare(&m, 2, &setup, full, &detached);
+    expect_ok(&o);
+    arena_destroy(o.arena);
+    assert_true(detached > 3e-3 && detached < 3.2e-3);
+}
+
 /* --- statuses --- */
 
 static void assert_empty(const MPI_Status *s)
@@ -365,6 +427,7 @@ int main(void)
         cmocka_unit_test(wildcards_and_probes_find_everything_in_order),
         cmocka_unit_test(exchanges_and_cancels_do_as_the_standard_says),
         cmocka_unit_test(requests_of_the_program_complete),
+        cmocka_unit_test(a_buffer_is_full_until_messages_leave),
         cmocka_unit_test(statuses_tell_what_happened),
         cmocka_unit_test(time_is_simulated),
     };
