@@ -51,7 +51,7 @@ static bool read_declaration(struct guest_run *g, const struct run_spec *spec, s
     if (g->reader == NULL || !loader_reserve(g->reader, 1, &none, e)) return false;
     g->copy = loader_instantiate(g->reader, 0, NULL, e);
     if (g->copy == NULL) return false;
-    g->declared = guest_declared(g->copy);
+    g->declared = guest_declared(g->copy, a);
     /* The file may have changed since its sheet was read. */
     if (g->declared == NULL)
         return err_set(e, ERR_DATA, "%s declares no program any more", spec->program.file);

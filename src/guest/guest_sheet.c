@@ -177,9 +177,15 @@ void guest_parameters_set(const struct mimdsim_program *p, const char *lines, st
 /* --- declarations ----------------------------------------------------------------------------- */
 
 /* PROGRAM(...) of mimdsim/program.h makes this symbol; it points into the instance. */
-const struct mimdsim_program *guest_declared(const struct loader_instance *i)
+const struct mimdsim_program *guest_declared(const struct loader_instance *i, struct arena *a)
 {
-    return loader_symbol(i, "mimdsim_program");
+    const struct mimdsim_program *p = loader_symbol(i, "mimdsim_program");
+    /* What is not ours is refused by whoever reads it first. */
+    if (p == NULL || p->magic != MIMDSIM_PROGRAM_MAGIC || p->size >= sizeof *p) return p;
+    /* An older, smaller struct: behind its end lies something else. */
+    struct mimdsim_program *whole = TAKE(a, 1, struct mimdsim_program);
+    memcpy(whole, p, p->size);
+    return whole;
 }
 
 static bool refuse(struct err *e, const char *path, const char *text)
@@ -253,7 +259,7 @@ static bool read_image(struct program_sheet *s, struct loader_template *t, const
     struct loader_instance *i = NULL;
     if (loader_reserve(t, 1, &none, e)) i = loader_instantiate(t, 0, NULL, e);
     if (i == NULL) return false;
-    const struct mimdsim_program *p = guest_declared(i);
+    const struct mimdsim_program *p = guest_declared(i, a);
     /* A declaration goes before main: a kernel may have both. */
     if (p != NULL) s->kind = PROGRAM_KERNEL;
     else if (loader_symbol(i, "main") != NULL || loader_symbol(i, "mimdsim_main") != NULL)

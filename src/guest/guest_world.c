@@ -165,7 +165,7 @@ void guest_rank_run(struct comm *c, const void *job, void *workspace)
     char *argv[] = {name, NULL};
     guest_rank_begin(g, c, w);
     /* Its parameters are written before anything of it runs, constructors included. */
-    g->declared = guest_declared(g->instance);
+    g->declared = guest_declared(g->instance, w->memory);
     guest_parameters_set(g->declared, w->spec->program.parameters, w->memory);
     /* Constructors, the part, destructors, as in a process and all on the simulated
      * clock. */

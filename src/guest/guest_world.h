@@ -61,8 +61,8 @@ extern const struct program_type guest_mpi_type;
 extern const struct comm_functions guest_calls;
 
 /* guest_declared: the declaration in an instance, as far as it is long and ours; the rest is zero.
- * NULL: the image declares none. */
-const struct mimdsim_program *guest_declared(const struct loader_instance *i);
+ * Smaller ones are copied to `a`. NULL: the image declares none. */
+const struct mimdsim_program *guest_declared(const struct loader_instance *i, struct arena *a);
 
 /* guest_parameters_set: write the values of "NAME = VALUE" lines into the variables of a copy. */
 void guest_parameters_set(const struct mimdsim_program *p, const char *lines, struct arena *a);

@@ -151,7 +151,8 @@ struct idup {
 static void run_idup(struct mpi_rank *r, void *argument)
 {
     const struct idup *x = argument;
-    dup(r, x->from, mpi_context_agree(r, &x->from->channel, x->sequence), x->to);
+    int code = dup(r, x->from, mpi_context_agree(r, &x->from->channel, x->sequence), x->to);
+    r->running->code = code;
 }
 
 /* The two sides of an intercommunicator meet at once, which is no error: a call may synchronize. */

@@ -19,6 +19,10 @@ int mpi_graph_create(struct mpi_rank *self, MPI_Comm comm_old, int nnodes, const
     if (!c) return self->code;
     if (nnodes < 0 || nnodes > c->size)
         return mpi_error(self, c, MPI_ERR_ARG, "a graph of %d nodes for %d ranks", nnodes, c->size);
+    for (int i = 0; i < nnodes; i++)
+        if (indx[i] < (i ? indx[i - 1] : 0))
+            return mpi_error(self, c, MPI_ERR_ARG,
+                             "the list of node %d ends at %d, before it begins", i, indx[i]);
     /* `indx` holds the ends of the nodes' lists, so the last one is the number of edges. */
     int nedges = nnodes ? indx[nnodes - 1] : 0;
     for (int i = 0; i < nedges; i++)
@@ -172,7 +176,10 @@ struct edge {
 static int by_source(const void *a, const void *b)
 {
     const struct edge *x = a, *y = b;
-    return x->from != y->from ? x->from - y->from : x->to - y->to;
+    if (x->from != y->from) return x->from - y->from;
+    if (x->to != y->to) return x->to - y->to;
+    /* Edges given twice: how qsort treats equal ones is not laid down. */
+    return (x->weight > y->weight) - (x->weight < y->weight);
 }
 
 /* gather_edges: everybody's edges on every rank, by numbers first and then all of them.

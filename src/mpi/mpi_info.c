@@ -34,6 +34,13 @@ static bool trimmed(char *out, const char *in, size_t most)
     return true;
 }
 
+/* asked: the entry of a key as the program writes it, blanks and all. */
+static struct mpi_entry *asked(struct mpi_info *i, const char *key)
+{
+    char k[MPI_MAX_INFO_KEY];
+    return trimmed(k, key, sizeof k) ? entry_of(i, k) : NULL;
+}
+
 /* Key and value are copies of the info's own. A key that is there keeps its place in the
  * order. */
 static void put(struct mpi_rank *r, struct mpi_info *i, const char *key, const char *value)
@@ -85,7 +92,7 @@ int mpi_info_set(struct mpi_rank *self, MPI_Info info, const char *key, const ch
 int mpi_info_delete(struct mpi_rank *self, MPI_Info info, const char *key)
 {
     struct mpi_info *i = info_of(self, info);
-    struct mpi_entry *e = i ? entry_of(i, key) : NULL;
+    struct mpi_entry *e = i ? asked(i, key) : NULL;
     if (!i) return self->code;
     if (!e) return mpi_error(self, NULL, MPI_ERR_INFO_NOKEY, "there is no key '%s'", key);
     /* A key that is not there is an error in this call alone; the others say so by a
@@ -103,7 +110,7 @@ int mpi_info_get(struct mpi_rank *self, MPI_Info info, const char *key, int valu
 {
     struct mpi_info *i = info_of(self, info);
     if (!i) return self->code;
-    const struct mpi_entry *e = entry_of(i, key);
+    const struct mpi_entry *e = asked(i, key);
     *flag = e != NULL;
     if (e) snprintf(value, (size_t)valuelen + 1, "%s", e->value);
     return MPI_SUCCESS;
@@ -116,7 +123,7 @@ int mpi_info_get_string(struct mpi_rank *self, MPI_Info info, const char *key, i
 {
     struct mpi_info *i = info_of(self, info);
     if (!i) return self->code;
-    const struct mpi_entry *e = entry_of(i, key);
+    const struct mpi_entry *e = asked(i, key);
     *flag = e != NULL;
     if (!e) return MPI_SUCCESS;
     if (*buflen > 0) snprintf(value, (size_t)*buflen, "%s", e->value);
@@ -130,7 +137,7 @@ int mpi_info_get_valuelen(struct mpi_rank *self, MPI_Info info, const char *key,
 {
     struct mpi_info *i = info_of(self, info);
     if (!i) return self->code;
-    const struct mpi_entry *e = entry_of(i, key);
+    const struct mpi_entry *e = asked(i, key);
     *flag = e != NULL;
     if (e) *valuelen = (int)strlen(e->value);
     return MPI_SUCCESS;

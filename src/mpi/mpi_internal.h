@@ -71,6 +71,7 @@ struct mpi_task {
     mpi_task_fn *run;
     void *argument;
     bool done;
+    int code; /* what the completing call returns */
 };
 
 struct mpi_rank {

@@ -158,7 +158,8 @@ struct pair {
 static void run_pair(struct mpi_rank *r, void *argument)
 {
     struct pair *p = argument;
-    exchange(r, p->out, p->in, &p->status);
+    int code = exchange(r, p->out, p->in, &p->status);
+    r->running->code = code;
 }
 
 /* Checked here, so that errors are the call's and not those of a later wait. The status

@@ -156,6 +156,7 @@ int mpi_request_finish(struct mpi_rank *r, struct mpi_request *q, MPI_Request *r
     int code = MPI_SUCCESS;
     r->pending--;
     q->active = false;
+    if (q->what == REQUEST_TASK) code = q->task->code;
     if (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE)
         code = mpi_message_finish(r, q, status);
     else if (q->what == REQUEST_GENERAL) code = finish_general(r, q, status);

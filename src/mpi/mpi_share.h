@@ -94,8 +94,9 @@ struct mpi_reduction {
     struct mpi_rank *self;
     struct mpi_op *op;
     struct mpi_type *type;
-    int64_t offset, element; /* [B] of an element's first byte; between elements that combine sees */
-    bool copied;             /* the type has gaps: algorithms work on copies */
+    int64_t offset;  /* [B] of an element's first byte */
+    int64_t element; /* [B] from one element to the next where combine sees them */
+    bool copied;     /* the type has gaps: algorithms work on copies */
     struct collective_op work;
 };
 void *mpi_reduction_copy(struct mpi_rank *r, const struct mpi_reduction *x, const void *memory,

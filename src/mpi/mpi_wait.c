@@ -306,6 +306,8 @@ int mpi_request_get_status(struct mpi_rank *self, MPI_Request request, int *flag
     /* What its completion will tell, without completing it. */
     if (*flag && (q->what == REQUEST_SEND || q->what == REQUEST_RECEIVE))
         mpi_message_status(self, q, status);
+    if (*flag && q->what == REQUEST_TASK && q->status_at >= 0 && status)
+        *status = *(MPI_Status *)((char *)q->argument + q->status_at);
     if (*flag && q->what == REQUEST_GENERAL && status) {
         void *const *f = q->argument;
         return (int)mpi_call_program(self, f[0], (intptr_t[6]){(intptr_t)f[3], (intptr_t)status});
@@ -328,6 +330,14 @@ int mpi_request_get_status_all(struct mpi_rank *self, int count,
     return code;
 }
 
+/* Null and inactive requests; a wrong handle is left to the look at it. */
+static bool passed_over(struct mpi_rank *r, MPI_Request handle)
+{
+    if (handle == MPI_REQUEST_NULL) return true;
+    const struct mpi_request *q = mpi_object(r, handle, KIND_REQUEST);
+    return q && !q->active;
+}
+
 int mpi_request_get_status_any(struct mpi_rank *self, int count,
                                const MPI_Request array_of_requests[], int *indx, int *flag,
                                MPI_Status *status)
@@ -336,7 +346,7 @@ int mpi_request_get_status_any(struct mpi_rank *self, int count,
     *indx = MPI_UNDEFINED;
     *flag = 0;
     for (int i = 0; i < count && code == MPI_SUCCESS; i++) {
-        if (array_of_requests[i] == MPI_REQUEST_NULL) continue;
+        if (passed_over(self, array_of_requests[i])) continue;
         active++;
         code = mpi_request_get_status(self, array_of_requests[i], flag, status);
         if (!*flag) continue;
@@ -355,7 +365,7 @@ int mpi_request_get_status_some(struct mpi_rank *self, int incount,
     *outcount = 0;
     for (int i = 0; i < incount && code == MPI_SUCCESS; i++) {
         int flag;
-        if (array_of_requests[i] == MPI_REQUEST_NULL) continue;
+        if (passed_over(self, array_of_requests[i])) continue;
         active++;
         code = mpi_request_get_status(self, array_of_requests[i], &flag,
                                       array_of_statuses ? &array_of_statuses[*outcount]

@@ -150,7 +150,9 @@ int mpi_win_free(struct mpi_rank *self, MPI_Win *win)
 {
     struct mpi_window *w = mpi_window_of(self, *win);
     if (!w) return self->code;
-    if (w->exposed || w->access || w->lock_all)
+    bool held = false;
+    for (int i = 0; w->locked && i < w->comm->size; i++) held = held || w->locked[i];
+    if (w->exposed || w->access || w->lock_all || held)
         return mpi_error(self, w->comm, MPI_ERR_RMA_SYNC, "an epoch of the window is still open");
     int code = mpi_attributes_end(self, KIND_WIN, w);
     if (code != MPI_SUCCESS) return code;

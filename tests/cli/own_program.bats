@@ -140,3 +140,17 @@ PROGRAM
     fails_with 65 mimdsim run mine.c --set program.cost=block
     stderr_says "did you mean 'blocks'?"
 }
+
+@test "what an older, smaller declaration lacks is zero, whatever lies behind it" {
+    cat >old.c <<'C'
+#include <stddef.h>
+#include <mimdsim/program.h>
+static void run(struct comm *c) { (void)c; }
+PROGRAM(.run = run, .size = offsetof(struct mimdsim_program, tolerance), .tolerance = -1,
+        .stack_bytes = -1);
+C
+    works mimdsim run old.c --set ranks=2
+    sed 's/\.size = [^)]*), //' old.c >new.c
+    fails_with 65 mimdsim run new.c --set ranks=2
+    stderr_says ".tolerance is below zero"
+}

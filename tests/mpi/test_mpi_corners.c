@@ -251,6 +251,134 @@ static void nested_operations_are_refused(void **state)
     mpi_fails(2, nested, NULL, "MPI_Ibarrier: called by a function inside an operation");
 }
 
+/* --- what operations in progress tell --- */
+
+static int refuse_copy(MPI_Comm c, int key, void *extra, void *in, void *out, int *flag)
+{
+    (void)c, (void)key, (void)extra, (void)in, (void)out, (void)flag;
+    return MPI_ERR_INTERN;
+}
+
+static void failing_copies(void *context)
+{
+    int key;
+    MPI_Comm copy;
+    MPI_Request q;
+    (void)context;
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    MPI_Comm_create_keyval(refuse_copy, MPI_COMM_NULL_DELETE_FN, &key, NULL);
+    MPI_Comm_set_attr(MPI_COMM_WORLD, key, &key);
+    MPI_Comm_idup(MPI_COMM_WORLD, &copy, &q);
+    assert_int_not_equal(MPI_Wait(&q, MPI_STATUS_IGNORE), MPI_SUCCESS);
+    assert_true(copy == MPI_COMM_NULL);
+    MPI_Comm_delete_attr(MPI_COMM_WORLD, key);
+    MPI_Comm_free_keyval(&key);
+}
+
+/* The message of two ints does not fit in one. */
+static void failing_exchanges(void *context)
+{
+    int out[2] = {1, 2}, in[2] = {0, 0}, other = 1 - own_rank();
+    MPI_Request q;
+    (void)context;
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    MPI_Isendrecv(out, 2, MPI_INT, other, 4, in, 1, MPI_INT, other, 4, MPI_COMM_WORLD, &q);
+    assert_int_equal(MPI_Wait(&q, MPI_STATUS_IGNORE), MPI_ERR_TRUNCATE);
+    assert_int_equal(in[1], 0);
+}
+
+static void errors_of_operations_are_the_waits(void **state)
+{
+    (void)state;
+    mpi_ok(2, failing_copies, NULL);
+    mpi_ok(2, failing_exchanges, NULL);
+}
+
+static void looks(void *context)
+{
+    int out = 7, in = 0, flag, index, n, indices[2], other = 1 - own_rank();
+    MPI_Request q[2];
+    MPI_Status s;
+    (void)context;
+    /* An inactive request beside one that is complete, then inactive ones alone. */
+    MPI_Recv_init(&in, 1, MPI_INT, other, 9, MPI_COMM_WORLD, &q[0]);
+    MPI_Isendrecv(&out, 1, MPI_INT, other, 4, &in, 1, MPI_INT, other, 4, MPI_COMM_WORLD, &q[1]);
+    do MPI_Request_get_status(q[1], &flag, &s);
+    while (!flag);
+    assert_int_equal(s.MPI_SOURCE, other);
+    assert_int_equal(s.MPI_TAG, 4);
+    MPI_Request_get_status_any(2, q, &index, &flag, &s);
+    assert_int_equal(index, 1);
+    MPI_Request_get_status_some(2, q, &n, indices, MPI_STATUSES_IGNORE);
+    assert_int_equal(n, 1);
+    assert_int_equal(indices[0], 1);
+    MPI_Wait(&q[1], MPI_STATUS_IGNORE);
+    MPI_Request_get_status_any(2, q, &index, &flag, &s);
+    assert_int_equal(index, MPI_UNDEFINED);
+    assert_true(flag);
+    MPI_Request_get_status_some(2, q, &n, indices, MPI_STATUSES_IGNORE);
+    assert_int_equal(n, MPI_UNDEFINED);
+    MPI_Request_free(&q[0]);
+}
+
+static void looks_pass_over_inactive_requests(void **state)
+{
+    (void)state;
+    mpi_ok(2, looks, NULL);
+}
+
+/* Blanks around a key do not count, wherever it is given. */
+static void padded_keys(void *context)
+{
+    MPI_Info info;
+    char value[8] = "";
+    int flag, n = sizeof value;
+    (void)context;
+    MPI_Info_create(&info);
+    MPI_Info_set(info, " key ", "v");
+    MPI_Info_get_string(info, "  key  ", &n, value, &flag);
+    assert_true(flag);
+    assert_string_equal(value, "v");
+    MPI_Info_get_valuelen(info, "key ", &n, &flag);
+    assert_true(flag);
+    MPI_Info_delete(info, "key  ");
+    MPI_Info_get_nkeys(info, &n);
+    assert_int_equal(n, 0);
+    MPI_Info_free(&info);
+}
+
+static void keys_are_found_with_their_blanks(void **state)
+{
+    (void)state;
+    mpi_ok(1, padded_keys, NULL);
+}
+
+/* --- wrong arguments --- */
+
+static void falling_index(void *context)
+{
+    MPI_Comm graph;
+    (void)context;
+    MPI_Graph_create(MPI_COMM_WORLD, 2, (int[]){3, 1}, (int[]){1, 0, 1}, 0, &graph);
+}
+
+static void freed_under_a_lock(void *context)
+{
+    MPI_Win w;
+    int *memory;
+    (void)context;
+    MPI_Win_allocate(4, 4, MPI_INFO_NULL, MPI_COMM_WORLD, &memory, &w);
+    MPI_Win_lock(MPI_LOCK_SHARED, 0, 0, w);
+    MPI_Win_free(&w);
+}
+
+static void wrong_arguments_are_told(void **state)
+{
+    (void)state;
+    mpi_fails(2, falling_index, NULL, "the list of node 1 ends at 1, before it begins");
+    mpi_fails(2, freed_under_a_lock, NULL, "an epoch of the window is still open");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +389,10 @@ int main(void)
         cmocka_unit_test(reductions_across_know_where_elements_begin),
         cmocka_unit_test(large_counts_reach_functions_that_count_in_int),
         cmocka_unit_test(nested_operations_are_refused),
+        cmocka_unit_test(errors_of_operations_are_the_waits),
+        cmocka_unit_test(looks_pass_over_inactive_requests),
+        cmocka_unit_test(keys_are_found_with_their_blanks),
+        cmocka_unit_test(wrong_arguments_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
