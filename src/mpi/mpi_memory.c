@@ -21,7 +21,6 @@ union head {
         struct mpi_large list; /* large ones */
         int class;             /* power of two of small ones, -1: large */
     };
-    void *next_free;
     char room[HEAD];
 };
 
