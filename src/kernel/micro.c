@@ -228,7 +228,10 @@ static void estimate_barrier(const struct run_spec *spec, const struct model *mo
     const struct kernel_type stem##_kernel = {                                                     \
         .name = word,                                                                              \
         .title = text,                                                                             \
-        .rank = {1, stage_name, workspace_bytes, NULL, stem##_run},                                \
+        .rank = {.nstage = 1,                                                                      \
+                 .stage_name = stage_name,                                                         \
+                 .workspace_bytes = workspace_bytes,                                               \
+                 .run = stem##_run},                                                               \
         .accepts = accept,                                                                         \
         .prepare = prepare,                                                                        \
         .estimate = estimate_##stem,                                                               \

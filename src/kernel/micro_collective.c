@@ -268,7 +268,10 @@ static void estimate(const struct run_spec *spec, const struct model *model,
     const struct kernel_type stem##_kernel = {                                                     \
         .name = word,                                                                              \
         .title = text,                                                                             \
-        .rank = {NSTAGE, stage_name, workspace_bytes, NULL, run},                                  \
+        .rank = {.nstage = NSTAGE,                                                                 \
+                 .stage_name = stage_name,                                                         \
+                 .workspace_bytes = workspace_bytes,                                               \
+                 .run = run},                                                                      \
         .accepts = accepts,                                                                        \
         .prepare = prepare,                                                                        \
         .estimate = estimate,                                                                      \

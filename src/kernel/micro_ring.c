@@ -140,7 +140,10 @@ static void estimate(const struct run_spec *spec, const struct model *model,
     const struct kernel_type stem##_kernel = {                                                     \
         .name = word,                                                                              \
         .title = text,                                                                             \
-        .rank = {1, stage_name, workspace_bytes, NULL, run},                                       \
+        .rank = {.nstage = 1,                                                                      \
+                 .stage_name = stage_name,                                                         \
+                 .workspace_bytes = workspace_bytes,                                               \
+                 .run = run},                                                                      \
         .accepts = accepts,                                                                        \
         .prepare = prepare_,                                                                       \
         .estimate = estimate,                                                                      \

@@ -216,7 +216,7 @@ int mpi_cart_map(struct mpi_rank *self, MPI_Comm comm, int ndims, const int dims
                  const int periods[], int *newrank)
 {
     struct mpi_comm *c = mpi_comm_of(self, comm);
-    int64_t size;
+    int64_t size = 0;
     (void)periods;
     int code = c ? grid_size(self, c, ndims, dims, &size) : self->code;
     if (code == MPI_SUCCESS) *newrank = c->rank < size ? c->rank : MPI_UNDEFINED;

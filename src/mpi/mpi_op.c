@@ -36,9 +36,9 @@
 
 /* Results are 0 or 1 in the type of the operands. */
 #define LOGICAL(class, type)                                                                       \
-    ONE(land, class, type, a &&b, 1)                                                               \
-    ONE(lor, class, type, a || b, 1)                                                               \
-    ONE(lxor, class, type, !a != !b, 1)
+    ONE(land, class, type, a != 0 && b != 0, 1)                                                               \
+    ONE(lor, class, type, a != 0 || b != 0, 1)                                                               \
+    ONE(lxor, class, type, (a != 0) != (b != 0), 1)
 
 /* Not for floating-point numbers, whose bits mean nothing here. */
 #define BITS(class, type)                                                                          \
@@ -90,7 +90,7 @@ INTEGER(UINT64, uint64_t)
 REAL(FLOAT, float)
 REAL(DOUBLE, double)
 REAL(LONG_DOUBLE, long double)
-REAL(QUAD, _Float128)
+REAL(QUAD, __float128)
 COMPLEX(COMPLEX_FLOAT, float _Complex)
 COMPLEX(COMPLEX_DOUBLE, double _Complex)
 COMPLEX(COMPLEX_LONG_DOUBLE, long double _Complex)

@@ -104,7 +104,7 @@ typedef struct {
     int32_t v, i;
 } integer_pair;
 typedef struct {
-    _Float128 re, im;
+    __float128 re, im;
 } quad_pair;
 
 /* CLASS_NONE: bytes can be moved, but no operation is defined, or the simulator has none
@@ -185,7 +185,7 @@ static const struct mpi_type basic[TYPES] = {
     BASIC(0x2db, float_pair, CLASS_COMPLEX_FLOAT, "MPI_COMPLEX8"),
     BASIC(0x2e0, double_pair, CLASS_NONE, "MPI_LOGICAL16"),
     BASIC(0x2e1, double_pair, CLASS_NONE, "MPI_INTEGER16"),
-    BASIC(0x2e2, _Float128, CLASS_QUAD, "MPI_REAL16"),
+    BASIC(0x2e2, __float128, CLASS_QUAD, "MPI_REAL16"),
     BASIC(0x2e3, double_pair, CLASS_COMPLEX_DOUBLE, "MPI_COMPLEX16"),
     BASIC(0x2eb, quad_pair, CLASS_NONE, "MPI_COMPLEX32"),
 };

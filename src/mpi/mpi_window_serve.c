@@ -24,7 +24,8 @@ static void answer(struct mpi_rank *r, struct mpi_window *w, const struct mpi_rm
  * bounds checks would. Displacements count the target's unit (section 12.3). */
 static char *memory_of(struct mpi_rank *r, const struct mpi_window *w, const struct mpi_rma *x)
 {
-    if (w->flavor == MPI_WIN_FLAVOR_DYNAMIC) return (char *)NULL + x->displacement;
+    /* Of a dynamic window the displacement is an address of the target. */
+    if (w->flavor == MPI_WIN_FLAVOR_DYNAMIC) return (char *)(uintptr_t)x->displacement;
     int64_t at = x->displacement * w->unit, low = at + x->type->true_lb;
     int64_t high = low + (x->count - 1) * x->type->extent + x->type->true_extent;
     char text[200];
