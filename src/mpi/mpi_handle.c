@@ -11,7 +11,7 @@ enum { FIRST_HANDLE = 0x400 };
 
 /* Objects lie at even addresses, so an odd word is a free slot; the rest of it is the
  * number of the next one. */
-static void *free_slot(int next) { return (void *)((intptr_t)next << 1 | 1); }
+static void *free_slot(int next) { return (void *)((intptr_t)next * 2 + 1); }
 
 /* more_room: double the table; free slots are chained by numbers, -1 ends the chain. */
 static void more_room(struct mpi_rank *r)
