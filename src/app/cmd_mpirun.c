@@ -121,6 +121,7 @@ static bool make_plan(const struct common *c, const struct own *own, const char 
     if (fine && p->nrun != 1)
         fine = err_set(e, ERR_USAGE, "mpirun makes one run; several values are for `mimdsim run`");
     text_free(&line);
+    if (!fine) plan_free(p);
     return fine;
 }
 

@@ -68,8 +68,9 @@ static int64_t requests(const struct collective_shape *s, int rank)
 static void linear(const struct collective_call *k)
 {
     int rank = comm_rank(k->comm), size = comm_size(k->comm), n = size - 1;
-    struct comm_request *in = k->scratch, *out = in + n;
     own_block(k);
+    if (n == 0) return; /* one rank has no scratch */
+    struct comm_request *in = k->scratch, *out = in + n;
     for (int d = 1; d < size; d++) {
         int src = ring_down(rank, d, size);
         comm_irecv(k->comm, src, k->tag, recv_block(k, src), block_count(k, src) * k->element,
