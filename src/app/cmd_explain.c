@@ -149,8 +149,8 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
                t.host_bytes / 1e6);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
-        /* Whether the omission can change a result at all comes first. */
-        /* "left out (exact, in 3 of 12 runs): what: why" */
+        /* Whether the omission can change a result at all comes first. "left out (exact, in 3 of 12
+         * runs): what: why" */
         const struct omission *o = &k->kind[i].omission;
         printf("left out (");
         if (o->bound > 0) printf("bounded by %.1e", o->bound);

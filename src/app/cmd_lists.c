@@ -94,7 +94,6 @@ int cmd_scenarios(int argc, char **argv)
 }
 
 /* Only the built-in ones: programs of your own are files. */
-/* Programs that are built in; own programs are files. */
 int cmd_kernels(int argc, char **argv)
 {
     struct common c;

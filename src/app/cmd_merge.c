@@ -50,9 +50,9 @@ int cmd_merge(int argc, char **argv)
     struct store *s = arguments_store(&c, c.arg[0], &e);
     bool ok = s != NULL;
     struct json j = json_make(stdout);
-    /* Databases are merged one by one; those before the first that is refused stay merged. */
+    /* Databases are merged one by one in the order given; those before the first that is refused
+     * stay merged. */
     if (ok && c.json) json_array(&j);
-    /* In the order given; the first that fails ends it, and those before it stay merged. */
     for (int i = 1; ok && i < c.narg; i++) {
         struct store_merged m;
         ok = store_merge(s, c.arg[i], &m, &e);

@@ -44,9 +44,9 @@ static bool takes_word(const char *option)
     return false;
 }
 
-/* The first word that is no option and no option's value. */
-/* "--" is accepted before it, as everywhere else; a lone "-" is a name. The search
- * does not know which options exist: argp refuses those that do not. */
+/* The first word that is no option and no option's value. "--" is accepted before it, as everywhere
+ * else; a lone "-" is a name. The search does not know which options exist: argp refuses those that
+ * do not. */
 static int find_program(int argc, char **argv)
 {
     /* As the shell's mpirun: options of ours come before the program, all behind it are its own. */
@@ -97,9 +97,8 @@ static void tell(const struct common *c, const struct own *own, const struct run
                 (double)r->makespan_ps * 1e-12, (long long)r->messages, (long long)r->bytes);
 }
 
-/* The plan of the one run: PROGRAM with its settings. */
-/* Through the plan, so that machine, level, settings and limits are checked as those of a scenario
- * are. */
+/* The plan of the one run, PROGRAM with its settings: machine, level, settings and limits are
+ * checked as those of a scenario are. */
 static bool make_plan(const struct common *c, const struct own *own, const char *program,
                       const char *arguments, struct plan *p, struct err *e)
 {

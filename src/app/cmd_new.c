@@ -18,8 +18,8 @@ static const char doc[] =
     "change. "
     "Files that are there already are never overwritten. docs/own-program.md is the guide.";
 
-/* A name that can be a file's in any folder, a word in a database and a title in a figure. */
-/* No slash: a program belongs into the folder where its author is, and beside its scenario. */
+/* A name that can be a file's in any folder, a word in a database and a title in a figure. No
+ * slash: a program belongs into the folder where its author is, and beside its scenario. */
 static bool is_name(const char *s)
 {
     const size_t n = strlen(s);
@@ -29,8 +29,8 @@ static bool is_name(const char *s)
     return true;
 }
 
-/* The template with the name in the place of every @NAME@. */
-/* One mark only, so that nothing else of a program can be taken for one. */
+/* The template with the name in the place of every @NAME@. One mark only, so that nothing else of a
+ * program can be taken for one. */
 static void fill(struct text *out, const char *template, const char *name)
 {
     static const char mark[] = "@NAME@";
@@ -42,8 +42,8 @@ static void fill(struct text *out, const char *template, const char *name)
     }
 }
 
-/* A new file: O_EXCL, so that nothing that is there, a link least of all, is written to. */
-/* What could not be written as a whole is removed again: a disk that is full leaves nothing. */
+/* A new file: O_EXCL, so that nothing that is there, a link least of all, is written to. What could
+ * not be written as a whole is removed again: a disk that is full leaves nothing. */
 static bool write_new(const char *path, const struct text *content, struct err *e)
 {
     const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL, 0666);

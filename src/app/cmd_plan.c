@@ -21,8 +21,8 @@ static const char doc[] = "List the runs of SCENARIO without running them: ident
                           "document. `mimdsim run SCENARIO --point ID` "
                           "makes one of these runs, and `mimdsim merge` joins the databases.";
 
-/* One run, columns separated by tabs; the reason of a point that cannot run comes last. */
-/* Tab separated, so that `cut` finds the columns. */
+/* One run, columns separated by tabs for `cut`; the reason of a point that cannot run comes
+ * last. */
 static void line(const struct run_spec *r, int shards)
 {
     printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name,
@@ -31,7 +31,6 @@ static void line(const struct run_spec *r, int shards)
     printf("%s%s\n", r->refused != NULL ? "\trefused: " : "", r->refused != NULL ? r->refused : "");
 }
 
-/* The same as an object. */
 /* The same as an object of the document. */
 static void row(struct json *j, const struct run_spec *r, int shards)
 {
@@ -52,8 +51,7 @@ static void row(struct json *j, const struct run_spec *r, int shards)
     json_end(j);
 }
 
-/* A head and a line per run, or one list. */
-/* Nothing is run, so nothing is stored. */
+/* A head and a line a run, or one list. Nothing is run, so nothing is stored. */
 static void list(const struct common *c, const struct plan *p, int shards)
 {
     struct json j = json_make(stdout);

@@ -269,8 +269,8 @@ static void two_axes(const struct explain_search *s, int axis[2])
         }
 }
 
-/* A factor, or the value itself where the nominal value is 0. */
-/* A number of an axis as the map has it. */
+/* A number of an axis as the map has it: a factor, or the value itself where the nominal value
+ * is 0. */
 static double shown(const struct explain_space *space, const double *u, int i)
 {
     /* axes that go both ways are factors */

@@ -72,13 +72,13 @@ static int finish(int status)
     return status ? status : err_exit_status(ERR_IO);
 }
 
-/* argp prints argv[0] in messages: "mimdsim run". "-h" is no option of argp's. */
 /* Their command lines are gcc's, where -h is the name of a shared library. */
 static bool takes_compiler_options(const struct verb *v)
 {
     return v->run == cmd_cc || v->run == cmd_cxx || v->run == cmd_f90;
 }
 
+/* argp prints argv[0] in messages: "mimdsim run". "-h" is no option of argp's. */
 static int run_verb(const struct verb *v, int argc, char **argv)
 {
     static const char prefix[] = "mimdsim ";
@@ -90,7 +90,6 @@ static int run_verb(const struct verb *v, int argc, char **argv)
     return finish(v->run(argc, argv));
 }
 
-/* Help, version, or a verb. */
 /* The verb whose command this is when it was started as mimdsim-cc, mimdsim-c++ or mimdsim-f90,
  * links to this program for build systems that take one word as a compiler; NULL: started as
  * itself. */
@@ -104,6 +103,7 @@ static const struct verb *verb_of_name(const char *program)
     return NULL;
 }
 
+/* Help, version, or a verb. */
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";

@@ -26,12 +26,11 @@ static const struct {
                  {".C", "c++"},   {".f", "f90"},   {".F", "f90"},   {".f90", "f90"},
                  {".F90", "f90"}, {".f95", "f90"}, {".f03", "f90"}, {".f08", "f90"}};
 
-/* -g: crashes are told by function and line. */
-/* As people compile for speed, with lines for messages. Part of the identity of a program. */
+/* -g: crashes are told by function and line. As people compile for speed, with lines for messages.
+ * Part of the identity of a program. */
 static const char flags[][8] = {"-O2", "-g"};
 
-/* NULL: no source, so an image or a schedule. */
-/* By the ending alone, as gcc chooses a language. */
+/* NULL: no source, so an image or a schedule. By the ending alone, as gcc chooses a language. */
 static const char *verb_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -70,9 +69,8 @@ static int run_process(const char *const *argv, struct text *out)
     return pid > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* The running program, whatever it was called as. */
-/* This program itself: a verb of its own is called as a process, so that what people get from
- * `mimdsim cc` and what `mimdsim run my.c` makes are the same. */
+/* This program itself, whatever it was called as: a verb of its own is called as a process, so
+ * that what people get from `mimdsim cc` and what `mimdsim run my.c` makes are the same. */
 static const char *own_path(struct arena *a)
 {
     char path[4096];
@@ -180,8 +178,8 @@ static bool is_ours(const char *path)
            (info.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
-/* Compiled beside its place and then moved there: whoever looks finds all of it or nothing. */
-/* A process that is killed on the way leaves a file that nobody takes for an image. */
+/* Compiled beside its place and then moved there: whoever looks finds all of it or nothing. A
+ * process that is killed on the way leaves a file that nobody takes for an image. */
 static bool compile(const char *self, const char *verb, const char *path, const char *image,
                     struct err *e)
 {

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* 15 hexadecimal digits are 60 bits: more than enough, and no number is negative. */
-enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 }; /* more hosts than anyone has; 60 bits */
+/* 15 hexadecimal digits are 60 bits: even enough for any number of hosts, and never negative. */
+enum { MOST_SHARDS = 1000000, HASH_DIGITS = 15 };
 
 /* NULL is no shard: then all runs are wanted. */
 bool shard_parse(const char *text, struct shard *out, struct err *e)
@@ -27,9 +27,8 @@ bool shard_parse(const char *text, struct shard *out, struct err *e)
 
 int shard_of(const struct run_spec *run, int of)
 {
-    /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by one.
-     */
-    /* Fifteen hexadecimal digits fit into 64 bits and are more than enough to be even. */
+    /* The hash is evenly spread as it is. Repetitions share it, so they are dealt out one by
+     * one. */
     char digits[HASH_DIGITS + 1];
     snprintf(digits, sizeof digits, "%.*s", HASH_DIGITS, run->config_hash);
     return (int)((strtoull(digits, NULL, 16) + (unsigned)run->rep) % (unsigned)of) + 1;

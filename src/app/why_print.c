@@ -34,7 +34,6 @@ static const char *duration(double ps, char *buffer, size_t size)
 /* ---- words ---- */
 
 /* Time and steps of one cause, summed over the stages: steps tell how often, times how long. */
-/* Steps tell how often, times how long. */
 struct sum {
     int64_t time_ps, steps;
     enum path_cause cause;

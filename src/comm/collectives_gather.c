@@ -87,9 +87,8 @@ static void gather_binomial(const struct collective_call *k)
              subtree(child, size) * k->count);
     }
     const void *gathered = ranks > 1 ? k->scratch : k->send;
-    /* A leaf receives its block in place; the root turns the blocks so that subtrees lie
-     * together. */
-    /* One message for the whole subtree; the root puts the blocks where they belong. */
+    /* A leaf receives its block in place; the root turns the blocks so that subtrees lie together.
+     * One message for the whole subtree; the root puts the blocks where they belong. */
     if (relative) give(k, 0, ring_up(relative - mask, k->root, size), gathered, ranks * k->count);
     else if (ranks > 1) turn(k, true);
     else own_copy(k, at(k, k->recv, block_place(k, k->root)), k->send, k->count);

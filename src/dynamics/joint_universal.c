@@ -1,8 +1,7 @@
 /* joint_universal.c - universal joints: turns about x, fixed in the joint frame, and about y, fixed in the body. */
 #include "dynamics/joint_motion.h"
 
-/* H = [(cos b, 0, sin b); 0], [y; 0]; W = [(-sin b, 0, cos b); 0], [0; U]. */
-/* b: the second angle. */
+/* H = [(cos b, 0, sin b); 0], [y; 0]; W = [(-sin b, 0, cos b); 0], [0; U]. b: the second angle. */
 static void columns(real sine, real cosine, struct subspace *s)
 {
     for (int k = 0; k < 36; k++) s->col[k] = 0;

@@ -47,8 +47,7 @@ void motion_totals_of(struct dynamics *d, const real *q, const real *u, struct m
     for (int i = 0; i < d->nbody; i++) {
         const struct body *b = &d->body[i];
         add_body(d, i, &x[i], t);
-        /* Springs store energy, dampers do not. */
-        /* k (q - rest)^2 / 2. */
+        /* Springs store energy, dampers do not. k (q - rest)^2 / 2. */
         real stretch = b->has_spring ? q[b->q_at] - b->rest : 0;
         t->potential += b->stiffness * stretch * stretch / 2;
     }

@@ -100,8 +100,8 @@ static void turn_part(struct chain *ch, const struct subspace *a, int a0, const 
     dense_product_tn(na, nb, SPACE, part, product, out, &ch->work);
 }
 
-/* Axes that pick components cost nothing; a general Q costs its products (physics 4.2). */
-/* W_a^T M W_b, the blocks of A (physics 4.2). */
+/* W_a^T M W_b, the blocks of A (physics 4.2). Axes that pick components cost nothing; a general
+ * Q costs its products. */
 void assembly_project(struct chain *ch, const struct subspace *a, const real *M,
                       const struct subspace *b, real *out)
 {

@@ -366,8 +366,8 @@ void chain_shifted_inertia(const struct body *b, real *inertia, struct work *w)
     dense_product(SPACE, SPACE, SPACE, product, shift, inertia, w);
 }
 
-/* load: f = I a + P - Fext of own body i. */
-/* physics (2.3), (2.4) without the children's part. */
+/* load: f = I a + P - Fext of own body i, (2.3) and (2.4) of physics without the children's
+ * part. */
 static void load(struct chain *ch, int i)
 {
     const struct body *b = &ch->shared->body[i];

@@ -32,8 +32,8 @@ static void multiply(const real *M, bool transposed, const twice *x, twice *y)
 }
 
 /* X is applied as the product of its shift and its rotation, whose entries are numbers of working
- * precision: multiplied out, X itself would be rounded. */
-/* y = X f, or X^T v, by the factors of X, which are exact; y may be the argument. */
+ * precision: multiplied out, X itself would be rounded. y = X f, or X^T v, by the factors of X,
+ * which are exact; y may be the argument. */
 static void transform(struct forward *f, int i, bool transposed, twice *y)
 {
     real shift[SQUARE] = {0}, turn[SQUARE] = {0};

@@ -54,8 +54,8 @@ struct collective_shape micro_collective_shape(const struct run_spec *spec)
 }
 
 /* An algorithm by name: an unknown one is refused with the list of names, one that does not fit
- * this number of ranks with what it needs. */
-/* The error names what exists, because users type these names. */
+ * this number of ranks with what it needs. The error names what exists, because users type these
+ * names. */
 static const struct collective_algorithm *named(const struct collective_shape *s, const char *name,
                                                 struct err *e)
 {

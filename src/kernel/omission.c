@@ -99,8 +99,8 @@ int omission_scene(const struct run_spec *spec, struct model **m, struct state *
     return fixed;
 }
 
-/* terms: what the kernel's equations do without. */
-/* Each line names what is left out, its bound (0: exact) and the reason, for `explain`. */
+/* terms: what the kernel's equations do without. Each line names what is left out, its bound (0:
+ * exact) and the reason, for `explain`. */
 static void list_terms(const struct kernel_job *job, const struct kernel_type *kernel,
                        struct left_out *l)
 {

@@ -60,8 +60,8 @@ static struct scene *scene_make(const struct run_spec *spec, struct err *e)
     return NULL;
 }
 
-/* Least recently used, by the cache's own clock: no host time. */
-/* Give the least recently used scene away, until there is room for one of `nbody` bodies. */
+/* Give the least recently used scene away, by the cache's own clock and no host time, until
+ * there is room for one of `nbody` bodies. */
 static void make_room(struct program_cache *cache, int nbody)
 {
     for (;;) {

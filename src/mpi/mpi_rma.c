@@ -216,21 +216,14 @@ static int operate(struct mpi_rank *r, const struct call *c, MPI_Request *reques
                             (struct mpi_start){MPI_NON_BLOCKING, request});
 }
 
-/* Section 12.3.1. All functions below differ in what they fill in. */
+/* Section 12.3.1. All functions below differ in what they fill in; those without a request are
+ * the others without one. */
 int mpi_put(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
             MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp,
             MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win)
 {
-    struct call c = {.kind = RMA_PUT,
-                     .out = origin_addr,
-                     .nout = origin_count,
-                     .tout = origin_datatype,
-                     .target = target_rank,
-                     .displacement = target_disp,
-                     .count = target_count,
-                     .type = target_datatype,
-                     .win = win};
-    return operate(self, &c, NULL);
+    return mpi_rput(self, origin_addr, origin_count, origin_datatype, target_rank, target_disp,
+                    target_count, target_datatype, win, NULL);
 }
 
 int mpi_rput(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
@@ -255,16 +248,8 @@ int mpi_get(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count,
             MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp,
             MPI_Count target_count, MPI_Datatype target_datatype, MPI_Win win)
 {
-    struct call c = {.kind = RMA_GET,
-                     .in = origin_addr,
-                     .nin = origin_count,
-                     .tin = origin_datatype,
-                     .target = target_rank,
-                     .displacement = target_disp,
-                     .count = target_count,
-                     .type = target_datatype,
-                     .win = win};
-    return operate(self, &c, NULL);
+    return mpi_rget(self, origin_addr, origin_count, origin_datatype, target_rank, target_disp,
+                    target_count, target_datatype, win, NULL);
 }
 
 int mpi_rget(struct mpi_rank *self, void *origin_addr, MPI_Count origin_count,
@@ -290,17 +275,8 @@ int mpi_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count ori
                    MPI_Datatype origin_datatype, int target_rank, MPI_Aint target_disp,
                    MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win)
 {
-    struct call c = {.kind = RMA_ACCUMULATE,
-                     .out = origin_addr,
-                     .nout = origin_count,
-                     .tout = origin_datatype,
-                     .target = target_rank,
-                     .displacement = target_disp,
-                     .count = target_count,
-                     .type = target_datatype,
-                     .op = op,
-                     .win = win};
-    return operate(self, &c, NULL);
+    return mpi_raccumulate(self, origin_addr, origin_count, origin_datatype, target_rank,
+                           target_disp, target_count, target_datatype, op, win, NULL);
 }
 
 int mpi_raccumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,
@@ -335,19 +311,9 @@ int mpi_get_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count
                        MPI_Datatype result_datatype, int target_rank, MPI_Aint target_disp,
                        MPI_Count target_count, MPI_Datatype target_datatype, MPI_Op op, MPI_Win win)
 {
-    struct call c = {.out = origin_addr,
-                     .nout = origin_count,
-                     .tout = origin_datatype,
-                     .in = result_addr,
-                     .nin = result_count,
-                     .tin = result_datatype,
-                     .target = target_rank,
-                     .displacement = target_disp,
-                     .count = target_count,
-                     .type = target_datatype,
-                     .op = op,
-                     .win = win};
-    return get_accumulate(self, c, NULL);
+    return mpi_rget_accumulate(self, origin_addr, origin_count, origin_datatype, result_addr,
+                               result_count, result_datatype, target_rank, target_disp,
+                               target_count, target_datatype, op, win, NULL);
 }
 
 int mpi_rget_accumulate(struct mpi_rank *self, const void *origin_addr, MPI_Count origin_count,

@@ -103,19 +103,24 @@ static void wait_one(struct mpi_rank *r, struct mpi_request *q)
 
 /* --- one --- */
 
-/* A null or inactive request is complete at once, with an empty status. */
+/* The request, where there is something to wait for. Else NULL, and *code is what the call returns:
+ * a null or inactive request is complete at once, with an empty status. */
+static struct mpi_request *awaited(struct mpi_rank *r, MPI_Request request, MPI_Status *status,
+                                   int *code)
+{
+    *code = MPI_SUCCESS;
+    struct mpi_request *q = request != MPI_REQUEST_NULL ? mpi_request_of(r, request) : NULL;
+    if (q && q->active) return q;
+    if (request != MPI_REQUEST_NULL && !q) *code = r->code;
+    else mpi_status_empty(status);
+    return NULL;
+}
+
 int mpi_wait(struct mpi_rank *self, MPI_Request *request, MPI_Status *status)
 {
-    if (*request == MPI_REQUEST_NULL) {
-        mpi_status_empty(status);
-        return MPI_SUCCESS;
-    }
-    struct mpi_request *q = mpi_request_of(self, *request);
-    if (!q) return self->code;
-    if (!q->active) {
-        mpi_status_empty(status);
-        return MPI_SUCCESS;
-    }
+    int code;
+    struct mpi_request *q = awaited(self, *request, status, &code);
+    if (!q) return code;
     wait_one(self, q);
     return mpi_request_finish(self, q, request, status);
 }
@@ -123,17 +128,10 @@ int mpi_wait(struct mpi_rank *self, MPI_Request *request, MPI_Status *status)
 /* The flag is what the program loops on; time passes when it stays 0, so such loops end. */
 int mpi_test(struct mpi_rank *self, MPI_Request *request, int *flag, MPI_Status *status)
 {
+    int code;
     *flag = 1;
-    if (*request == MPI_REQUEST_NULL) {
-        mpi_status_empty(status);
-        return MPI_SUCCESS;
-    }
-    struct mpi_request *q = mpi_request_of(self, *request);
-    if (!q) return self->code;
-    if (!q->active) {
-        mpi_status_empty(status);
-        return MPI_SUCCESS;
-    }
+    struct mpi_request *q = awaited(self, *request, status, &code);
+    if (!q) return code;
     *flag = mpi_poll(self, 1, &q) >= 0;
     return *flag ? mpi_request_finish(self, q, request, status) : MPI_SUCCESS;
 }

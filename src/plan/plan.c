@@ -104,8 +104,8 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
     struct scenario s;
     *p = (struct plan){.arena = arena_create()};
     if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
-    /* Perhaps it is a file of another kind: then that is told instead. */
-    /* The plan is emptied first, so that a caller may free it whatever happened. */
+    /* Perhaps it is a file of another kind: then that is told instead. The plan is emptied first,
+     * so that a caller may free it whatever happened. */
     plan_free(p);
     file_kind_refuse(name, FILE_SCENARIO, e);
     return false;

@@ -106,8 +106,8 @@ static bool no_such_figure(const char *data_dir, const char *wanted, struct err 
     return false;
 }
 
-/* JSON, as SQLite's json_each takes it back. */
-/* Called for every row that has a run_id; a run may come several times. */
+/* JSON, as SQLite's json_each takes it back. Called for every row that has a run_id; a run may come
+ * several times. */
 static void remember_run(void *context, int64_t id)
 {
     struct text *ids = context;
@@ -279,8 +279,8 @@ static bool write_script(struct figure *f, struct err *e)
     return ok;
 }
 
-/* Images of an earlier drawing must not be taken for this one's. */
-/* PNG and SVG are what the scripts make. */
+/* Images of an earlier drawing must not be taken for this one's. PNG and SVG are what the scripts
+ * make. */
 static void remove_images(const struct figure *f)
 {
     static const char *const suffix[] = {".png", ".svg"};

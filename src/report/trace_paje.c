@@ -112,8 +112,8 @@ static void put_event(const struct timeline *t, const struct event *v, FILE *out
     else fprintf(out, " A r%d idle\n", p->rank);
 }
 
-/* Make or end the containers: the machine around the ranks. */
-/* Ranks are inside the machine: made after it, ended before it. */
+/* Make or end the containers: the machine around the ranks. Ranks are inside the machine: made
+ * after it, ended before it. */
 static void put_containers(const struct timeline *t, bool make, int64_t time, FILE *out)
 {
     if (make) {
@@ -135,9 +135,8 @@ static void put_containers(const struct timeline *t, bool make, int64_t time, FI
 
 void trace_paje(const struct timeline *t, FILE *out)
 {
-    /* At most four events a span: stage, span, message end, idle. */
-    /* Gather and sort first: Paje is read from start to end, in the order of time, while spans
-     * lie rank by rank. */
+    /* At most four events a span: stage, span, message end, idle. Gather and sort first: Paje is
+     * read from start to end, in the order of time, while spans lie rank by rank. */
     int64_t *partner = timeline_partners(t), end = t->begin_ps;
     struct event *event = malloc((size_t)t->nspan * 4 * sizeof *event);
     CHECK(event != NULL);

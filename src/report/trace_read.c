@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "report/timeline.h"
 
-/* A query's rows on their way into a result. */
 /* What the rows of three queries fill, one after the other. */
 struct reading {
     struct arena *a;

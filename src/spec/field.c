@@ -109,8 +109,6 @@ static bool set_bool(bool *place, const char *text, char *why, int size)
 
 /* Exact words only: an abbreviation would change its meaning with the next choice added. A near
  * miss is told by name. */
-/* Exact words only: an abbreviation would change its meaning with the next choice added. A near
- * miss is told by name. */
 static bool set_choice(const struct field *f, int *place, const char *text, char *why, int size)
 {
     /* The list of choices is part of the message: nobody should have to look it up. */

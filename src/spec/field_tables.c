@@ -70,7 +70,6 @@ void fields_config(const struct run_spec *run, struct text *out)
         fields_print(tables[i], (const char *)run + tables[i]->offset, false, out);
 }
 
-/* What the manual says a value is. "one of" is followed by the choices. */
 /* What the manual says a value is. "one of" is followed by the choices, "a list, each" by the unit
  * of its entries. */
 static const char *kind_name(const struct field *f)

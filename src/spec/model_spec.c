@@ -208,7 +208,6 @@ static const struct field fields[] = {
                                                              "pose, 0: none"},
     {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
      .fallback = "0 N m s/rad", .idle = idle_from_file, .doc = "damping of the joints, 0: none"},
-    /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8. */
     /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8.
      * With the projection of physics 7.5 it would not be needed. */
     {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation), .min = 0, .max = 1e9,

@@ -105,7 +105,6 @@ const char *program_parameter_text(const struct field *f, const char *text, stru
     return canonical;
 }
 
-/* Values travel as "name = value" lines: the text is what identity and store keep anyway. */
 /* Values travel as "name = value" lines: the text is what identity and store keep anyway. One that
  * does not fit into the buffer is cut. */
 bool program_value_find(const char *lines, const char *name, char *buffer, int size)

@@ -120,8 +120,8 @@ static bool setting_id(struct store *s, const char *key, int nkey, const char *v
     return true;
 }
 
-/* The "key = value" lines of the canonical configuration. */
-/* Settings of a passing database are never asked for. */
+/* The "key = value" lines of the canonical configuration. Settings of a passing database are never
+ * asked for. */
 static bool put_settings(struct store *s, int64_t run, const char *config, struct err *e)
 {
     if (s->passing) return true;

@@ -20,8 +20,8 @@ enum { MOST_BACKUPS = 100 };
 
 /* --- tables ----------------------------------------------------------------------------------- */
 
-/* Call `visit` with each row of `sql` on `db`; false at the first failure of either. */
-/* The statement is finalized in any case; its code is the error of the last step. */
+/* Call `visit` with each row of `sql` on `db`; false at the first failure of either. The statement
+ * is finalized in any case; its code is the error of the last step. */
 typedef bool visit_fn(struct store *s, sqlite3_stmt *row, struct err *e);
 
 static bool for_each(struct store *s, sqlite3 *db, const char *sql, visit_fn *visit, struct err *e)

@@ -76,9 +76,9 @@ static double duration_of(struct ladder *l)
     return fastest > 0 ? 2 / fastest : 1;
 }
 
-/* The parallel forward kernel's time on 1, 2, 4, ... processors; the least of them. */
-/* Every rung's predicted time is its number of evaluations times the time of one. One per
- * processor count is enough for all of them. */
+/* The parallel forward kernel's time on 1, 2, 4, ... processors; the least of them. Every rung's
+ * predicted time is its number of evaluations times the time of one. One per processor count is
+ * enough for all of them. */
 static void fastest_evaluation(struct climb *c)
 {
     struct ladder *l = c->l;

@@ -38,8 +38,8 @@ static double makespan_error(int64_t ps, const struct trial *finest)
 }
 
 /* Largest difference of a rank's finishing time over the makespan; `finish` NULL: all end at
- * `end_ps`. */
-/* A makespan may agree by chance while ranks finish at other times: this error would show it. */
+ * `end_ps`. A makespan may agree by chance while ranks finish at other times: this error would show
+ * it. */
 static double finish_error(const int64_t *finish, int64_t end_ps, const struct trial *finest,
                            int nrank)
 {

@@ -16,8 +16,8 @@ static void print_rung(FILE *out, const struct accuracy_rung *x, int n)
     fprintf(out, "\n");
 }
 
-/* How many rows from i on are of the same rung. */
-/* The rows of a rung follow each other in the report, one per quantity. */
+/* How many rows from i on are of the same rung. The rows of a rung follow each other in the report,
+ * one per quantity. */
 static int rung_length(const struct accuracy_report *r, int i)
 {
     int n = 1;
@@ -44,8 +44,7 @@ static void print_choice(FILE *out, const struct accuracy_choice *c)
                 c->finest->rung, c->finest->error);
         return;
     }
-    /* A network level has one name, a stepper two: "rk4" and "64 steps". */
-    /* "link" alone, but "rk4, 64 steps" */
+    /* A network level has one name, "link", a stepper two: "rk4, 64 steps". */
     bool same = strcmp(c->rung->method, c->rung->rung) == 0;
     fprintf(out, "%s%s%s, error %.1e", c->rung->method, same ? "" : ", ", same ? "" : c->rung->rung,
             c->rung->error);

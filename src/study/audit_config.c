@@ -40,9 +40,8 @@ static const char *line_without(const char *text, const char *all, struct arena 
 }
 
 /* SHA-256 of the machine that a text describes, as plan/machine_changes.c takes it of a shipped
- * one. */
-/* The same sum as plan/machine_changes.c makes: the lines of the machine without the two
- * settings that say how accurately it is simulated, not what it is. */
+ * one: the lines of the machine without the two settings that say how accurately it is
+ * simulated, not what it is. */
 static void machine_hash(const char *config_text, char hex[65])
 {
     static const char *const question[] = {"machine.network.level = ",

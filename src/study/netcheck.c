@@ -43,8 +43,7 @@ static bool case_rows(struct netcheck_reader *r, const struct node *c)
     return netcheck_saturation_rows(r, c);
 }
 
-/* Whether any level answered any row. */
-/* Whether there is any answer to judge. */
+/* Whether any level answered any row: is there anything to judge? */
 static bool any_answer(const struct netcheck *n)
 {
     for (int i = 0; i < n->nrow; i++)
@@ -71,9 +70,8 @@ bool netcheck_run(struct netcheck *n, const char *path, const bool *level, const
 {
     const struct node *root = document_read(path, a, e);
     if (!root) return false;
-    /* A file may be one case without a list around it. */
-    /* Read the whole file first: a mistake at its end should not come after minutes of
-     * simulation. */
+    /* A file may be one case without a list around it. Read the whole file first: a mistake at its
+     * end should not come after minutes of simulation. */
     bool one = root->kind == NODE_MAP;
     if (!one && (root->kind != NODE_LIST || root->count == 0))
         return err_set_at(e, ERR_DATA, path, root->line, "expected a list of reference cases");

@@ -284,8 +284,8 @@ static bool look_at(struct netcheck_reader *r, const struct node *map, const str
     return complete(r, map, table, answers);
 }
 
-/* Loads and saturations without answers make no sense; the others are played without them. */
-/* Any of these keys is an answer; which of them are needed, the table says. */
+/* Loads and saturations without answers make no sense; the others are played without them. Any of
+ * these keys is an answer; which of them are needed, the table says. */
 static bool has_answer(const struct node *c, enum netcheck_form form)
 {
     if (form == NETCHECK_LOAD || form == NETCHECK_SATURATION) return true;
@@ -309,8 +309,7 @@ static int likeness(const struct node *c, enum netcheck_form form)
 
 static bool guess_form(struct netcheck_reader *r, const struct node *c, enum netcheck_form *form)
 {
-    /* At least three keys in its favour: fewer would be guesswork. */
-    /* the likeness that must be exceeded */
+    /* At least three keys in its favour, fewer would be guesswork: the likeness to be exceeded. */
     int best = 2;
     bool found = false;
     for (int f = 0; f < NETCHECK_FORMS; f++) {

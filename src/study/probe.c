@@ -249,8 +249,7 @@ static bool bisection_rate(const struct machine_spec *m, const struct topology *
 }
 
 /* Rate of a dragonfly's global links. topology_link_ends gives both directions; a published rate
- * counts one. */
-/* A link is global when its routers are in different groups. */
+ * counts one. A link is global when its routers are in different groups. */
 static bool global_rate(const struct machine_spec *m, const struct topology *t, double *rate,
                         struct err *e)
 {

@@ -30,8 +30,8 @@ static void dscal(int n, double s, double *x, struct work *w)
     w->flop += (uint64_t)n;
 }
 
-/* Comparisons are no floating-point operations by the benchmark's rule. */
-/* The index of the largest |x[i]|, the first of equals. */
+/* The index of the largest |x[i]|, the first of equals. Comparisons are no floating-point
+ * operations by the benchmark's rule. */
 static int idamax(int n, const double *x, struct work *w)
 {
     int largest = 0;

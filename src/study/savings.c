@@ -178,8 +178,7 @@ static void print_host(FILE *out, const struct saving *s)
     fprintf(out, "%-38s", text);
 }
 
-/* Simulated times have no noise: any difference is real. */
-/* What it saves of the predicted time. */
+/* What it saves of the predicted time. Simulated times have no noise: any difference is real. */
 static void print_machine(FILE *out, const struct saving *s)
 {
     double with = (double)(s->machine_ps + s->machine_saved_ps);

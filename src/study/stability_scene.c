@@ -9,9 +9,8 @@
 #include "model/pose.h"
 
 /* What is not said: unit rods on revolute joints under gravity, joint rates and forces of order
- * one. */
-/* Poses: straight in a plane, coiled in space, straight with twisted axes; and a short chain of
- * stiff springs. */
+ * one. Poses: straight in a plane, coiled in space, straight with twisted axes; and a short chain
+ * of stiff springs. */
 #define CHAIN(n) .nbody = (n)
 #define COIL(n) .nbody = (n), .pose = POSE_COILED, .axes = AXES_TWISTED
 #define TWIST(n) .nbody = (n), .pose = POSE_STRAIGHT, .axes = AXES_TWISTED
@@ -156,8 +155,7 @@ static double mass_factor(const struct stability_scene *c, int i, int n)
 }
 
 /* The generated model with its masses and inertias changed; the model itself when nothing is to
- * change. */
-/* A new model with the same joints; kinematic loops do not occur in the scenes that are
+ * change. A new model with the same joints; kinematic loops do not occur in the scenes that are
  * reshaped. */
 static struct model *reshape(const struct stability_scene *c, struct model *m, struct arena *a,
                              struct err *e)

@@ -35,8 +35,8 @@ const char *verify_quantity_name(enum verify_quantity k)
 
 /* --- the list --------------------------------------------------------------------------------- */
 
-/* Append n numbers, in vectors of `part` numbers each. */
-/* Numbers of a vector know its first one: they will share its scale. */
+/* Append n numbers, in vectors of `part` numbers each. Numbers of a vector know its first one: they
+ * will share its scale. */
 static void append(struct verify_answers *x, const double *from, int n, int part)
 {
     for (int i = 0; i < n; i++) {
@@ -201,8 +201,8 @@ void verify_answers_compute(const struct verify_answers *x, const struct vector_
     arena_release(a, mark);
 }
 
-/* Accelerations and loop forces in quad precision. redundant (may be NULL): see verify_answers. */
-/* On redundant loops accelerations are unique and loop forces are not: the rank tells. */
+/* Accelerations and loop forces in quad precision. redundant (may be NULL): see verify_answers. On
+ * redundant loops accelerations are unique and loop forces are not: the rank tells. */
 static bool put_forward(const struct verify_answers *x, const struct model *m,
                         const struct state *s, struct arena *a, double *y, int *redundant)
 {
@@ -292,9 +292,8 @@ static void forces_mend(const struct sampler *p, enum verify_quantity k, enum lo
 }
 
 /* Accelerations that cancel: how far they move when joint forces move by roundings of what these
- * are components of. */
-/* The same for accelerations. There is no wrench of an acceleration: joint forces are shaken by
- * what would be roundings of their wrenches, and the accelerations' response is the scale. */
+ * are components of. There is no wrench of an acceleration: joint forces are shaken by what
+ * would be roundings of their wrenches, and the accelerations' response is the scale. */
 static void accelerations_mend(const struct sampler *p, const struct model *m,
                                const struct state *s, struct random *r, double *y)
 {
@@ -321,8 +320,8 @@ static void accelerations_mend(const struct sampler *p, const struct model *m,
     }
 }
 
-/* Each sample moves all inputs at once, by random amounts. */
-/* Fewer where a sample takes long: a sample of many bodies already holds many roundings. */
+/* Each sample moves all inputs at once, by random amounts. Fewer where a sample takes long: a
+ * sample of many bodies already holds many roundings. */
 static int samples_of(const struct vector_case *c) { return c->nbody > 200 ? 3 : 6; }
 
 /* One sample: scale at least what it moves. */

@@ -251,9 +251,8 @@ static bool variant_row(struct verify_case *v, const struct variant *variant, st
     return row_keep(v, variant, &kernel, VERIFY_LAMBDA, &s, e);
 }
 
-/* Whether three components describe the case, to the rounding of its numbers. */
-/* planar_scene compares axes, offsets and forces with the plane's; its reason is not needed
- * here. */
+/* Whether three components describe the case, to the rounding of its numbers. planar_scene compares
+ * axes, offsets and forces with the plane's; its reason is not needed here. */
 static bool in_plane(const struct verify_case *v)
 {
     struct err why;

@@ -31,8 +31,7 @@ static void read_ranks(const struct column *c, const void *row, struct column_va
     v->text = v->buffer;
 }
 
-/* FAIL in capitals: a reader looks for it among hundreds of rows. */
-/* The verdict as people read it. */
+/* The verdict as people read it. FAIL in capitals: a reader looks for it among hundreds of rows. */
 static void read_verdict(const struct column *c, const void *row, struct column_value *v)
 {
     const enum verify_verdict verdict = ((const struct verify_row *)row)->verdict;

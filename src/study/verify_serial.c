@@ -118,9 +118,9 @@ static const char *left_out(const struct verify_case *v, enum forward_method met
     return NULL;
 }
 
-/* unfit: why constraint forces do not apply, NULL when they do. */
-/* One algorithm: a row for its accelerations, and one for the loop forces. Pointers are taken
- * after both rows exist, since rows move. */
+/* unfit: why constraint forces do not apply, NULL when they do. One algorithm: a row for its
+ * accelerations, and one for the loop forces. Pointers are taken after both rows exist, since rows
+ * move. */
 static bool forward_row(struct verify_case *v, enum forward_method method, const char *unfit,
                         struct err *e)
 {

@@ -58,8 +58,8 @@ static void row_plain(struct verify_case *v, const char *quantity, double error,
     if (error > 0 && where) snprintf(row->note, sizeof row->note, "largest at body '%.60s'", where);
 }
 
-/* The worst body of each kind of number. */
-/* Each kind of number is a row of its own: a wrong axis and a wrong mass have different causes. */
+/* The worst body of each kind of number. Each kind of number is a row of its own: a wrong axis and
+ * a wrong mass have different causes. */
 static void body_rows(struct verify_case *v, const struct model *m)
 {
     enum { JOINT, AXIS, FRAME, MASS, COM, INERTIA, KINDS };
