@@ -12,24 +12,21 @@ uint32_t vp_path_until(struct vp *v, sim_ps time)
     return path_add(p, path_at(p, v->path, time), time, PATH_POLL, v->comm.rank, v->stage, -1, 0);
 }
 
-void vp_path(struct vp *v, enum path_cause cause, sim_ps begin, int64_t count)
+void vp_path_record(struct vp *v, enum path_cause cause, sim_ps begin, int64_t count)
 {
-    struct path_log *p = v->world->path;
-    if (p)
-        v->path = path_add(p, vp_path_until(v, begin), v->clock, cause, v->comm.rank, v->stage, -1,
-                           count);
+    v->path = path_add(v->world->path, vp_path_until(v, begin), v->clock, cause, v->comm.rank,
+                       v->stage, -1, count);
 }
 
-void vp_path_work(struct vp *v, sim_ps begin, const struct work *w)
+void vp_path_record_work(struct vp *v, sim_ps begin, const struct work *w)
 {
-    struct path_log *p = v->world->path;
-    if (p) v->path = path_add_work(p, vp_path_until(v, begin), v->clock, v->comm.rank, v->stage, w);
+    v->path = path_add_work(v->world->path, vp_path_until(v, begin), v->clock, v->comm.rank,
+                            v->stage, w);
 }
 
 /* What comes later than the clock binds it; what came before has been waited out and
  * binds nothing. */
-void vp_path_join(struct vp *v, uint32_t node)
+void vp_path_record_join(struct vp *v, uint32_t node)
 {
-    const struct path_log *p = v->world->path;
-    if (p && path_time(p, node) > v->clock) v->path = node;
+    if (path_time(v->world->path, node) > v->clock) v->path = node;
 }
