@@ -25,11 +25,11 @@ static void tell(const struct common *c, struct json *j, const char *from,
 {
     if (c->json) {
         json_object(j);
-        json_key(j, "from"), json_text(j, from);
-        json_key(j, "added"), json_int(j, m->added);
-        json_key(j, "replaced"), json_int(j, m->replaced);
-        json_key(j, "present"), json_int(j, m->present);
-        json_key(j, "study_rows_added"), json_int(j, m->studies);
+        json_key_text(j, "from", from);
+        json_key_int(j, "added", m->added);
+        json_key_int(j, "replaced", m->replaced);
+        json_key_int(j, "present", m->present);
+        json_key_int(j, "study_rows_added", m->studies);
         json_end(j);
         return;
     }

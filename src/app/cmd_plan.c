@@ -17,16 +17,18 @@ static const char doc[] = "List the runs of SCENARIO without running them: ident
                           "run fig6 --point {} -o {}.db\n"
                           "\v--shards N adds the shard of N that each run belongs to (`mimdsim run "
                           "SCENARIO --shard K/N`). Columns are "
-                          "separated by tabs, and the first line names them. --json writes one "
-                          "document. `mimdsim run SCENARIO --point ID` "
+                          "separated by tabs, and the first line names them. --json, or "
+                          "--format json, writes one document. `mimdsim run SCENARIO --point ID` "
                           "makes one of these runs, and `mimdsim merge` joins the databases.";
 
 /* One run, columns separated by tabs for `cut`; the reason of a point that cannot run comes
  * last. */
 static void line(const struct run_spec *r, int shards)
 {
-    printf("%s-%d\t%s\t%s\t%d\t%d\t%llu\t%d", r->config_hash, r->rep, r->kernel.name,
-           r->machine.name, r->model.nbody, r->nrank, (unsigned long long)r->seed, r->rep);
+    char id[RUN_NAME];
+    run_name(r, id);
+    printf("%s\t%s\t%s\t%d\t%d\t%llu\t%d", id, r->kernel.name, r->machine.name, r->model.nbody,
+           r->nrank, (unsigned long long)r->seed, r->rep);
     if (shards > 0) printf("\t%d", shard_of(r, shards));
     printf("%s%s\n", r->refused != NULL ? "\trefused: " : "", r->refused != NULL ? r->refused : "");
 }
@@ -34,20 +36,19 @@ static void line(const struct run_spec *r, int shards)
 /* The same as an object of the document. */
 static void row(struct json *j, const struct run_spec *r, int shards)
 {
-    char id[sizeof r->config_hash + 16];
-    snprintf(id, sizeof id, "%s-%d", r->config_hash, r->rep);
+    char id[RUN_NAME];
+    run_name(r, id);
     json_object(j);
-    /* the name that --point takes */
-    json_key(j, "id"), json_text(j, id);
-    json_key(j, "config_hash"), json_text(j, r->config_hash);
-    json_key(j, "kernel"), json_text(j, r->kernel.name);
-    json_key(j, "machine"), json_text(j, r->machine.name);
-    json_key(j, "n"), json_int(j, r->model.nbody);
-    json_key(j, "P"), json_int(j, r->nrank);
-    json_key(j, "seed"), json_int(j, (int64_t)r->seed);
-    json_key(j, "rep"), json_int(j, r->rep);
-    if (shards > 0) json_key(j, "shard"), json_int(j, shard_of(r, shards));
-    if (r->refused != NULL) json_key(j, "refused"), json_text(j, r->refused);
+    json_key_text(j, "id", id); /* the name that --point takes */
+    json_key_text(j, "config_hash", r->config_hash);
+    json_key_text(j, "kernel", r->kernel.name);
+    json_key_text(j, "machine", r->machine.name);
+    json_key_int(j, "n", r->model.nbody);
+    json_key_int(j, "P", r->nrank);
+    json_key_int(j, "seed", (int64_t)r->seed);
+    json_key_int(j, "rep", r->rep);
+    if (shards > 0) json_key_int(j, "shard", shard_of(r, shards));
+    if (r->refused != NULL) json_key_text(j, "refused", r->refused);
     json_end(j);
 }
 
@@ -78,6 +79,16 @@ static bool read_shards(const char *text, int *shards, struct err *e)
     return true;
 }
 
+/* --format lines (the usual one) or json, which is --json by another name. */
+static bool read_format(const char *text, bool *json, struct err *e)
+{
+    if (text == NULL || strcmp(text, "lines") == 0) return true;
+    if (strcmp(text, "json") != 0)
+        return err_set(e, ERR_USAGE, "--format '%.40s': expected lines or json", text);
+    *json = true;
+    return true;
+}
+
 /* Nothing is run and nothing stored. */
 int cmd_plan(int argc, char **argv)
 {
@@ -86,10 +97,12 @@ int cmd_plan(int argc, char **argv)
     struct plan p = {0};
     int shards; /* 0: not asked for */
     err_clear(&e);
-    const char *text = take_value(&argc, argv, "--shards");
+    const char *text = take_value(&argc, argv, "--shards"),
+               *format = take_value(&argc, argv, "--format");
     common_parse(&c, argc, argv, TAKES_PLAN, "SCENARIO", doc, 1, 1);
     const struct plan_options o = common_plan(&c);
-    const bool ok = read_shards(text, &shards, &e) && plan_read(&p, c.arg[0], &o, &e);
+    const bool ok = read_format(format, &c.json, &e) && read_shards(text, &shards, &e) &&
+                    plan_read(&p, c.arg[0], &o, &e);
     if (ok) list(&c, &p, shards);
     plan_free(&p);
     return ok ? 0 : common_fail(&c, &e);

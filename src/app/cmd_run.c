@@ -83,8 +83,8 @@ struct part {
 /* Whether `point` is the beginning of the run's name, HASH-REP; NULL: any run. */
 static bool is_point(const char *point, const struct run_spec *r)
 {
-    char id[sizeof r->config_hash + 16];
-    snprintf(id, sizeof id, "%s-%d", r->config_hash, r->rep);
+    char id[RUN_NAME];
+    run_name(r, id);
     return point == NULL || strncmp(id, point, strlen(point)) == 0;
 }
 

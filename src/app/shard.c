@@ -34,6 +34,12 @@ int shard_of(const struct run_spec *run, int of)
     return (int)((strtoull(digits, NULL, 16) + (unsigned)run->rep) % (unsigned)of) + 1;
 }
 
+/* Repetitions share the hash of their settings. */
+void run_name(const struct run_spec *run, char out[RUN_NAME])
+{
+    snprintf(out, RUN_NAME, "%s-%d", run->config_hash, run->rep);
+}
+
 bool shard_has(const struct shard *s, const struct run_spec *run)
 {
     return s->of == 0 || shard_of(run, s->of) == s->number;

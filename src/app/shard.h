@@ -18,6 +18,11 @@ bool shard_parse(const char *text, struct shard *out, struct err *e);
  * host finds the same, whatever else is in its plan. */
 int shard_of(const struct run_spec *run, int of);
 
+enum { RUN_NAME = 96 }; /* room for the name of a run */
+
+/* run_name: "HASH-REP", what `mimdsim plan` calls a run and --point takes. */
+void run_name(const struct run_spec *run, char out[RUN_NAME]);
+
 /* shard_has: whether the run belongs to it. */
 bool shard_has(const struct shard *s, const struct run_spec *run);
 

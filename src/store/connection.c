@@ -51,6 +51,17 @@ bool store_exec(struct store *s, const char *sql, struct err *e)
     return sqlite3_exec(s->db, sql, NULL, NULL, NULL) == SQLITE_OK || store_failed(s, e);
 }
 
+bool store_number(struct store *s, const char *sql, int64_t *out, struct err *e)
+{
+    sqlite3_stmt *q = NULL;
+    const bool ok =
+        sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
+    if (ok) *out = sqlite3_column_int64(q, 0);
+    else store_failed(s, e);
+    sqlite3_finalize(q);
+    return ok;
+}
+
 /* Prepared once per connection: a campaign stores thousands of rows, and preparing takes longer
  * than storing one. */
 sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err *e)

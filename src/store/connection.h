@@ -70,6 +70,9 @@ bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e);
 /* store_failed: set *e from the database's last error: what went wrong, in which file. Returns false. */
 bool store_failed(struct store *s, struct err *e);
 
+/* store_number: the integer that `sql` (a pragma or a count) returns. Returns false with the error set. */
+bool store_number(struct store *s, const char *sql, int64_t *out, struct err *e);
+
 /* store_exec: run SQL text that returns nothing of interest. */
 bool store_exec(struct store *s, const char *sql, struct err *e);
 

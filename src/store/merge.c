@@ -9,24 +9,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "store/connection.h"
+#include "store/schema.h"
 
 /* Studies whose rows stand for themselves. Verdicts on claims and explanations are left out: they
  * judge all runs of a database together, so after a merge they are to be made anew. */
 static const char *const study_table[] = {"check_point", "ladder", "ladder_choice", "stability",
                                           "omission"};
-
-/* The number that `sql` returns. */
-static bool number(struct store *s, const char *sql, int64_t *out, struct err *e)
-{
-    sqlite3_stmt *q = NULL;
-    const bool ok =
-        sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
-    if (ok) *out = sqlite3_column_int64(q, 0);
-    else store_failed(s, e);
-    sqlite3_finalize(q);
-    return ok;
-}
 
 /* --- the other database
  * ------------------------------------------------------------------------------------------ */
@@ -65,18 +55,37 @@ static bool attach(struct store *s, const char *from, struct err *e)
     return ok;
 }
 
-/* A view in the place of a table could return anything. */
+/* Whether the schema has this table since the first databases of this version (store.c adds the
+ * others when it opens a database for writing). */
+static bool is_optional(const char *table)
+{
+    struct text made = {0};
+    text_add(&made, "CREATE TABLE IF NOT EXISTS %s (", table);
+    const bool found = strstr(schema_text(), made.s) != NULL;
+    text_free(&made);
+    return found;
+}
+
+/* Every table of ours must be there, but for those that came later: they are empty then. A view
+ * in the place of a table could return anything. */
 static bool check_tables(struct store *s, const char *from, struct err *e)
 {
-    int64_t strange = 0;
-    if (!number(s,
-                "SELECT count(*) FROM main.sqlite_schema m WHERE m.type = 'table' AND NOT EXISTS"
-                " (SELECT 1 FROM other.sqlite_schema o WHERE o.name = m.name AND o.type = 'table')",
-                &strange, e))
-        return false;
-    return strange == 0 ||
-           err_set(e, ERR_DATA, "database %s lacks %lld of the tables of this version", from,
-                   (long long)strange);
+    int lacking = 0;
+    sqlite3_stmt *q = NULL;
+    bool ok = sqlite3_prepare_v2(
+                  s->db,
+                  "SELECT m.name, o.type FROM main.sqlite_schema m"
+                  " LEFT JOIN other.sqlite_schema o USING (name)"
+                  " WHERE m.type = 'table' AND (o.type IS NULL OR o.type <> 'table')",
+                  -1, &q, NULL) == SQLITE_OK;
+    while (ok && sqlite3_step(q) == SQLITE_ROW) {
+        const bool absent = sqlite3_column_type(q, 1) == SQLITE_NULL;
+        lacking += !absent || !is_optional((const char *)sqlite3_column_text(q, 0));
+    }
+    ok = (sqlite3_finalize(q) == SQLITE_OK && ok) || store_failed(s, e);
+    return ok && (lacking == 0 || err_set(e, ERR_DATA,
+                                          "database %s lacks %d of the tables of this version",
+                                          from, lacking));
 }
 
 /* ---- which runs ---- */
@@ -123,9 +132,9 @@ static bool choose_runs(struct store *s, struct store_merged *done, struct err *
                " LEFT JOIN main.run h USING (config_hash, seed, rep)"
                " WHERE h.id IS NULL OR (h.status <> 'ok' AND o.status = 'ok')",
                e) &&
-           number(s, "SELECT count(*) FROM merge_run WHERE here IS NULL", &done->added, e) &&
-           number(s, "SELECT count(*) FROM merge_run WHERE here IS NOT NULL", &done->replaced, e) &&
-           number(s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)",
+           store_number(s, "SELECT count(*) FROM merge_run WHERE here IS NULL", &done->added, e) &&
+           store_number(s, "SELECT count(*) FROM merge_run WHERE here IS NOT NULL", &done->replaced, e) &&
+           store_number(s, "SELECT (SELECT count(*) FROM other.run) - (SELECT count(*) FROM merge_run)",
                   &done->present, e);
 }
 
@@ -198,7 +207,7 @@ static bool take_runs(struct store *s, struct err *e)
                       e);
 }
 
-/* Every table whose rows belong to a run. */
+/* Every table whose rows belong to a run, where the other database has it. */
 static bool take_parts(struct store *s, struct err *e)
 {
     sqlite3_stmt *q = NULL;
@@ -206,6 +215,7 @@ static bool take_parts(struct store *s, struct err *e)
         sqlite3_prepare_v2(
             s->db,
             "SELECT DISTINCT m.name FROM main.sqlite_schema m, pragma_foreign_key_list(m.name) f"
+            " JOIN other.sqlite_schema o ON o.name = m.name"
             " WHERE m.type = 'table' AND f.\"table\" = 'run' AND f.\"from\" = 'run_id'",
             -1, &q, NULL) == SQLITE_OK;
     if (!ok) store_failed(s, e);

@@ -24,26 +24,14 @@
 #include "store/schema.h"
 #include "store/upgrade.h"
 
-/* The integer that `sql` (a pragma or a count) returns; false with *e set. */
-static bool read_number(struct store *s, const char *sql, int64_t *out, struct err *e)
-{
-    sqlite3_stmt *q = NULL;
-    bool ok =
-        sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW;
-    if (ok) *out = sqlite3_column_int64(q, 0);
-    else store_failed(s, e);
-    sqlite3_finalize(q);
-    return ok;
-}
-
 /* Whose database it is, and of which version; *empty for one without tables. Checked before any
  * other statement: a database of another program must not be touched. */
 static bool check_owner(struct store *s, bool *empty, int64_t *version, struct err *e)
 {
     int64_t application = 0, tables = 0;
-    if (!read_number(s, "SELECT count(*) FROM sqlite_schema", &tables, e) ||
-        !read_number(s, "PRAGMA application_id", &application, e) ||
-        !read_number(s, "PRAGMA user_version", version, e))
+    if (!store_number(s, "SELECT count(*) FROM sqlite_schema", &tables, e) ||
+        !store_number(s, "PRAGMA application_id", &application, e) ||
+        !store_number(s, "PRAGMA user_version", version, e))
         return false;
     /* An empty file is a database to SQLite. */
     *empty = tables == 0 && application == 0;
@@ -277,7 +265,7 @@ static bool open_reader(struct store *s, struct err *e)
     struct err first = {0};
     sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
     /* The first read tells whether the log's shared memory can be used. */
-    bool readable = read_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
+    bool readable = store_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
     int code = sqlite3_errcode(s->db);
     if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path))
         reopen_immutable(s);

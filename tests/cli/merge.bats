@@ -75,6 +75,11 @@ rows() {
     [ "${#lines[@]}" -eq 13 ]
     works mimdsim plan own.yaml --json
     [ "$(grep -o '"id"' <<<"$output" | wc -l)" -eq 12 ]
+    lines_of_json=$output
+    works mimdsim plan own.yaml --format json
+    [ "$output" = "$lines_of_json" ]
+    fails_with 64 mimdsim plan own.yaml --format xml
+    stderr_says 'expected lines or json'
     works mimdsim plan own.yaml
     id=$(cut -f 1 <<<"${lines[5]}")
     works mimdsim run own.yaml --point "$id" -o point.db --quiet
@@ -122,4 +127,20 @@ rows() {
     diff <(rows whole.db) <(rows all.db)
     works sh "$MIMDSIM_SRCDIR/examples/cluster/gnu-parallel.sh" own.yaml all.db 2
     stdout_says '0 runs added'
+}
+
+@test "a database that was made before a table existed is merged, and what it has arrives" {
+    scenario
+    works mimdsim run own.yaml -o old.db --quiet
+    sqlite3 old.db "DELETE FROM run WHERE id > 3"
+    # Tables that this version gained since its first databases.
+    for table in program_line critical_path sensitivity ideal; do sqlite3 old.db "DROP TABLE $table"; done
+    works mimdsim run own.yaml -o all.db --quiet --set n=4
+    works mimdsim merge all.db old.db
+    [ "$(sql all.db 'SELECT count(*) FROM run')" -gt 3 ]
+    works mimdsim merge new.db old.db
+    stdout_is 'old.db: 3 runs added, 0 replaced, 0 were there'
+    sqlite3 old.db "DROP TABLE stage"
+    fails_with 65 mimdsim merge new.db old.db
+    stderr_says 'lacks 1 of the tables'
 }
