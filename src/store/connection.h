@@ -55,6 +55,7 @@ struct store {
     char *path;  /* owned */
     char *remark; /* owned, what is to be told about opening it, NULL: nothing */
     bool writable;
+    bool fresh;                               /* its file was made by this store_open */
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */
     int64_t build_id;                         /* row of this program in table build, 0: not looked up yet */

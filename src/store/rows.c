@@ -116,6 +116,16 @@ void rows_schema(struct text *sql)
     text_add(sql, "%s", rest);
 }
 
+void rows_database(struct text *sql)
+{
+    rows_schema(sql);
+    text_add(sql, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION,
+             STORE_VERSION);
+    text_add(sql, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d),"
+                  " ('span_rows_limit', %d);",
+             STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
+}
+
 /* One value into the statement's next parameter. Texts are not copied: the row lives until the
  * step. */
 static void bind_column(struct binding *b, const struct column *c, const void *row)

@@ -13,6 +13,10 @@ void rows_insert(enum statement which, struct text *sql);
  * all comments; appended. */
 void rows_schema(struct text *sql);
 
+/* rows_database: all statements that make a new database: rows_schema, its identity, what table meta holds;
+ * appended. */
+void rows_database(struct text *sql);
+
 /* rows_bind: bind the columns of `row` behind the keys that *b holds already; texts are borrowed.
  *
  *   row  struct run_row of STATEMENT_RUN_INSERT, else the struct whose columns the table has (run_row.h) */

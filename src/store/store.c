@@ -20,6 +20,7 @@
 #include "base/text.h"
 #include "store/beside.h"
 #include "store/connection.h"
+#include "store/image.h"
 #include "store/rows.h"
 #include "store/schema.h"
 #include "store/upgrade.h"
@@ -52,12 +53,7 @@ static bool check_owner(struct store *s, bool *empty, int64_t *version, struct e
 static bool create_schema(struct store *s, struct err *e)
 {
     struct text t = {0};
-    rows_schema(&t);
-    text_add(&t, "PRAGMA application_id = %d; PRAGMA user_version = %d;", STORE_APPLICATION,
-             STORE_VERSION);
-    text_add(&t, "INSERT INTO meta VALUES ('rank_rows_limit', %d), ('link_rows_limit', %d),"
-                 " ('span_rows_limit', %d);",
-             STORE_RANK_ROWS, STORE_LINK_ROWS, STORE_SPAN_ROWS);
+    rows_database(&t);
     int64_t version;
     bool empty = false,
          ok = store_exec(s, "BEGIN EXCLUSIVE", e) && check_owner(s, &empty, &version, e);
@@ -112,8 +108,8 @@ static bool prepare_writer(struct store *s, struct err *e)
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
     if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_file, e))
         return false;
-    /* Tables that came after the first databases of this version. */
-    if (!store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
+    /* Tables that came after the first databases of this version; a new one has them all. */
+    if (!s->fresh && !store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
     return store_exec(
         s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY; BEGIN IMMEDIATE; COMMIT", e);
@@ -161,33 +157,6 @@ static bool check_path(const char *path, enum store_mode mode, bool *exists, str
     return writable || err_set(e, ERR_CREATE, "cannot make database %s: %s", path, strerror(errno));
 }
 
-/* A new database as the bytes of its file, to be freed by sqlite3_free. Made in memory, so that
- * the file appears whole. */
-static unsigned char *make_image(sqlite3_int64 *size, bool wal, struct err *e)
-{
-    struct store s = {.path = (char[]){"in memory"}, .writable = true};
-    unsigned char *image = NULL;
-    if (sqlite3_open(":memory:", &s.db) == SQLITE_OK && create_schema(&s, e))
-        image = sqlite3_serialize(s.db, "main", size, 0);
-    else store_failed(&s, e);
-    /* Bytes 18 and 19 of the header: 2 is WAL, 1 a rollback journal
-     * (sqlite.org/fileformat2.html, 1.3.3). */
-    if (image != NULL) image[18] = image[19] = wal ? 2 : 1;
-    sqlite3_close(s.db);
-    return image;
-}
-
-static bool write_all(int file, const unsigned char *bytes, sqlite3_int64 size)
-{
-    /* write may take less than it is given. */
-    for (sqlite3_int64 done = 0; done < size;) {
-        ssize_t n = write(file, bytes + done, (size_t)(size - done));
-        if (n < 0 && errno != EINTR) return false;
-        if (n > 0) done += n;
-    }
-    return true;
-}
-
 /* Logs of a database that was removed after a crash would be taken for the new one's. */
 static void remove_stale_logs(const char *path)
 {
@@ -206,13 +175,11 @@ static void remove_stale_logs(const char *path)
 static bool make_file(const char *path, struct err *e)
 {
     char *folder = folder_of(path), *beside = NULL;
-    sqlite3_int64 size;
-    unsigned char *image = make_image(&size, !on_network(folder), e);
+    const bool wal = !on_network(folder);
     free(folder);
-    if (image == NULL) return false;
     remove_stale_logs(path);
     int file = beside_open(path, &beside);
-    bool ok = file >= 0 && write_all(file, image, size) && fdatasync(file) == 0;
+    bool ok = file >= 0 && image_write(file, wal) && fdatasync(file) == 0;
     /* A file system without links: rename, which could replace a file that appeared meanwhile. */
     if (ok && link(beside, path) != 0 && errno != EEXIST) ok = rename(beside, path) == 0;
     if (!ok)
@@ -223,7 +190,6 @@ static bool make_file(const char *path, struct err *e)
         close(file);
     }
     free(beside);
-    sqlite3_free(image);
     return ok;
 }
 
@@ -287,7 +253,7 @@ static bool open_memory(struct store *s, bool passing, struct err *e)
 {
     if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
     s->passing = passing;
-    return create_schema(s, e) &&
+    return (image_load(s->db) || store_failed(s, e)) &&
            store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }
 
@@ -304,6 +270,7 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
     s->path = strdup(path);
     CHECK(s->path != NULL);
     s->writable = mode != STORE_READ;
+    s->fresh = !exists;
     const bool ok = memory        ? open_memory(s, mode == STORE_MEMORY, e)
                     : s->writable ? open_writer(s, e)
                                   : open_reader(s, e);
