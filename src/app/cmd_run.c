@@ -137,6 +137,17 @@ static void say_failed(const struct keep *k)
             k->failed, k->done);
 }
 
+/* Runs that are stored already get the name that is given now; without one they keep theirs. */
+static bool call_stored(struct store *s, const struct run_spec *run, const bool *skip, int n, struct err *e)
+{
+    bool ok = store_begin(s, e);
+    for (int i = 0; i < n && ok; i++)
+        if (skip[i] && run[i].label[0] != '\0') ok = store_call(s, &run[i], e);
+    if (ok) return store_commit(s, e);
+    store_rollback(s);
+    return false;
+}
+
 /* Settle levels, leave out what is stored, run the rest, print all. */
 static bool answer(const struct common *c, const struct plan *p, const struct part *part, bool keep_all,
                    struct keep *k, struct err *e)
@@ -149,7 +160,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct pa
     if (!k->store) return false;
     if (!settle_plan(c, p, &settled, k, keep_all, e)) return false;
     bool *skip = skipped(k->store, p, settled.run, part, c->force);
-    bool ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    bool ok = call_stored(k->store, k->run, skip, p->nrun, e) &&
+              run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
     return ok && run_table_print(k->store, &settled, c->json, stdout, e);
 }

@@ -14,7 +14,7 @@
 
 /* Keys of long options without a letter. */
 enum {
-    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW
+    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME
 };
 
 /* The last number is the group: it orders --help and decides which verbs have the option. */
@@ -23,6 +23,8 @@ static const struct argp_option option_table[] = {
     {"set", 's', "KEY=VALUE", 0,
      "override one value, e.g. machine.network.link.bandwidth=\"960 MB/s\"; "
      "several values, as in n=16,32, are a sweep; may be repeated", 1},
+    {"name", KEY_NAME, "TEXT", 0,
+     "what these runs are called in tables and figures (default: the machine with what was changed of it)", 1},
     {"allow-programs", KEY_ALLOW, NULL, 0,
      "run also programs that the scenario names outside its own folder: they run with all your rights", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db; for paper: paper.db)", 2},
@@ -85,6 +87,13 @@ static error_t set_jobs(struct common *c, const char *arg, struct argp_state *st
     return 0;
 }
 
+/* A name must say something, of a run as of a file. */
+static error_t set_name(const char **place, const char *arg, const char *format, struct argp_state *state)
+{
+    *place = arg;
+    return arg[0] ? 0 : refuse(state, format, arg);
+}
+
 /* Called by argp for each option and argument, and at the end. */
 static error_t parse_option(int key, char *arg, struct argp_state *state)
 {
@@ -100,14 +109,15 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case 'o':
         /* Whether it was given decides the default of `paper`. */
-        c->database = arg;
         c->database_given = true;
-        return arg[0] ? 0 : refuse(state, "--output: '%s' is not the name of a file", arg);
+        return set_name(&c->database, arg, "--output: '%s' is not the name of a file", state);
     case 'q':
         c->quiet = true;
         break;
     case 'j':
         return set_jobs(c, arg, state);
+    case KEY_NAME:
+        return set_name(&c->name, arg, "--name: '%s' is no name", state);
     case KEY_ALLOW:
         c->allow_programs = true;
         break;
@@ -133,7 +143,6 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->json = true;
         break;
     case ARGP_KEY_ARG:
-        /* argp puts options anywhere: arguments are counted as they come. */
         if (c->narg >= p->most || c->narg >= (int)(sizeof c->arg / sizeof *c->arg))
             return refuse(state, "unexpected argument '%s'", arg);
         c->arg[c->narg++] = arg;
@@ -255,6 +264,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
 struct plan_options common_plan(const struct common *c)
 {
     return (struct plan_options){.machine = c->machine,
+                                 .name = c->name,
                                  .nset = c->nset,
                                  .set = c->set,
                                  .nkernel = c->kernel.n,

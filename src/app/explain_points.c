@@ -83,7 +83,8 @@ static bool read_runs(struct explain_bench *b, const char *line, struct run_spec
     for (int i = 0; i < plan.nrun; i++) {
         all[*n + i] = plan.run[i];
         all[*n + i].config_text = arena_text(b->arena, plan.run[i].config_text);
-        all[*n + i].machine_changes = all[*n + i].machine_hash = NULL; /* the plan's */
+        /* the plan's */
+        all[*n + i].machine_changes = all[*n + i].machine_hash = all[*n + i].called = NULL;
     }
     *spec = all;
     *n += plan.nrun;

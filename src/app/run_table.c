@@ -33,7 +33,7 @@ static const char *const fixed[] = {"machine", /* names that a swept key cannot 
 
 /* %s: whether messages are swept; else only micro-benchmarks have a message size. */
 static const char first_sql[] =
-    "SELECT r.machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation,"
+    "SELECT r.label AS machine, r.kernel, iif(r.nu > 0, r.formulation, NULL) AS formulation,"
     " iif(r.nu > 0, r.solver, NULL) AS solver,"
     " iif(%s, (SELECT value FROM v_setting v WHERE v.run_id = r.id AND v.key = 'kernel.message'),"
     " NULL) AS message,"

@@ -32,6 +32,7 @@ enum { COMMON_MOST_SETS = 256 };
 struct common {
     const char *verb; /* "mimdsim VERB" */
     const char *machine;
+    const char *name;      /* --name, NULL: made from what differs */
     const char *set[COMMON_MOST_SETS]; /* (nset) */
     int nset;
     bool json, quiet, force;

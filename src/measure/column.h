@@ -23,7 +23,7 @@ struct column_value {
     int64_t integer;  /* of VALUE_BOOL 0 or 1 */
     double real;      /* finite */
     const char *text; /* borrowed from the row or from `buffer` */
-    char buffer[64];
+    char buffer[512];
 };
 
 enum column_kind {

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "plan/data_dir.h"
 #include "plan/file_kind.h"
+#include "plan/call.h"
 #include "plan/machine_changes.h"
 #include "plan/machine_file.h"
 #include "plan/program_file.h"
@@ -23,6 +24,7 @@ enum { MAX_RUNS = 100000, MAX_BODIES = 1 << 27 };
 struct start {
     const char *name; /* as it was asked for */
     struct run_spec run; /* machine and base settings applied */
+    struct machine_spec file; /* the machine as its file has it */
     struct start *next; /* the one that was made before */
 };
 
@@ -34,6 +36,7 @@ struct expansion {
     int point[SCENARIO_MAX_AXES]; /* where each axis stands */
     struct identity *identity;    /* owned */
     struct machine_changes changes; /* of the machines seen so far */
+    struct calls calls;             /* what runs are called */
 };
 
 /* The settings of the present point in the order in which they act; `list` needs naxis + 2
@@ -94,7 +97,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) /* the first table is the whole run's */
         field_defaults(table[i], (char *)&s->run + table[i]->offset, a);
-    s->run.machine = m.spec;
+    s->run.machine = s->file = m.spec;
     s->name = machine->text;
     s->next = x->starts;
     x->starts = s;
@@ -247,6 +250,18 @@ static bool resolve_program(struct expansion *x, struct run_spec *run)
            program_file_parameters(x->scenario, run, list, n, x->plan->arena, x->err);
 }
 
+/* What the run is called; the points of the axes tell apart what shares a given name. */
+static void name_run(struct expansion *x, struct run_spec *run, const struct machine_spec *file)
+{
+    const struct scenario *s = x->scenario;
+    struct call_point point[SCENARIO_MAX_AXES];
+    for (int i = 0; i < s->naxis; i++) {
+        const struct setting_list *list = &s->axis[i].point[x->point[i]];
+        point[i] = (struct call_point){s->axis[i].npoint > 1, list->n, list->at};
+    }
+    call_run(&x->calls, run, file, point, s->naxis);
+}
+
 /* One point: 1 run made, 0 left out, -1 failed. */
 static int make_point(struct expansion *x, struct run_spec *run)
 {
@@ -263,6 +278,7 @@ static int make_point(struct expansion *x, struct run_spec *run)
     if (!resolve_program(x, run)) return -1;
     if (!wanted(s, run)) return 0;
     machine_changes_note(&x->changes, run);
+    name_run(x, run, &start->file);
     if (!resolve_path(x, run)) return -1;
     identity_set(x->identity, run, x->plan->arena);
     note_refusal(x, run);
@@ -311,7 +327,8 @@ static bool expand_points(struct expansion *x, int64_t capacity)
 /* The product of all axes and repetitions, filtered by `only`. */
 bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
 {
-    struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena}};
+    struct expansion x = {.plan = p, .scenario = s, .err = e, .changes = {.arena = p->arena},
+                          .calls = {.arena = p->arena}};
     int64_t n = s->repetitions;
     int ntable;
     /* Counted before anything is built: a few lines can ask for any number of runs. The count stops

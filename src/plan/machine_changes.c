@@ -113,6 +113,23 @@ static void add_differences(struct text *out, const char *own, const char *shipp
     }
 }
 
+void machine_changes_between(const struct machine_spec *from, const struct machine_spec *own,
+                             struct text *out)
+{
+    struct text before = {0}, now = {0}, members = {0};
+    /* Mostly nothing was changed: the structs are the same bytes, and nothing is printed. */
+    if (memcmp(from, own, sizeof *own) != 0) {
+        describe(from, &before);
+        describe(own, &now);
+        text_add(&members, "{");
+        add_differences(&members, now.s, before.s);
+    }
+    text_add(out, "%s}", members.s != NULL ? members.s : "{");
+    text_free(&before);
+    text_free(&now);
+    text_free(&members);
+}
+
 /* Read once per plan and name. */
 static const struct shipped_machine *shipped(struct machine_changes *c, const char *name)
 {

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "spec/run_spec.h"
 
 /* What is remembered from run to run; begins as zeros with the arena. */
@@ -24,5 +25,8 @@ struct machine_changes {
  * The level of the network and its tolerance are questions, not properties of a machine, and are left out. A shipped
  * file that cannot be read counts as none. */
 void machine_changes_note(struct machine_changes *c, struct run_spec *run);
+
+/* machine_changes_between: what `own` has otherwise than `from`, as such a JSON object, appended to *out. */
+void machine_changes_between(const struct machine_spec *from, const struct machine_spec *own, struct text *out);
 
 #endif

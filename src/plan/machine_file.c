@@ -224,15 +224,18 @@ static bool check_version(const struct node *root, const char *file, struct err 
                       n->text != NULL ? n->text : "");
 }
 
-/* The title is text: it has no unit and no evidence. */
-static bool read_title(struct machine_file *m, const struct node *n, const char *file,
-                       struct arena *a, struct err *e)
+/* Texts for people, `key` "title" or "label": they have no unit and no evidence. */
+static bool read_title(struct machine_file *m, const char *key, const struct node *n,
+                       const char *file, struct arena *a, struct err *e)
 {
-    int row = field_find(&machine_table, "title");
+    int row = field_find(&machine_table, key);
     char why[256];
+    if (m->value[row].line != 0 && strcmp(m->value[row].file, file) == 0)
+        return err_set_at(e, ERR_DATA, file, n->line, "duplicate key '%s'; first given in line %d",
+                          n->key, m->value[row].line);
     if (n->text == NULL ||
         !field_set(&machine_table.field[row], &m->spec, n->text, a, why, (int)sizeof why))
-        return err_set_at(e, ERR_DATA, file, n->line, "title: %s",
+        return err_set_at(e, ERR_DATA, file, n->line, "%s: %s", n->key,
                           n->text == NULL ? "expected one line of text" : why);
     m->value[row] = (struct machine_value){
         .text = n->text, .file = file, .line = n->line, .evidence = "", .source = ""};
@@ -251,7 +254,10 @@ static bool read_tree(struct reader *r, struct node *root, struct arena *a, stru
         bool ok = true;
         if (strcmp(n->key, known[0]) == 0 || strcmp(n->key, known[1]) == 0)
             ;
-        else if (strcmp(n->key, "title") == 0) ok = read_title(r->machine, n, r->path, a, e);
+        else if (strcmp(n->key, "title") == 0)
+            ok = read_title(r->machine, "title", n, r->path, a, e);
+        else if (strcmp(n->key, "name") == 0 || strcmp(n->key, "label") == 0)
+            ok = read_title(r->machine, "label", n, r->path, a, e);
         else if (strcmp(n->key, "published") == 0)
             ok = read_published(r->machine, n, r->path, a, e);
         /* what is left is chained anew, without those keys */
@@ -320,8 +326,12 @@ bool machine_file_read(struct machine_file *m, const char *name, const char *nea
                                              .evidence = "",
                                              .source = ""};
     if (!read_chain(m, m->path, chain, 0, a, e) || !check_complete(m, e)) return false;
-    /* The file's name is the machine's, whatever its base is called. */
+    /* The file's name is the machine's, whatever its base is called; a base's name for people is
+     * the base's alone. */
     text_copy(m->spec.name, sizeof m->spec.name, data_dir_stem(m->path, a));
+    const struct machine_value *label = &m->value[field_find(&machine_table, "label")];
+    if (label->line != 0 && strcmp(label->file, m->path) != 0)
+        memset(m->spec.label, 0, sizeof m->spec.label);
     /* The whole is checked at the place of its size, which is where it usually goes wrong. */
     int dims = field_find(&machine_table, "topology.dims");
     return machine_file_check(&m->spec, m->value[dims].file, m->value[dims].line, e);

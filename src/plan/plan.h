@@ -11,6 +11,7 @@
 
 struct plan_options {
     const char *machine; /* --machine NAME or file, NULL: the scenario's */
+    const char *name;    /* --name: what the runs are called, NULL: as their files or their differences say */
     int nset;
     const char *const *set; /* (nset) "key=value", applied last; keys as in files: machine.network.link.bandwidth */
     int nkernel;

@@ -104,6 +104,11 @@ static bool add_axis(struct scenario *s, const char *name, const struct node *li
     const char *group = axis_group(name), *full = setting_key(name),
                *key = setting_is_key(full) ? full : NULL;
     if (key == NULL && group == NULL) return program_file_unknown(s, name, s->path, list->line, e);
+    if (strcmp(full, "label") == 0)
+        return err_set_at(e, ERR_DATA, s->path, list->line,
+                          "%s: names alone are no sweep; give each variant its name: "
+                          "'variant: [{name: fast links, machine.network.link.bandwidth: 1 GB/s}]'",
+                          name);
     if (list->kind != NODE_LIST || list->count == 0)
         return err_set_at(e, ERR_DATA, s->path, list->line,
                           "sweep: '%s' needs a list such as [2, 4, 8]", name);
@@ -267,6 +272,7 @@ static bool check_axes(const struct scenario *s, struct err *e)
  * several lists. A path may hold commas of its own. */
 static bool is_sweep(const char *full, const char *text)
 {
+    if (strcmp(full, "label") == 0) return false;
     if (is_list_field(full)) return text[0] == '[' && text[1] == '[' && !is_pair_list(full);
     return text[0] == '[' || (strchr(text, ',') != NULL && strcmp(full, "model.path") != 0 &&
                               strcmp(full, "program.arguments") != 0);
@@ -381,6 +387,10 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     drop_overruled(s, "n_over_p", "program.n");
     drop_overruled(s, "kernel.name", "program.file");
     drop_overruled(s, "program.file", "kernel.name");
+    if (o->name != NULL) {
+        remove_setting(&s->set, "label");
+        if (!add_setting(&s->set, "label", arena_text(a, o->name), "--name", 0, a, e)) return false;
+    }
     if (o->machine == NULL) return true;
     remove_axis(s, "machine.name");
     remove_setting(&s->base, "machine.name");

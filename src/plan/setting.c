@@ -21,6 +21,7 @@ const char *setting_key(const char *key)
                                             {"level", "machine.network.level"},
                                             {"kernel", "kernel.name"},
                                             {"machine", "machine.name"},
+                                            {"name", "label"},
                                             {"program", "program.file"}};
     for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
         if (strcmp(key, shorts[i][0]) == 0) return shorts[i][1];
@@ -32,7 +33,8 @@ const char *setting_key(const char *key)
 static const struct field *settable(const char *key, const struct field_table **table)
 {
     const struct field *f = field_find_full(key, table);
-    return f == NULL || f->label || strcmp(key, "scenario") == 0 ? NULL : f;
+    const bool title = f != NULL && f->label && strcmp(key, "label") != 0;
+    return f == NULL || title || strcmp(key, "scenario") == 0 ? NULL : f;
 }
 
 /* "program.NAME", which is no setting of all programs: one that a program may declare. */

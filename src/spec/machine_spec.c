@@ -208,7 +208,9 @@ static const char *idle_without_collectives(const struct run_spec *r)
 
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
-     .doc = "name in tables and figures; default: the name of the file"},
+     .doc = "the name of its file"},
+    {.key = "label", .kind = FIELD_TEXT, AT(label), .capacity = 96, .fallback = "", .label = true,
+     .doc = "what it is called in tables and figures (in its file also `name`); default: the name of its file"},
     {.key = "title", .kind = FIELD_TEXT, AT(title), .capacity = 128, .fallback = "", .label = true,
      .doc = "one line of description"},
 

@@ -112,7 +112,8 @@ struct noise_spec {
 
 struct machine_spec {
     char name[64];            /* the file's stem */
-    char title[128];          /* for people */
+    char label[96];           /* for people: what it is called in tables and figures, "": its name */
+    char title[128];          /* for people: one line of description */
     struct topology_spec topology;
     struct node_spec node;
     struct network_spec network;

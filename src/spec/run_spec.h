@@ -50,6 +50,7 @@ struct run_order {
 
 struct run_spec {
     char scenario[64];       /* stem of the scenario file */
+    char label[96];          /* name that a person gave to it, "": none. For people, no part of the identity */
     struct machine_spec machine;
     struct model_spec model;
     struct kernel_spec kernel;
@@ -64,6 +65,7 @@ struct run_spec {
     const char *machine_changes; /* JSON object of the machine's settings that are not those of the shipped machine of
                                     its name, "{}": none; NULL: none is shipped, or nobody looked. Borrowed */
     const char *machine_hash;    /* SHA-256 of that machine, "" or NULL likewise; neither is part of the identity */
+    const char *called;      /* in tables and figures (run_label.h), NULL: as run_label says. Borrowed */
     const char *refused;     /* why the plan found that it cannot run, NULL: it can; borrowed, no part of identity */
     int refused_kind;        /* err_kind of that */
     unsigned keep;           /* KEEP_* of the order in a program's own copy (program.h); 0 in all others */

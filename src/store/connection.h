@@ -14,10 +14,11 @@
  * table that is made of columns (rows.h). */
 #define STORE_STATEMENTS(X)                                                                                            \
     X(RUN_FIND, "SELECT id, status FROM run WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")                        \
+    X(RUN_CALL, "UPDATE run SET label = ?4 WHERE config_hash = ?1 AND seed = ?2 AND rep = ?3")                         \
     X(RUN_DELETE, "DELETE FROM run WHERE id = ?1")                                                                     \
     X(BUILD_ADD, "INSERT OR IGNORE INTO build (version, git, compiler, flags) VALUES (?1, ?2, ?3, ?4)")                \
     X(BUILD_FIND, "SELECT id FROM build WHERE version = ?1 AND git = ?2 AND compiler = ?3 AND flags = ?4")             \
-    X(SETTING_ADD, "INSERT INTO setting (key, value) VALUES (?1, ?2)")                                                 \
+    X(SETTING_ADD, "INSERT INTO setting (key, value, number, unit) VALUES (?1, ?2, ?3, ?4)")                           \
     X(SETTING_FIND, "SELECT id FROM setting WHERE key = ?1 AND value = ?2")                                            \
     X(RUN_SETTING, "INSERT INTO run_setting VALUES (?1, ?2)")                                                          \
     X(BEGIN, "BEGIN IMMEDIATE")                                                                                        \
@@ -41,7 +42,7 @@ enum statement {
 
 enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
-    STORE_VERSION = 6,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
+    STORE_VERSION = 7,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
     STORE_OLDEST = 4,               /* the oldest version that is upgraded */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "measure/run_row.h"
 #include "spec/field.h"
+#include "spec/run_label.h"
 #include "store/rows.h"
 
 #define SPEC(member) .part = PART(struct run_row, spec), .offset = offsetof(struct run_spec, member)
@@ -46,6 +47,27 @@ static void read_bodies(const struct column *c, const void *row, struct column_v
     v->integer = r->nbody > 0 ? r->nbody : spec_of(row)->model.nbody;
 }
 
+/* Into the value's own buffer: a label is no longer than it, or is cut. */
+static void read_label(const struct column *c, const void *row, struct column_value *v)
+{
+    struct text t = {0};
+    (void)c;
+    run_label(spec_of(row), &t);
+    text_copy(v->buffer, sizeof v->buffer, t.s);
+    text_free(&t);
+    v->kind = VALUE_TEXT;
+    v->text = v->buffer;
+}
+
+/* Of the text that is stored, so that an upgrade of an older database finds the same. */
+static void read_machine_key(const struct column *c, const void *row, struct column_value *v)
+{
+    (void)c;
+    machine_fingerprint(spec_of(row)->config_text, v->buffer);
+    v->kind = VALUE_TEXT;
+    v->text = v->buffer;
+}
+
 /* Labels by which rows are chosen and grouped in queries. They repeat settings of run_setting,
  * since a column is found faster and is easier to write than a join. */
 static const struct column run_identity[] = {
@@ -54,7 +76,11 @@ static const struct column run_identity[] = {
     {"rep", COLUMN_INT, SPEC(rep), .doc = "repetition, from 0"},
     {"scenario", COLUMN_CHARS, SPEC(scenario),
      .doc = "the scenario's file without its folder and ending"},
-    {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "name of the machine"},
+    {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "name of the machine's file"},
+    {"label", COLUMN_STRING, .value = read_label,
+     .doc = "what it is called in tables and figures: a given name, or the machine with what was changed"},
+    {"machine_key", COLUMN_STRING, .value = read_machine_key,
+     .doc = "fingerprint of the machine's settings: runs on one machine have the same, whatever they are called"},
     SETTING("topology", "machine.topology.family", "family of its network"),
     SETTING("level", "machine.network.level", "how closely the network is simulated"),
     SETTING("placement", "machine.placement.kind", "of ranks on nodes"),

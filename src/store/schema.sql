@@ -40,6 +40,8 @@ CREATE TABLE setting (
     id    INTEGER PRIMARY KEY,         -- number of the row
     key   TEXT NOT NULL,               -- full name of the setting
     value TEXT NOT NULL,               -- as text, with its unit
+    number REAL,                       -- the same in SI base units; NULL: a word or a list
+    unit  TEXT NOT NULL DEFAULT '',    -- of number: s, B, B_per_s, ...
     UNIQUE (key, value)
 ) STRICT;
 -- Which run has which settings.
@@ -348,10 +350,48 @@ WITH state AS (
 most AS (SELECT machine, kernel, max(shipped) AS shipped FROM state GROUP BY machine, kernel)
 SELECT a.run_id FROM state a JOIN most b ON b.machine = a.machine AND b.kernel = a.kernel AND b.shipped = a.shipped;
 
+-- What each run is called in legends and tables. Where one name was given to several machines, a part of the machine's
+-- fingerprint tells them apart: no two machines share a name here.
+--   run_id: the run
+--   name: its label, with "[machine_key]" where other machines have that label, too
+CREATE VIEW v_label AS
+WITH shared AS (SELECT label FROM run GROUP BY label HAVING count(DISTINCT machine_key) > 1)
+SELECT id AS run_id, machine, label, machine_key,
+       CASE WHEN label IN (SELECT label FROM shared) THEN label || ' [' || substr(machine_key, 1, 4) || ']' ELSE label END AS name
+FROM run;
+
+-- Every run that ended well with its chief results: what `mimdsim plot --x --y` and `mimdsim compare` draw from.
+--   run_id: the run
+--   name: what it is called (v_label)
+--   makespan_s: its time
+--   speedup: over the fastest serial code
+--   efficiency: that over P
+--   parallel_fraction: f by Amdahl of that
+--   speedup_self: over the same code on one processor
+--   compute_share: of the time of all ranks
+--   overhead_share: sending and receiving, of the time of all ranks
+--   wait_share: of the time of all ranks
+--   contention_share: of the time of all ranks
+--   rc_ratio: time of all ranks over their communication and waiting
+--   load_spread: computing of the most less that of the least loaded rank, over the mean
+--   relative_error: largest of its checks
+CREATE VIEW v_run AS
+SELECT r.id AS run_id, l.name, r.scenario, r.machine, r.topology, r.level, r.placement, r.kernel, r.formulation, r.solver,
+       r.part_solver, r.operators, r.precision, r.model, r.base, r.joint, r.n, r.nu, r.P, r.compute_noise_cv,
+       r.background_load, r.seed, r.rep, r.config_hash, r.machine_key, r.makespan_ps * 1e-12 AS makespan_s,
+       f.speedup, f.efficiency, f.parallel_fraction, o.speedup AS speedup_self, i.compute_share, i.overhead_share,
+       i.wait_share, i.contention_share, i.rc_ratio, i.load_spread, r.measured_s, r.messages, r.sent_bytes, r.host_s,
+       (SELECT max(e.relative_error) FROM error_check e WHERE e.run_id = r.id) AS relative_error
+FROM run r JOIN v_label l ON l.run_id = r.id
+     LEFT JOIN v_speedup f ON f.run_id = r.id AND f.baseline = 'fastest serial'
+     LEFT JOIN v_speedup o ON o.run_id = r.id AND o.baseline = 'parallel code on one processor'
+     LEFT JOIN v_indicator i ON i.run_id = r.id
+WHERE r.status = 'ok';
+
 -- The settings of every run.
 --   run_id: the run
 CREATE VIEW v_setting AS
-SELECT rs.run_id, s.key, s.value FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
+SELECT rs.run_id, s.key, s.value, s.number, s.unit FROM run_setting rs JOIN setting s ON s.id = rs.setting_id;
 
 -- The settings that differ between the runs of a scenario: what it sweeps.
 --   run_id: the run
@@ -360,7 +400,7 @@ WITH varied AS (
     SELECT r.scenario, s.key
     FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
     GROUP BY r.scenario, s.key HAVING count(DISTINCT s.id) > 1)
-SELECT rs.run_id, r.scenario, s.key, s.value
+SELECT rs.run_id, r.scenario, s.key, s.value, s.number, s.unit
 FROM run_setting rs JOIN run r ON r.id = rs.run_id JOIN setting s ON s.id = rs.setting_id
      JOIN varied v ON v.scenario = r.scenario AND v.key = s.key;
 

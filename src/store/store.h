@@ -44,6 +44,9 @@ void store_close(struct store *s);
 /* store_has: whether a run that ended RUN_OK with this identity is stored (RUN_INVALID and others are run again). */
 bool store_has(struct store *s, const struct run_spec *spec);
 
+/* store_call: the stored run of this identity, if there is one, is called as `spec` is (run_label.h) from now on. */
+bool store_call(struct store *s, const struct run_spec *spec, struct err *e);
+
 /* store_put: the run with provenance and how its level was chosen (`order`, NULL: by the spec), in one transaction;
  * nothing is stored on failure. */
 bool store_put(struct store *s, const struct run_spec *spec, const struct run_order *order, const struct run_result *r,

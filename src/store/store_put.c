@@ -13,6 +13,8 @@
 
 #include "base/check.h"
 #include "measure/run_row.h"
+#include "spec/run_label.h"
+#include "spec/setting_number.h"
 #include "store/build.h"
 #include "store/rows.h"
 
@@ -47,6 +49,24 @@ bool store_has(struct store *s, const struct run_spec *spec)
                strcmp((const char *)sqlite3_column_text(b.statement, 1), "ok") == 0;
     sqlite3_reset(b.statement);
     return has;
+}
+
+/* A name is no part of what a run is: it changes without running anything again. */
+bool store_call(struct store *s, const struct run_spec *spec, struct err *e)
+{
+    struct binding b;
+    struct text label = {0};
+    run_label(spec, &label);
+    bool ok = bind_start(s, STATEMENT_RUN_CALL, &b, e);
+    if (ok) {
+        bind_text(&b, spec->config_hash);
+        bind_int(&b, (int64_t)spec->seed);
+        bind_int(&b, spec->rep);
+        bind_text(&b, label.s);
+        ok = store_step(s, b.statement, e);
+    }
+    text_free(&label);
+    return ok;
 }
 
 int64_t store_run_id(struct store *s, const struct run_spec *spec)
@@ -100,6 +120,20 @@ static bool put_run(struct store *s, const struct run_spec *spec, const struct r
     return ok;
 }
 
+/* The value of a setting as a number, which figures and queries need; NULL where it is none. */
+static void bind_number(sqlite3_stmt *add, const char *key, int nkey, const char *value, int nvalue)
+{
+    double number;
+    enum unit unit;
+    char *name = strndup(key, (size_t)nkey), *text = strndup(value, (size_t)nvalue);
+    CHECK(name != NULL && text != NULL);
+    if (setting_number(name, text, &number, &unit)) sqlite3_bind_double(add, 3, number);
+    else sqlite3_bind_null(add, 3);
+    sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC);
+    free(name);
+    free(text);
+}
+
 /* The row of a setting, made when it is new: thousands of runs share most of their settings. */
 static bool setting_id(struct store *s, const char *key, int nkey, const char *value, int nvalue,
                        int64_t *id, struct err *e)
@@ -112,6 +146,7 @@ static bool setting_id(struct store *s, const char *key, int nkey, const char *v
         /* Key and value as parts of the line: no copies. */
         sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC);
         sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC);
+        if (add) bind_number(b.statement, key, nkey, value, nvalue);
         if (!add && !find_id(s, &b, id, e)) return false;
         if (!add && *id != 0) return true;
         if (add && !store_step(s, b.statement, e)) return false;

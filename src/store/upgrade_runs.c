@@ -10,13 +10,15 @@
 
 #include "base/check.h"
 #include "spec/identity.h"
+#include "spec/run_label.h"
+#include "spec/setting_number.h"
 #include "spec/spec_fields.h"
 #include "store/binding.h"
 
 /* What is prepared once for all runs. */
 struct work {
     struct store *s;
-    sqlite3_stmt *select, *update, *older, *forget, *setting, *link;
+    sqlite3_stmt *select, *update, *older, *forget, *setting, *link, *name;
     struct identity *identity;
     int version;
     int64_t *kept;
@@ -31,7 +33,9 @@ static bool prepare(struct store *s, sqlite3_stmt **out, const char *sql, struct
 
 static bool open_work(struct work *w, struct err *e)
 {
-    return prepare(w->s, &w->select, "SELECT id, config_text, level FROM run ORDER BY id", e) &&
+    return prepare(w->s, &w->select, "SELECT id, config_text, level, machine,"
+                   " machine_changes FROM run ORDER BY id", e) &&
+           prepare(w->s, &w->name, "UPDATE run SET label = ?, machine_key = ? WHERE id = ?", e) &&
            prepare(w->s, &w->update, "UPDATE run SET config_hash = ?, config_text = ? WHERE id = ?",
                    e) &&
            prepare(w->s, &w->older, "INSERT INTO run_older VALUES (?, ?, ?)", e) &&
@@ -50,7 +54,8 @@ static bool open_work(struct work *w, struct err *e)
 /* Also after a failure half way: finalizing NULL does nothing. */
 static void close_work(struct work *w)
 {
-    sqlite3_stmt *const all[] = {w->select, w->update, w->older, w->forget, w->setting, w->link};
+    sqlite3_stmt *const all[] = {w->select, w->update, w->older, w->forget, w->setting, w->link,
+                                 w->name};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) sqlite3_finalize(all[i]);
     identity_destroy(w->identity);
 }
@@ -118,6 +123,46 @@ static bool update_run(struct work *w, int64_t run, const struct run_spec *spec,
     return note_older(w, run, "another stored run has the same settings", e);
 }
 
+/* Names of runs and of their machines are new in version 7: made as for a new run that nobody gave
+ * a name. */
+static bool name_run(struct work *w, int64_t run, const char *text, struct err *e)
+{
+    struct binding b = {w->name, 1};
+    struct text label = {0};
+    char key[LABEL_KEY_LENGTH + 1];
+    run_label_changed((const char *)sqlite3_column_text(w->select, 3),
+                      (const char *)sqlite3_column_text(w->select, 4), &label);
+    machine_fingerprint(text, key);
+    bind_text(&b, label.s);
+    bind_text(&b, key);
+    bind_int(&b, run);
+    const bool ok = store_step(w->s, w->name, e);
+    text_free(&label);
+    return ok;
+}
+
+/* Numbers of settings are new in version 7, too. */
+static bool number_settings(struct store *s, struct err *e)
+{
+    sqlite3_stmt *all = NULL, *set = NULL;
+    bool ok = prepare(s, &all, "SELECT id, key, value FROM setting", e) &&
+              prepare(s, &set, "UPDATE setting SET number = ?1, unit = ?2 WHERE id = ?3", e);
+    while (ok && sqlite3_step(all) == SQLITE_ROW) {
+        double number;
+        enum unit unit;
+        const bool is = setting_number((const char *)sqlite3_column_text(all, 1),
+                                       (const char *)sqlite3_column_text(all, 2), &number, &unit);
+        if (is) sqlite3_bind_double(set, 1, number);
+        else sqlite3_bind_null(set, 1);
+        sqlite3_bind_text(set, 2, units_si(unit), -1, SQLITE_STATIC);
+        sqlite3_bind_int64(set, 3, sqlite3_column_int64(all, 0));
+        ok = store_step(s, set, e);
+    }
+    sqlite3_finalize(all);
+    sqlite3_finalize(set);
+    return ok;
+}
+
 /* One run: its text is read as settings, which are then identified as those of a new run. */
 static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
 {
@@ -126,6 +171,7 @@ static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
     const char *level = (const char *)sqlite3_column_text(w->select, 2);
     struct run_spec spec;
     char why[320];
+    if (w->version < 7 && !name_run(w, run, text, e)) return false;
     if (!run_from_text(&spec, text, a, why, (int)sizeof why)) return note_older(w, run, why, e);
     const bool asked =
         spec.machine.network.level == LEVEL_AUTO_TOLERANCE && strcmp(level, "auto-tolerance") != 0;
@@ -151,6 +197,7 @@ bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
         arena_destroy(a);
     }
     close_work(&w);
+    if (ok && version < 7) ok = number_settings(s, e);
     /* Whether a machine was the shipped one was not stored before version 5. */
     if (ok && version < 5) ok = store_exec(s, "UPDATE run SET machine_hash = 'not stored'", e);
     return ok;

@@ -83,6 +83,7 @@ static void every_member_of_a_run_has_one_field(void **state)
     memset(covered + offsetof(struct run_spec, config_text), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, machine_changes), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, machine_hash), 1, sizeof(char *));
+    memset(covered + offsetof(struct run_spec, called), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused), 1, sizeof(char *));
     memset(covered + offsetof(struct run_spec, refused_kind), 1, sizeof(int));
     memset(covered + offsetof(struct run_spec, keep), 1, sizeof(unsigned)); /* no setting: results are the same */

@@ -106,13 +106,16 @@ static void nothing_is_lost(void **state)
         assert_non_null(store_remark(s));
         assert_non_null(strstr(store_remark(s), f->kept));
         store_close(s);
-        is(f->path, "PRAGMA user_version", "6");
+        is(f->path, "PRAGMA user_version", "7");
         is(f->path, rows_of_runs, runs);
         is(f->path, count_of_rows, count);
         is(f->path, "PRAGMA integrity_check", "ok");
         is(f->path, "SELECT count(*) FROM pragma_foreign_key_check", "0");
         is(f->path, "SELECT count(*) FROM sqlite_schema WHERE name LIKE 'older%'", "0");
         is(f->path, "SELECT count(*) FROM run_older", "0");
+        is(f->path, "SELECT count(*) FROM run WHERE label <> machine OR length(machine_key) <> 16", "0");
+        is(f->path, "SELECT number || unit FROM setting WHERE key = 'machine.network.hop_latency' AND value = '60 ns'",
+           "6.0e-08s");
         is(f->path, "SELECT value FROM meta WHERE key = 'rank_rows_limit'", "256");
         is(f->path, "SELECT group_concat(DISTINCT state) FROM v_machine_state",
            version < 5 ? "older" : "as shipped");
@@ -283,7 +286,7 @@ static void versions_before_the_oldest_are_refused_with_a_way_out(void **state)
     sql(f->path, "PRAGMA user_version = 3");
     assert_null(store_open(f->path, STORE_READ, &f->e));
     assert_non_null(strstr(
-        f->e.text, "has schema version 3, this program knows versions 4 to 6; run its scenarios again"));
+        f->e.text, "has schema version 3, this program knows versions 4 to 7; run its scenarios again"));
 }
 
 /* Upgrade in a child that is killed after `delay` seconds; whether it had ended before. */
@@ -316,7 +319,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
     for (int i = 0; i < 60; i++) {
         make_old(f, 4);
         whole += upgrade_and_kill(f, random_uniform(&random, 0, once));
-        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "6") == 0;
+        const bool upgraded = strcmp(value(f->path, "PRAGMA user_version"), "7") == 0;
         upgraded ? new ++ : old++;
         if (!upgraded) is(f->path, "PRAGMA user_version", "4");
         is(f->path, "PRAGMA integrity_check", "ok");
@@ -331,7 +334,7 @@ static void kill_9_leaves_the_old_database_or_the_new_one(void **state)
         /* The next one who comes finishes it. */
         if (i % 8) continue;
         store_close(open_or_fail(f, STORE_WRITE));
-        is(f->path, "PRAGMA user_version", "6");
+        is(f->path, "PRAGMA user_version", "7");
         is(f->path, rows_of_runs, runs);
     }
     print_message("%d old, %d new, %d not killed\n", old, new, whole);
