@@ -56,8 +56,8 @@ short(s, n) = strlen(s) > n ? s[1:n-1]."…" : s
 
 do for [format in formats] {
     page_wide = int(wide); page_high = int(total)
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = format eq "png" ? ",16" : ",11"; strong = format eq "png" ? ",20" : ",13.5"
     # svg draws symbols larger and sets labels of axes lower
@@ -112,37 +112,37 @@ do for [format in formats] {
             p = b == 1 ? 1 : c
             if (b == 1) {
                 plot for [k=1:n] data using (good(1, 1, k) ? unit*column(cost) : NaN):(level(column("relative_error"))) with points \
-                    pointtype open_point[(k-1)%6+1] pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k], \
+                    pointtype open_point[(k-1)%6+1] pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[turn(k)], \
                     data using (column("block") == 1 && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
                         with points pointtype 6 pointsize 3.2*symbol linewidth 1.6 linecolor rgb "#000000"
             }
             if (b == 2) {
                 plot for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with lines linewidth 1 linecolor rgb colour[k], \
+                        with lines linewidth 1 linecolor rgb colour[turn(k)], \
                     for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") < 2 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype by_precision[q] pointsize 1.3*symbol linewidth 1.5 linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype by_precision[q] pointsize 1.3*symbol linewidth 1.5 linecolor rgb colour[turn(k)], \
                     for [k=1:n] for [q=1:3] data using (good(b, p, k) && column("precision") == q && column("refinement") >= 2 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype by_precision[q] + 1 pointsize 1.3*symbol linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype by_precision[q] + 1 pointsize 1.3*symbol linecolor rgb colour[turn(k)], \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 3 ? column(cost) : NaN) \
                         :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb "#ffffff", \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN) \
-                        :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb colour[k], \
+                        :(level(column("relative_error"))) with points pointtype 1 pointsize 0.8*symbol linewidth 1.5 linecolor rgb colour[turn(k)], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[k], \
+                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[turn(k)], \
                     data using (column("block") == b && column("panel") == p && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
                         with points pointtype 6 pointsize 2.7*symbol linewidth 1.6 linecolor rgb "#000000", \
-                    for [k=1:n] NaN with lines linewidth 3 linecolor rgb colour[k] title curve_name[10*(3*b-3+c) - 10 + k]
+                    for [k=1:n] NaN with lines linewidth 3 linecolor rgb colour[turn(k)] title curve_name[10*(3*b-3+c) - 10 + k]
             }
             if (b == 3) {
                 plot for [k=1:n] data using (good(b, p, k) && column("refinement") == 0 ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1], \
+                        with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[turn(k)], \
                     for [k=1:n] data using (good(b, p, k) && column("refinement") == 1 ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1], \
+                        with linespoints linewidth 1.2 dashtype 3 pointtype full_point[(k-1)%6+1] - 1 pointsize 1.1*symbol linecolor rgb colour[turn(k)], \
                     for [k=1:n] data using (poor(b, p, k) ? column(cost) : NaN):(level(column("relative_error"))) \
-                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[(k-1)%8+1], \
+                        with points pointtype 2 pointsize 1.2*symbol linewidth 1.6 linecolor rgb colour[turn(k)], \
                     data using (column("block") == b && column("panel") == p && column("chosen") == 1 ? unit*column(cost) : NaN):(level(column("relative_error"))) \
                         with points pointtype 6 pointsize 2.7*symbol linewidth 1.6 linecolor rgb "#000000", \
-                    for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[(k-1)%8+1] \
+                    for [k=1:n] NaN with linespoints linewidth 1.5 pointtype full_point[(k-1)%6+1] pointsize 1.1*symbol linecolor rgb colour[turn(k)] \
                         title curve_name[10*(3*b-3+c) - 10 + k]
             }
             unset label 1; unset label 2; unset label 3; unset label 97; unset label 98; unset label 99; unset arrow 1
@@ -154,7 +154,7 @@ do for [format in formats] {
             set label 1 "level" at 0.09,0 font tiny textcolor rgb "#505050"; set label 2 "error" at 0.52,0 right font tiny textcolor rgb "#505050"
             set label 3 "host" at 0.77,0 right font tiny textcolor rgb "#505050"; set label 4 "predicted" at 1.0,0 right font tiny textcolor rgb "#505050"
             plot for [k=1:most[1]] data using (good(1, 1, k) ? 0.03 : NaN):(-k) with points pointtype open_point[(k-1)%6+1] \
-                    pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[k], \
+                    pointsize 1.9*symbol linewidth 1.8 linecolor rgb colour[turn(k)], \
                 data using (0.09):(here(1, 1) ? -column("series") : NaN):(strcol("name")) with labels left noenhanced font tiny, \
                 data using (0.52):(here(1, 1) ? -column("series") : NaN):(number(column("relative_error"))) with labels right noenhanced font tiny, \
                 data using (0.77):(here(1, 1) ? -column("series") : NaN):(column("host_s") > 0 ? seconds(column("host_s")) : "–") with labels right noenhanced font tiny, \

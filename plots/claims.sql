@@ -1,9 +1,8 @@
 -- The claims of the paper and all their variants: whether each holds, and in which share of the samples of the uncertain
 -- machine parameters. The variant with the thick frame determines the verdict. Claims on the speedup have a cell for each
--- serial baseline, with structured and with dense operators; the cells of the other claims are labelled.
+-- serial code, with structured and with dense operators; the cells of the other claims are labelled.
 -- needs: mimdsim paper
--- In a text a low quotation mark stands for the comma, which gnuplot's strcol would take for the cell's end.
-WITH split AS (
+WITH split AS ( -- in a text a low quotation mark stands for the comma, which gnuplot's strcol would take for the cell's end
     SELECT c.*, replace(replace(c.variant, 'same n: ', ''), 'speedup only: ', '') AS bare,
            CASE WHEN c.variant = '' THEN 0 WHEN c.variant LIKE 'speedup only: %' THEN 1 WHEN c.variant LIKE 'same n: %' THEN 2
                 WHEN c.id = 'C3' AND c.variant NOT LIKE '%, structured' AND c.variant NOT LIKE '%, dense' THEN 3 ELSE 0 END AS part,
@@ -32,10 +31,16 @@ SELECT CASE c.kind WHEN 'verdict' THEN -0.4 WHEN 'baseline' THEN p.x ELSE 0.5 + 
                     WHEN 2 THEN ', f compared at the same n' ELSE ', with the machine shared with others' END, ',', '‚') AS statement,
        CASE c.kind WHEN 'verdict' THEN 'verdict' WHEN 'baseline' THEN iif(c.style = 1, 'structured: ', 'dense: ') || c.baseline
                    ELSE replace(c.bare, ',', '‚') END AS variant,
-       CASE WHEN c.kind <> 'named' THEN ' ' WHEN c.bare LIKE '%, %' THEN substr(c.bare, 1, instr(c.bare, ', ') - 1)
-            ELSE replace(c.bare, ' at 128 only', '') END AS upper,
+       CASE WHEN c.kind <> 'named' THEN ' ' WHEN c.bare LIKE '%, %' THEN replace(substr(c.bare, 1, instr(c.bare, ', ') - 1), ' + ', '+')
+            ELSE replace(replace(replace(replace(c.bare, ' at 128 only', ''), 'background ', ''), 'computing ', ''), ' placement', '') END AS upper,
        CASE WHEN c.kind <> 'named' THEN ' ' WHEN c.bare LIKE '%, %' THEN substr(c.bare, instr(c.bare, ', ') + 2)
             WHEN c.bare LIKE '% at 128 only' THEN 'at 128 only' ELSE ' ' END AS lower,
+       CASE WHEN c.kind <> 'baseline' THEN '' WHEN c.baseline = 'parallel code on one processor' THEN 'same code'
+            WHEN c.baseline LIKE 'rnea+cfa-%' THEN 'rnea+cfa' WHEN c.baseline LIKE 'rnea+%' THEN 'rnea' WHEN instr(c.baseline, ' ') > 0 THEN substr(c.baseline, 1, instr(c.baseline, ' ') - 1)
+            ELSE c.baseline END AS head,
+       CASE WHEN c.kind <> 'baseline' THEN '' WHEN c.baseline = 'parallel code on one processor' THEN 'on 1 proc.'
+            WHEN c.baseline LIKE 'rnea+cfa-%' THEN substr(c.baseline, 9) WHEN c.baseline LIKE 'rnea+%' THEN substr(c.baseline, 5) WHEN instr(c.baseline, ' ') > 0 THEN substr(c.baseline, instr(c.baseline, ' ') + 1)
+            ELSE '' END AS head2, c.style,
        c.verdict, CASE c.verdict WHEN 'pass' THEN 0 WHEN 'not-testable' THEN 1 ELSE 2 END AS grade, c.nominal,
        c.value, c.unit, c.threshold, c.value_low, c.value_high, c.share, c.samples, w.w AS columns,
        CASE WHEN c.kind = 'verdict' AND c.testable > 0 THEN format('%d of %d', c.holding, c.testable)

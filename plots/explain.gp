@@ -27,8 +27,8 @@ name(v, share) = share == 1 ? sprintf("%.0f %%%%", 100*v) : sprintf("%.3g", v)
 do for [format in formats] {
     wide = 860.0; high = 640.0
     page_wide = int(wide); page_high = int(high)
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = small(format)
     set multiplot
@@ -37,8 +37,8 @@ do for [format in formats] {
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set label 96 claim at screen 0.5,(1.0 - 64.0/high) center noenhanced font tiny textcolor rgb grey
     set lmargin at screen 0.11; set rmargin at screen 0.82; set tmargin at screen 1.0 - 90.0/high; set bmargin at screen 96.0/high
-    set xlabel x_label noenhanced offset 0,0.3; set ylabel y_label noenhanced offset 0.8,0
-    set xtics scale 0 font tiny; set ytics scale 0 font tiny; set xtics (0); set ytics (0)
+    set xlabel x_label noenhanced offset 0,name_lift(format); set ylabel y_label noenhanced offset 0.8,0
+    set xtics scale 0 font tiny offset 0,tick_lift(format); set ytics scale 0 font tiny; set xtics (0); set ytics (0)
     do for [k=1:columns:2] { set xtics add (name(px[k], x_share) k - 1) }
     do for [k=1:rows:2] { set ytics add (name(py[k], y_share) k - 1) }
     set colorbox user origin screen 0.85,(120.0/high) size screen 0.022,(1.0 - 220.0/high)

@@ -21,8 +21,8 @@ is(kind, v) = strcol("kind") eq kind ? v : NaN
 unset grid; set grid xtics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
 do for [format in formats] {
     page_wide = 800; page_high = int(210 + 70*(last + 1))
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # two legends, in frames as wide as the page

@@ -19,9 +19,9 @@ set samples 200
 set xrange [pmin*0.9:pmax*1.12]
 set xtics (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
 do for [format in formats] {
-    page_wide = 800; page_high = 620
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    page_wide = 800; page_high = 660
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     # the legend, in a frame as wide as the page
@@ -31,15 +31,15 @@ do for [format in formats] {
     set label 98 subline at screen 0.5,0.943 center noenhanced textcolor rgb grey
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     set key at screen 0.53,0.925 center top horizontal maxrows (last > 5 ? 2 : 1) samplen 3 width -1
-    plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \
-            linecolor rgb colour[k] title sprintf("n/P = %d", ratio[k]), \
+    plot NaN, for [k=1:last] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype (k > 6 ? hollow[turn(k)] : point[turn(k)]) pointsize 0.8 \
+            linecolor rgb colour[turn(k)] title sprintf("n/P = %d", ratio[k]), \
          keyentry with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P"
     unset key; unset label 97; unset label 98; unset label 99
     set border 3
     do for [p=1:2] {
         set lmargin at screen (p == 1 ? 0.105 : 0.59); set rmargin at screen (p == 1 ? 0.495 : 0.985)
         set tmargin at screen 0.81; set bmargin at screen 0.42
-        set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6
+        set xtics nomirror out scale 0.6 offset 0,tick_lift(format); set ytics nomirror out scale 0.6
         set logscale x 2; set logscale y 2
         set format x ""
         set yrange [ymin:pmax*1.1]
@@ -49,8 +49,8 @@ do for [format in formats] {
         set ylabel (p == 1 ? "speedup S" : "")
         set title over[p] offset 0,-0.6
         plot x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000", \
-             for [k=1:last] data using "P":(of(p, k, column("speedup"))) with linespoints linewidth 1.8 dashtype dash[k] \
-                pointtype point[k] pointsize 0.9 linecolor rgb colour[k]
+             for [k=1:last] data using "P":(of(p, k, column("speedup"))) with linespoints linewidth 1.8 dashtype dash[turn(k)] \
+                pointtype (k > 6 ? hollow[turn(k)] : point[turn(k)]) pointsize 0.8 linecolor rgb colour[turn(k)]
         unset title
         set tmargin at screen 0.39; set bmargin at screen 0.125
         unset logscale y
@@ -58,10 +58,10 @@ do for [format in formats] {
         set yrange [0:1.02]
         set ytics 0,0.2,1 format "%.1f"
         set ylabel (p == 1 ? "degree of parallelism f" : "")
-        set xlabel "number of processors P"
+        set xlabel "number of processors P" offset 0,name_lift(format)
         plot 0.97 with lines linewidth 0.8 linecolor rgb grey, \
              for [k=1:last] data using "P":(of(p, k, column("parallel_fraction"))) with linespoints linewidth 1.8 \
-                dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k]
+                dashtype dash[turn(k)] pointtype (k > 6 ? hollow[turn(k)] : point[turn(k)]) pointsize 0.8 linecolor rgb colour[turn(k)]
         set format y "%g"
     }
     unset multiplot

@@ -15,7 +15,7 @@ stats data using (direction[int(column("panel"))] = strcol("direction"), \
     subline = sprintf("%s %s, network level %s; each cell a router's outgoing link", strcol("topology"), strcol("dims"), strcol("level")), 0) nooutput
 of(p, v) = column("panel") == p ? v : NaN
 rows = int((panels + 1)/2)
-set palette defined (0 "#f7fbff", 0.25 "#c6dbef", 0.5 "#56b4e9", 0.75 "#0072b2", 1 "#08306b")
+set palette defined (0 "#f7fbff", 0.25 "#c9dcf0", 0.5 "#7fb0dc", 0.75 "#2f6fb7", 1 "#0b2f66")
 set cbrange [0:top]
 set xrange [-0.5:wide - 0.5]; set yrange [-0.5:high - 0.5]
 set xtics autofreq; set ytics autofreq
@@ -24,8 +24,8 @@ set style fill solid 1.0 noborder
 do for [format in formats] {
     tall = 140 + 190*rows
     page_wide = 860; page_high = int(tall)
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = small(format)
     set multiplot
@@ -39,7 +39,7 @@ do for [format in formats] {
         set tmargin at screen 1.0 - (78.0 + 190*row_of + 12)/tall
         set bmargin at screen 1.0 - (78.0 + 190*row_of + 150)/tall
         set title direction[p] noenhanced offset 0,-0.8
-        set xlabel (row_of == rows - 1 ? "x" : "") offset 0,0.4
+        set xtics offset 0,tick_lift(format); set xlabel (row_of == rows - 1 ? "x" : "") offset 0,name_lift(format)
         set ylabel (column_of == 0 ? (high > wide ? "other coordinates" : "y") : "") offset 0.6,0
         if (p == 2) {
             set colorbox user origin screen 0.86,(0.2) size screen 0.022,0.6

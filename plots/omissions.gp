@@ -8,7 +8,7 @@ stats data using (h = column("host_saved_ms"), m = column("machine_saved_us"), \
     machine_most = m > machine_most ? m : machine_most, machine_least = m < machine_least ? m : machine_least, \
     headline = "What leaving out saves: ".strcol("scenario"), 0) nooutput
 subline = "time of the same run with the omission undone, minus that of the run with the omission; shortest of repeats taken in turn"
-exact_colour = "#0072b2"; bounded_colour = "#e69f00"; noise_colour = "#d0d0d0"
+exact_colour = colour[1]; bounded_colour = colour[4]; noise_colour = "#d0d0d0"
 wide = 1100.0; upper = 122.0; row_high = 40.0
 total = upper + row_high*n + 84
 at_x(px) = px/wide; at_y(px) = 1.0 - px/total
@@ -21,15 +21,24 @@ is(c, b) = column("measured") == 1 && column("bounded") == b && (c == 2 || colum
 
 do for [format in formats] {
     page_wide = int(wide); page_high = int(total)
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = format eq "png" ? ",16" : ",11"
     set multiplot
     set label 97 headline at screen 0.5,at_y(20) center noenhanced font large(format)
     set label 98 subline at screen 0.5,at_y(44) center noenhanced textcolor rgb grey
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
-    unset ytics
+    set lmargin at screen 0.05; set rmargin at screen 0.98; set tmargin at screen 0.9; set bmargin at screen 0.1
+    unset border; unset xtics; unset ytics; unset xlabel; unset grid
+    set xrange [0:1]; set yrange [0:1]
+    set key at screen at_x(wide/2),at_y(62) center top horizontal maxrows 1 samplen 1.2 width 1
+    plot NaN, keyentry with boxes linewidth 0.3 fillcolor rgb exact_colour title "exact: the same bits", \
+         keyentry with boxes linewidth 0.3 fillcolor rgb bounded_colour title "bounded: within its bound", \
+         keyentry with boxes linewidth 0.3 fillcolor rgb noise_colour title "below the noise"
+    unset key; unset label 97; unset label 98; unset label 99
+    set border 3 linewidth 0.8; set grid xtics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
+    set xtics nomirror out scale 0.6 offset 0,tick_lift(format)
     set yrange [n + 0.55:0.45]
     set tmargin at screen at_y(upper); set bmargin at screen at_y(upper + row_high*n)
     do for [c=1:2] {
@@ -39,12 +48,11 @@ do for [format in formats] {
         set xrange [1.12*least:1.62*most]
         set xtics autofreq
         if (most <= 1e-9) { set xrange [0:1]; set xtics (0) }
-        set xlabel axis_name[c]
-        if (c == 1) { set key at screen at_x(wide - 16),at_y(66) right top horizontal maxrows 1 samplen 1.2 width 1 } else { unset key }
-        plot data using (is(c, 0) ? column(cost[c])/2.0 : NaN):"y":(abs(column(cost[c]))/2.0):(0.3) with boxxyerror fillcolor rgb exact_colour linewidth 0.3 title "exact: the same bits", \
-             data using (is(c, 1) ? column(cost[c])/2.0 : NaN):"y":(abs(column(cost[c]))/2.0):(0.3) with boxxyerror fillcolor rgb bounded_colour linewidth 0.3 title "bounded: within its bound", \
+        set xlabel axis_name[c] offset 0,name_lift(format)
+        plot data using (is(c, 0) ? column(cost[c])/2.0 : NaN):"y":(abs(column(cost[c]))/2.0):(0.3) with boxxyerror fillcolor rgb exact_colour linewidth 0.3, \
+             data using (is(c, 1) ? column(cost[c])/2.0 : NaN):"y":(abs(column(cost[c]))/2.0):(0.3) with boxxyerror fillcolor rgb bounded_colour linewidth 0.3, \
              data using (column("measured") == 1 && c == 1 && column("told") == 0 ? column(cost[c])/2.0 : NaN):"y":(abs(column(cost[c]))/2.0):(0.3) with boxxyerror \
-                fillcolor rgb noise_colour linewidth 0.3 title "below the noise", \
+                fillcolor rgb noise_colour linewidth 0.3, \
              data using ((column("measured") == 1 && column(cost[c]) > 0 ? column(cost[c]) : 0) + 0.02*most):"y":(strcol(words_of[c])) with labels left noenhanced font tiny, \
              NaN notitle
         unset label 97; unset label 98; unset label 99
@@ -54,7 +62,7 @@ do for [format in formats] {
     set xrange [0:wide]
     plot data using (320):(column("y") - 0.2):(strcol("what")) with labels right noenhanced font tiny, \
          data using (320):(column("y") + 0.2):(strcol("class_text")) with labels right noenhanced font tiny textcolor rgb grey
-    set border 3 linewidth 0.8; set xtics nomirror out scale 0.6; set grid linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
+    set border 3 linewidth 0.8; set xtics nomirror out scale 0.6
     unset multiplot
     unset output
 }

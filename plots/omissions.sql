@@ -6,7 +6,7 @@ SELECT row_number() OVER (ORDER BY ordinal) AS y, replace(what, ',', ' –') AS 
        ifnull(abs(host_saved_s) > host_noise_s, 0) AS told, host_saved_s * 1e3 AS host_saved_ms, machine_saved_ps / 1e6 AS machine_saved_us,
        CASE WHEN host_saved_s IS NULL THEN 'cannot be undone'
             WHEN abs(host_saved_s) <= host_noise_s THEN format('below the noise of %.2g ms', host_noise_s * 1e3)
-            WHEN host_saved_s < 0 THEN format('undone: %.2g ms less', -host_saved_s * 1e3)
+            WHEN host_saved_s < 0 THEN format('costs %.2g ms more than it saves', -host_saved_s * 1e3)
             ELSE format('%.3g ms (%.2g %%)', host_saved_s * 1e3, 100 * host_saved_s / (host_s + host_saved_s)) END AS host_text,
        CASE WHEN machine_saved_ps IS NULL THEN '' WHEN machine_saved_ps = 0 THEN 'nothing'
             ELSE format('%.4g µs (%.2g %%)', machine_saved_ps / 1e6, 100.0 * machine_saved_ps / (machine_ps + machine_saved_ps)) END

@@ -1,4 +1,4 @@
-# speedup.gp - speedup against the number of ranks, a curve for each machine, with the ideal.
+# speedup.gp - speedup against the number of ranks, a curve for each machine, six a panel, with the ideal.
 data = figure.".csv"
 stats data using "series" nooutput
 last = int(STATS_max)
@@ -13,21 +13,41 @@ of(k, v) = column("series") == k ? v : NaN
 ymin = smin < 1 ? smin*0.8 : 0.8
 ymax = (pmax > smax ? pmax : smax)*1.15
 
+# six curves a panel
+panels = int((last + 5)/6); across = panels > 1 ? 2 : 1; down = int((panels + across - 1)/across)
+first(q) = 6*(q - 1) + 1
+final(q) = 6*q < last ? 6*q : last
+width = across == 1 ? 0.885 : 0.41
+
 do for [format in formats] {
-    if (format eq "png") { set terminal pngcairo size 1600,1200 font png_font linewidth 2 enhanced } \
-    else { set terminal svg size 800,600 font svg_font linewidth 1.2 enhanced }
+    high = 92.0 + (panels > 1 ? 430 : 500)*down; each = (high - 92.0)/down
+    page_wide = across == 1 ? 800 : 1000; page_high = int(high)
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format
-    set label 1 headline at screen 0.5,0.97 center noenhanced font large(format)
-    set label 2 subline at screen 0.5,0.925 center noenhanced textcolor rgb grey
-    set label 3 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
-    set lmargin at screen 0.1; set rmargin at screen 0.97; set tmargin at screen 0.89; set bmargin at screen 0.12
+    set multiplot
+    set label 97 headline at screen 0.5,(1.0 - 20/high) center noenhanced font large(format)
+    set label 98 subline at screen 0.5,(1.0 - 44/high) center noenhanced textcolor rgb grey
+    set label 99 provenance at screen 0.99,(9/high) right noenhanced font least(format) textcolor rgb grey
     set logscale x 2; set logscale y 2
     set xrange [pmin*0.9:pmax*1.12]; set yrange [ymin:ymax]
-    set xlabel "ranks P"; set ylabel "speedup S"
+    set xtics offset 0,tick_lift(format)
+    set xlabel "ranks P" offset 0,name_lift(format); set ylabel "speedup S"
     set key top left
-    plot x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
-         1 with lines linewidth 0.6 linecolor rgb grey notitle, \
-         for [k=1:last] data using "P":(of(k, column("speedup"))) with linespoints linewidth 1.6 \
-            dashtype dash[k] pointtype point[k] pointsize 0.9 linecolor rgb colour[k] title name[k]
+    do for [q=1:panels] {
+        c = (q - 1) % across; r = int((q - 1)/across)
+        set lmargin at screen 0.085 + c*(width + 0.08); set rmargin at screen 0.085 + c*(width + 0.08) + width
+        set tmargin at screen 1.0 - (68.0 + each*r)/high; set bmargin at screen 1.0 - (68.0 + each*(r + 1) - 54)/high
+        plot x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000" title "ideal S = P", \
+             1 with lines linewidth 0.6 linecolor rgb grey notitle, \
+             for [k=first(q):final(q)] data using "P":(of(k, column("speedup"))) with lines linewidth 1.6 \
+                dashtype dash[turn(k)] linecolor rgb colour[turn(k)], \
+             for [k=first(q):final(q)] data using "P":(of(k, column("speedup"))):(sprintf("P = %d: speedup %.3g", column("P"), \
+                column("speedup"))) with labels hypertext point pointtype point[turn(k)] pointsize 0.8 linecolor rgb colour[turn(k)], \
+             for [k=first(q):final(q)] keyentry with linespoints linewidth 1.6 dashtype dash[turn(k)] pointtype point[turn(k)] \
+                pointsize 0.8 linecolor rgb colour[turn(k)] title name[k]
+        unset label 97; unset label 98; unset label 99
+    }
+    unset multiplot
     unset output
 }

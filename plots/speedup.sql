@@ -24,5 +24,5 @@ size AS (SELECT curve, count(*) AS points, min(run_id) AS first FROM point WHERE
 place AS (SELECT curve, row_number() OVER (ORDER BY points DESC, first) AS series FROM size)
 SELECT p.series, c.curve, c.P, c.speedup, c.makespan_ps, c.baseline_ps, c.baseline, ?1 AS program, c.run_id
 FROM point c JOIN place p ON p.curve = c.curve
-WHERE c.choice = 1 AND p.series <= 8 AND c.speedup > 0
+WHERE c.choice = 1 AND p.series <= 24 AND c.speedup > 0
 ORDER BY p.series, c.P;

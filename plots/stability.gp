@@ -38,8 +38,8 @@ place(x) = x > explicit ? x + 0.25 : x    # explicit and implicit steppers stand
 
 do for [format in formats] {
     page_wide = int(wide); page_high = int(total)
-    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 enhanced } \
-    else { set terminal svg size page_wide,page_high font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = format eq "png" ? ",15" : ",10.5"; strong = format eq "png" ? ",20" : ",13.5"
     set multiplot

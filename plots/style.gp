@@ -1,7 +1,6 @@
 # style.gp - what all figures share. The variable figure, a file's name, is set before; data is in figure.".csv".
 # Texts of a database are read as columns of data files and shown as strings that are not enhanced. None becomes a part of
 # a command: nothing in this folder evaluates a text, expands a macro, starts a program or loads a file.
-# Colours: Okabe and Ito, told apart by colour-blind readers; dashes and points differ too, for print in grey.
 set encoding utf8
 set datafile commentschars ""
 # who made the numbers: one line of text
@@ -13,30 +12,42 @@ set datafile missing ''
 set datafile columnheaders
 formats = "png svg"
 
+# A PNG has twice the pixels of the SVG, and its fonts, lines, symbols and dashes are scaled so that both look alike.
 png_font = "DejaVu Sans,19"; svg_font = "DejaVu Sans,13"
 large(format) = format eq "png" ? ",23" : ",16"
-small(format) = format eq "png" ? ",15" : ",10"
-least(format) = format eq "png" ? ",11" : ",8"
+small(format) = format eq "png" ? ",16" : ",11"
+least(format) = format eq "png" ? ",13" : ",9"
+# The svg terminal puts labels and names of axes lower than the others do, by this many lines.
+tick_lift(format) = format eq "png" ? 0 : 0.55
+name_lift(format) = format eq "png" ? 0.3 : 1.1
 
-array colour[8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f"]
-array point[8] = [7, 5, 9, 13, 11, 6, 4, 8]
-array dash[8] = [1, 2, 4, 5, 3, 1, 2, 4]
+# Six colours, and no more in a panel. The nearest two differ by 29 units of CIEDE2000; by 16 at least for readers who lack
+# one kind of cones. They also differ in lightness, and each comes with a symbol and a dash of its own.
+array colour[6] = ["#0f4c9c", "#c43c10", "#2a8a68", "#d9a21b", "#6b2346", "#45b0e0"]
+array point[6] = [7, 5, 9, 13, 11, 15]
+array hollow[6] = [6, 4, 8, 12, 10, 14]
+array dash[6] = [1, 2, 4, 5, 3, 1]
+turn(k) = (int(k) - 1) % 6 + 1
 # The fastest serial code is always one of the others: a wide pale band under that one's curve.
 band = "#d0d0d0"
-grey = "#767676"
+grey = "#666666"
 pale = "#b8b8b8"
 
 # One bar part of a stage: computing dark, waiting light, so that the order shows in grey too.
-compute_colour = "#0072b2"
-send_colour = "#e69f00"
-recv_colour = "#f0e442"
+compute_colour = "#0f4c9c"
+send_colour = "#d9a21b"
+recv_colour = "#f3e0a6"
 wait_colour = "#f6f6f6"
-contention_colour = "#d55e00"
+contention_colour = "#c43c10"
+# Verdicts: light where it holds, dark where not.
+good_colour = "#d8e6f4"; middle_colour = "#f0c368"; bad_colour = "#b0401a"
 
 set border 3 linewidth 0.8
+# no blank in front of a number: it would shift the label beside its tick
+set format "%g"
 set tics nomirror out scale 0.6
 set grid linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
-set key noautotitle Left reverse noenhanced
+set key noautotitle Left reverse noenhanced spacing 1.1
 headline = ""; subline = ""
 set style fill solid 1.0 border linecolor rgb "#303030"
 set boxwidth 0.8

@@ -285,7 +285,7 @@ static const char saving_rows[] =
     " CASE WHEN host_saved_s IS NULL THEN 'cannot be undone'"
     "  WHEN abs(host_saved_s) <= host_noise_s"
     " THEN format('less than the noise, %.2g ms', host_noise_s * 1e3)"
-    "  WHEN host_saved_s < 0 THEN format('nothing: undone it takes %.2g ms less',"
+    "  WHEN host_saved_s < 0 THEN format('nothing: it costs %.2g ms more',"
     " -host_saved_s * 1e3)"
     "  ELSE format('%.3g ms of %.3g', host_saved_s * 1e3, (host_s + host_saved_s) * 1e3) END"
     " AS \"saved on this computer\","
