@@ -253,6 +253,13 @@ int cmd_machines(int argc, char **argv)
         err_set(&e, ERR_USAGE, "--compare needs two machines, not %d", c.narg);
         return common_fail(&c, &e);
     }
+    /* Machines have no points. */
+    if (c.only != NULL) {
+        struct err e;
+        err_clear(&e);
+        err_set(&e, ERR_USAGE, "--only picks points of a scenario; a machine has none");
+        return common_fail(&c, &e);
+    }
     struct arena *a = arena_create();
     int status = c.narg ? show(&c, a) : list_machines(&c, a);
     arena_destroy(a);

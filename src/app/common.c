@@ -14,7 +14,7 @@
 
 /* Keys of long options without a letter. */
 enum {
-    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME
+    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME, KEY_ONLY
 };
 
 /* The last number is the group: it orders --help and decides which verbs have the option. */
@@ -25,6 +25,8 @@ static const struct argp_option option_table[] = {
      "several values, as in n=16,32, are a sweep; may be repeated", 1},
     {"name", KEY_NAME, "TEXT", 0,
      "what these runs are called in tables and figures (default: the machine with what was changed of it)", 1},
+    {"only", KEY_ONLY, "CONDITION", 0,
+     "only the points that satisfy it, e.g. \"n >= 64 and level == link\"", 1},
     {"allow-programs", KEY_ALLOW, NULL, 0,
      "run also programs that the scenario names outside its own folder: they run with all your rights", 1},
     {"output", 'o', "DB", 0, "database (default mimdsim.db; for paper: paper.db)", 2},
@@ -94,16 +96,28 @@ static error_t set_name(const char **place, const char *arg, const char *format,
     return arg[0] ? 0 : refuse(state, format, arg);
 }
 
+/* Where an option whose value is kept as it is has its place; NULL: it is none of these. */
+static const char **place_of(struct common *c, int key)
+{
+    switch (key) {
+    case 'm': return &c->machine;
+    case KEY_ONLY: return &c->only;
+    case KEY_DIR: return &c->directory;
+    case KEY_LEVEL: return &c->level;
+    case KEY_FORMAT: return &c->format;
+    default: return NULL;
+    }
+}
+
 /* Called by argp for each option and argument, and at the end. */
 static error_t parse_option(int key, char *arg, struct argp_state *state)
 {
     struct parse *p = state->input;
     struct common *c = p->common;
+    const char **place = place_of(c, key);
+    if (place != NULL) return *place = arg, 0;
     /* Each option is a field of struct common; what it means is the verb's matter. */
     switch (key) {
-    case 'm':
-        c->machine = arg;
-        break;
     case 's':
         add_set(c, arg, state);
         break;
@@ -123,15 +137,6 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case KEY_FORCE:
         c->force = true;
-        break;
-    case KEY_DIR:
-        c->directory = arg;
-        break;
-    case KEY_LEVEL:
-        c->level = arg;
-        break;
-    case KEY_FORMAT:
-        c->format = arg;
         break;
     case KEY_BRIEF:
         c->brief = true;
@@ -270,7 +275,8 @@ struct plan_options common_plan(const struct common *c)
                                  .nkernel = c->kernel.n,
                                  .kernel = c->kernel.name,
                                  .program = programs_sheet,
-                                 .allow_programs = c->allow_programs};
+                                 .allow_programs = c->allow_programs,
+                                 .only = c->only};
 }
 
 /* The end of a failed verb: document, text, exit status. */

@@ -43,6 +43,7 @@ struct common {
     const char *format;    /* --format, NULL: the usual ones */
     bool brief, compare;
     bool allow_programs;   /* --allow-programs */
+    const char *only;      /* --only, NULL: all points */
     int jobs;              /* 0: as many as processors */
     struct catalogue kernel; /* the kernels there are */
     int narg;

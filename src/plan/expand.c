@@ -9,6 +9,7 @@
 
 #include "base/digest.h"
 #include "base/text.h"
+#include "plan/condition.h"
 #include "plan/data_dir.h"
 #include "plan/file_kind.h"
 #include "plan/call.h"
@@ -26,6 +27,12 @@ struct start {
     struct run_spec run; /* machine and base settings applied */
     struct machine_spec file; /* the machine as its file has it */
     struct start *next; /* the one that was made before */
+};
+
+/* What a plan keeps, so that a point can be made again with other settings. */
+struct plan_memory {
+    const struct scenario *scenario;
+    struct start *starts;
 };
 
 struct expansion {
@@ -181,11 +188,18 @@ static bool check_fits(struct expansion *x, const struct run_spec *run)
     return true;
 }
 
-/* Whether the scenario's `only` conditions keep this point. */
-static bool wanted(const struct scenario *s, const struct run_spec *run)
+/* Whether the conditions of the scenario and of --only keep this point: 1 yes, 0 no, -1 one makes
+ * no sense. All are asked: a mistake in the second is told although the first leaves the point out. */
+static int wanted(struct expansion *x, const struct run_spec *run)
 {
-    if (s->only_bodies_for_all && run->model.nbody < run->nrank) return false;
-    return !s->only_fitting || run->nrank <= machine_spec_processors(&run->machine);
+    const struct scenario *s = x->scenario;
+    int keep = 1;
+    for (int i = 0; i < s->ncondition; i++) {
+        bool holds;
+        if (!condition_holds(&s->condition[i], run, &holds, x->err)) return -1;
+        if (!holds) keep = 0;
+    }
+    return keep;
 }
 
 /* A model's file is part of a run by its content, wherever it lies. */
@@ -276,7 +290,8 @@ static int make_point(struct expansion *x, struct run_spec *run)
     }
     for (int i = 0; i < s->set.n; i++) setting_apply(&s->set.at[i], run, x->plan->arena);
     if (!resolve_program(x, run)) return -1;
-    if (!wanted(s, run)) return 0;
+    const int keep = wanted(x, run);
+    if (keep <= 0) return keep;
     machine_changes_note(&x->changes, run);
     name_run(x, run, &start->file);
     if (!resolve_path(x, run)) return -1;
@@ -296,22 +311,52 @@ static bool advance(struct expansion *x)
     return false;
 }
 
+/* The number of the present point, of all axes or of those that are not searched. */
+static int64_t point_number(const struct expansion *x, bool all)
+{
+    int64_t number = 0;
+    /* the last axis counts ones, as in the odometer */
+    for (int i = 0; i < x->scenario->naxis; i++)
+        if (all || !x->scenario->axis[i].searched)
+            number = number * x->scenario->axis[i].npoint + x->point[i];
+    return number;
+}
+
+/* Of a search: the point of the other axes becomes the next group, unless it is one already. */
+static int group_of(struct expansion *x, int64_t *outer)
+{
+    struct plan *p = x->plan;
+    if (x->scenario->search == NULL) return 0;
+    /* what is searched makes no difference between groups */
+    const int64_t number = point_number(x, false);
+    /* the latest first: it is that one unless a searched axis is slower than another */
+    for (int i = p->ngroup - 1; i >= 0; i--)
+        if (outer[i] == number) return i;
+    outer[p->ngroup] = number;
+    return p->ngroup++;
+}
+
 /* All points in order; repetitions of one follow each other. */
 static bool expand_points(struct expansion *x, int64_t capacity)
 {
     struct plan *p = x->plan;
     struct run_spec *run = TAKE(p->arena, capacity, struct run_spec);
+    int64_t *outer = x->scenario->search != NULL ? TAKE(p->arena, capacity, int64_t) : NULL;
     p->run = run;
+    p->point = TAKE(p->arena, capacity, int64_t);
+    p->group = TAKE(p->arena, capacity, int);
     do {
         int made = make_point(x, &run[p->nrun]);
         if (made < 0) return false;
         if (made == 0) continue;
         /* Without anything random all repetitions would be the same run. */
         const bool repeats = run_spec_is_random(&p->run[p->nrun]) && !p->run[p->nrun].refused;
-        const int repetitions = repeats ? x->scenario->repetitions : 1;
-        for (int rep = 1; rep < repetitions; rep++) {
-            run[p->nrun + rep] = run[p->nrun];
+        const int repetitions = repeats ? x->scenario->repetitions : 1, group = group_of(x, outer);
+        for (int rep = 0; rep < repetitions; rep++) {
+            if (rep > 0) run[p->nrun + rep] = run[p->nrun];
             run[p->nrun + rep].rep = rep;
+            p->point[p->nrun + rep] = point_number(x, true);
+            p->group[p->nrun + rep] = group;
         }
         p->nrun += repetitions;
     } while (advance(x));
@@ -321,7 +366,9 @@ static bool expand_points(struct expansion *x, int64_t capacity)
         return false;
     }
     if (p->nrun > 0) return true;
-    return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0, "'only' excludes all runs");
+    return err_set_at(x->err, ERR_CONFIG, x->scenario->path, 0,
+                      "%s excludes all runs", x->scenario->ncondition > 1 ? "'only' with all its conditions"
+                      : x->scenario->condition[0].line == 0 ? "--only" : "'only'");
 }
 
 /* The product of all axes and repetitions, filtered by `only`. */
@@ -343,7 +390,44 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
     x.identity = identity_create(table, ntable);
     bool fine = expand_points(&x, n);
     identity_destroy(x.identity);
+    p->search = s->search;
+    p->memory = TAKE(p->arena, 1, struct plan_memory);
+    *p->memory = (struct plan_memory){s, x.starts};
     return fine;
+}
+
+/* The point is set as the odometer was, and made once more with the further settings behind all
+ * others. What it counts is not the plan's. */
+bool plan_vary(struct plan *p, int index, int n, const char *const *key, const char *const *text,
+               struct run_spec *run, struct err *e)
+{
+    struct scenario s = *p->memory->scenario;
+    struct plan counts = *p;
+    struct expansion x = {.plan = &counts, .scenario = &s, .err = e, .starts = p->memory->starts,
+                          .changes = {.arena = p->arena}};
+    int ntable;
+    /* the odometer as it stood when the point was made */
+    int64_t number = p->point[index];
+    for (int i = s.naxis - 1; i >= 0; i--) {
+        x.point[i] = (int)(number % s.axis[i].npoint);
+        number /= s.axis[i].npoint;
+    }
+    /* a list of its own, behind which the further settings stand */
+    struct setting_list set = {0};
+    for (int i = 0; i < s.set.n; i++)
+        if (!setting_list_add(&set, s.set.at[i].key, s.set.at[i].text, s.set.at[i].file, 0, p->arena, e))
+            return false;
+    for (int i = 0; i < n; i++)
+        if (!setting_list_add(&set, key[i], text[i], "optimise", 0, p->arena, e)) return false;
+    s.set = set;
+    s.ncondition = 0;
+    const struct field_table *const *table = field_tables(&ntable);
+    x.identity = identity_create(table, ntable);
+    /* conditions were asked when the plan was made */
+    const int made = make_point(&x, run);
+    identity_destroy(x.identity);
+    run->rep = p->run[index].rep;
+    return made == 1;
 }
 
 /* ---- what does not act */

@@ -101,9 +101,10 @@ static bool fill(struct plan *p, struct scenario *s, const struct plan_options *
 /* Everything of the plan lives in its arena; a failed plan is empty. */
 bool plan_read(struct plan *p, const char *name, const struct plan_options *o, struct err *e)
 {
-    struct scenario s;
     *p = (struct plan){.arena = arena_create()};
-    if (scenario_file_read(&s, name, o, p->arena, e) && fill(p, &s, o, e)) return true;
+    /* It lives as long as the plan, which can make points again (plan_vary). */
+    struct scenario *s = TAKE(p->arena, 1, struct scenario);
+    if (scenario_file_read(s, name, o, p->arena, e) && fill(p, s, o, e)) return true;
     /* Perhaps it is a file of another kind: then that is told instead. The plan is emptied first,
      * so that a caller may free it whatever happened. */
     plan_free(p);

@@ -6,7 +6,9 @@
 
 #include "base/arena.h"
 #include "base/err.h"
+#include "base/expression.h"
 #include "base/text.h"
+#include "plan/range.h"
 #include "spec/run_spec.h"
 
 struct plan_options {
@@ -22,6 +24,20 @@ struct plan_options {
                                            struct err *e);
     void *program_context;
     bool allow_programs; /* scenarios may name programs outside their own folder */
+    const char *only;    /* --only: a condition besides the scenario's own (condition.h), NULL: none */
+};
+
+enum { PLAN_MOST_RANGES = 8 };
+
+/* What is to be optimised (search_file.h). Listed values are points of the plan; ranges stand there at their middle. */
+struct plan_search {
+    const struct expression *goal, *within; /* of settings and results; within NULL: no limit */
+    bool greatest;
+    int nrange;
+    struct range range[PLAN_MOST_RANGES];
+    int most; /* runs for each combination of listed values */
+    const char *file;
+    int line;
 };
 
 struct plan {
@@ -30,6 +46,11 @@ struct plan {
     const char *question; /* the file's question, one line */
     int nrun;
     const struct run_spec *run; /* (nrun) in plan order; final, copies may become other runs (identity.h) */
+    int64_t *point;       /* (nrun) number of the point in the product of the axes, before conditions */
+    const struct plan_search *search; /* what is optimised, NULL: nothing */
+    int *group;           /* (nrun) of a search: runs of one group differ in what is searched; numbered from 0 */
+    int ngroup;
+    struct plan_memory *memory; /* what plan_vary needs */
     int nrefused;         /* points that cannot run, such as more ranks than processors (run_spec.refused); never all */
     struct err refusal;   /* of the first of them */
     int nswept;
@@ -51,6 +72,11 @@ bool plan_read(struct plan *p, const char *name, const struct plan_options *o, s
 
 /* plan_free: give everything back; accepts an empty plan. */
 void plan_free(struct plan *p);
+
+/* plan_vary: run `index` of `p` with n more settings, as --set would give them, into *run, complete and identified; it
+ * lives as long as `p`. A point that cannot run has run->refused. Returns false with ERR_DATA. */
+bool plan_vary(struct plan *p, int index, int n, const char *const *key, const char *const *text, struct run_spec *run,
+               struct err *e);
 
 /* plan_check_file: validate a scenario, a machine file (by its content) or a program without
  * running; `o` may be NULL. */

@@ -14,6 +14,8 @@
 #include "base/text.h"
 #include "plan/data_dir.h"
 #include "plan/program_file.h"
+#include "plan/sample_file.h"
+#include "plan/search_file.h"
 
 /* Fields whose single value is a list: there a list is no sweep. */
 static bool is_list_field(const char *key)
@@ -33,27 +35,6 @@ static bool is_pair_list(const char *key)
     return f != NULL && f->kind == FIELD_PAIR_LIST;
 }
 
-/* Add a setting; a key may be given only once in a list. */
-static bool add_setting(struct setting_list *list, const char *key, const char *text,
-                        const char *file, int line, struct arena *a, struct err *e)
-{
-    struct setting s;
-    if (!setting_make(&s, key, text, file, line, a, e)) return false;
-    for (int i = 0; i < list->n; i++)
-        if (strcmp(list->at[i].key, s.key) == 0)
-            return err_set_at(e, ERR_DATA, file, line, "duplicate key '%s'; first given in line %d",
-                              s.key, list->at[i].line);
-    if (list->n == SCENARIO_MAX_SETTINGS)
-        return err_set_at(e, ERR_DATA, file, line, "too many settings");
-    if ((list->n & (list->n - 1)) == 0) { /* full: room for twice as many */
-        struct setting *at = TAKE(a, size_sum(size_product(2, list->n), 1), struct setting);
-        if (list->n > 0) memcpy(at, list->at, (size_t)list->n * sizeof *at);
-        list->at = at;
-    }
-    list->at[list->n++] = s;
-    return true;
-}
-
 /* ---- axes */
 
 /* For setting_walk: a value into the list that `context` is. */
@@ -61,7 +42,7 @@ static bool add_leaf(void *context, const char *key, const struct node *leaf, co
                      struct arena *a, struct err *e)
 {
     const char *text = setting_value(key, leaf, file, a, e);
-    return text != NULL && add_setting(context, key, text, file, leaf->line, a, e);
+    return text != NULL && setting_list_add(context, key, text, file, leaf->line, a, e);
 }
 
 /* One point: a value of the axis's own key, or a mapping of settings below the group that the axis
@@ -82,7 +63,7 @@ static bool read_point(struct setting_list *point, const char *key, const char *
     if (node->kind == NODE_LIST && !is_list_field(key))
         return err_set_at(e, ERR_DATA, file, node->line, "%s: a list within a list", key);
     const char *text = setting_value(key, node, file, a, e);
-    return text != NULL && add_setting(point, key, text, file, node->line, a, e);
+    return text != NULL && setting_list_add(point, key, text, file, node->line, a, e);
 }
 
 /* The group below which an axis's mappings set: kernel, model, machine; all for `variant`; NULL:
@@ -182,16 +163,18 @@ static bool read_figures(struct top *t, const struct node *n)
     return true;
 }
 
-/* Two conditions are known by their text: a language of conditions would be more to learn. */
+/* Points that do not satisfy it are left out. */
 static bool read_condition(struct top *t, const struct node *n, const char *text)
 {
-    if (text != NULL && strcmp(text, "n >= ranks") == 0)
-        return t->scenario->only_bodies_for_all = true;
-    if (text != NULL && strcmp(text, "ranks <= processors") == 0)
-        return t->scenario->only_fitting = true;
-    return refuse(t, n, "expected 'n >= ranks' or 'ranks <= processors', or a list of both");
+    struct scenario *s = t->scenario;
+    if (text == NULL)
+        return refuse(t, n, "expected a condition such as 'n >= ranks', or a list of them");
+    if (s->ncondition == SCENARIO_MAX_CONDITIONS)
+        return refuse(t, n, "too many conditions; join some by 'and'");
+    return condition_read(&s->condition[s->ncondition++], text, s->path, n->line, t->arena, t->err);
 }
 
+/* `only:` and `when:`, one condition or a list. */
 static bool read_only(struct top *t, const struct node *n)
 {
     if (n->kind == NODE_TEXT) return read_condition(t, n, n->text);
@@ -200,11 +183,30 @@ static bool read_only(struct top *t, const struct node *n)
     return n->kind == NODE_LIST || refuse(t, n, "expected a list of conditions");
 }
 
+/* A sample is an axis, too. */
+static bool read_sample(struct top *t, const struct node *n)
+{
+    struct scenario *s = t->scenario;
+    if (s->naxis == SCENARIO_MAX_AXES)
+        return err_set_at(t->err, ERR_DATA, s->path, n->line, "too large a sweep");
+    return sample_file_read(&s->axis[s->naxis++], n, s->path, t->arena, t->err);
+}
+
+static bool read_search(struct top *t, const struct node *n)
+{
+    return search_file_read(t->scenario, n, add_axis, t->arena, t->err);
+}
+
 static bool read_sweep(struct top *t, const struct node *n)
 {
     if (n->kind != NODE_MAP) return refuse(t, n, "expected axes such as {n: [2, 4, 8]}");
-    for (const struct node *c = n->child; c != NULL; c = c->next)
-        if (!add_axis(t->scenario, c->key, c, t->arena, t->err)) return false;
+    for (const struct node *c = n->child; c != NULL; c = c->next) {
+        bool read;
+        if (strcmp(c->key, "when") == 0) read = read_only(t, c);
+        else if (strcmp(c->key, "sample") == 0) read = read_sample(t, c);
+        else read = add_axis(t->scenario, c->key, c, t->arena, t->err);
+        if (!read) return false;
+    }
     return true;
 }
 
@@ -215,7 +217,8 @@ static const struct top_key {
     top_fn *read;
 } top_keys[] = {
     {"schema_version", read_version}, {"question", read_question}, {"repetitions", read_repetitions},
-    {"figures", read_figures},        {"only", read_only},         {"sweep", read_sweep},
+    {"figures", read_figures},        {"only", read_only},         {"when", read_only},
+    {"sweep", read_sweep},            {"optimise", read_search},
 };
 enum { NTOP = sizeof top_keys / sizeof *top_keys };
 
@@ -254,16 +257,32 @@ static bool read_top(struct top *t, const struct node *n)
     return read_setting(t, n);
 }
 
+/* Whether the axis is a sample that draws `key`: all of its points set the same keys. */
+static bool is_sampled(const struct axis *x, const char *key)
+{
+    for (int k = 0; strcmp(x->key, "sample") == 0 && k < x->point[0].n; k++)
+        if (strcmp(x->point[0].at[k].key, key) == 0) return true;
+    return false;
+}
+
 /* A key cannot both be swept and hold for all runs. */
 static bool check_axes(const struct scenario *s, struct err *e)
 {
     for (int i = 0; i < s->naxis; i++)
-        for (int j = 0; j < s->base.n; j++)
-            if (strcmp(s->axis[i].key, s->base.at[j].key) == 0)
+        for (int j = 0; j < s->base.n; j++) {
+            const struct setting *set = &s->base.at[j];
+            if (strcmp(s->axis[i].key, set->key) == 0 || is_sampled(&s->axis[i], set->key))
                 return err_set_at(e, ERR_DATA, s->path, s->axis[i].line,
-                                  "'%s' is swept here and set for all runs in line %d",
-                                  s->axis[i].key, s->base.at[j].line);
-    return true;
+                                  "'%s' is swept here and set for all runs in line %d", set->key,
+                                  set->line);
+        }
+    for (int i = 0; i < s->naxis; i++)
+        for (int j = 0; j < s->naxis; j++)
+            if (i != j && is_sampled(&s->axis[i], s->axis[j].key))
+                return err_set_at(e, ERR_DATA, s->path, s->axis[j].line,
+                                  "'%s' is swept here and sampled in line %d", s->axis[j].key,
+                                  s->axis[i].line);
+    return search_file_check(s, e);
 }
 
 /* ---- the command line */
@@ -357,10 +376,11 @@ static bool read_set(struct scenario *s, const char *set, struct arena *a, struc
     }
     if (!setting_is_key(full)) return program_file_unknown(s, name, "--set", 0, e);
     int at = remove_axis(s, full);
+    search_file_drop(s, full);
     remove_setting(&s->set, full);
     remove_setting(&s->base, full);
     if (is_sweep(full, equals + 1)) return set_axis(s, name, arena_text(a, equals + 1), at, a, e);
-    return add_setting(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
+    return setting_list_add(&s->set, name, arena_text(a, equals + 1), "--set", 0, a, e);
 }
 
 /* n and n_over_p exclude each other, and so do kernel and program: what comes from the command line
@@ -389,13 +409,18 @@ static bool read_options(struct scenario *s, const struct plan_options *o, struc
     drop_overruled(s, "program.file", "kernel.name");
     if (o->name != NULL) {
         remove_setting(&s->set, "label");
-        if (!add_setting(&s->set, "label", arena_text(a, o->name), "--name", 0, a, e)) return false;
+        if (!setting_list_add(&s->set, "label", arena_text(a, o->name), "--name", 0, a, e)) return false;
+    }
+    if (o->only != NULL) {
+        if (s->ncondition == SCENARIO_MAX_CONDITIONS)
+            return err_set(e, ERR_USAGE, "--only: the scenario has %d conditions already", s->ncondition);
+        if (!condition_read(&s->condition[s->ncondition++], o->only, "--only", 0, a, e)) return false;
     }
     if (o->machine == NULL) return true;
     remove_axis(s, "machine.name");
     remove_setting(&s->base, "machine.name");
     remove_setting(&s->set, "machine.name");
-    return add_setting(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
+    return setting_list_add(&s->set, "machine", arena_text(a, o->machine), "--machine", 0, a, e);
 }
 
 /* Programs first, as they add keys; then the keys of the file in order, so that axes keep

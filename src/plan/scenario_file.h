@@ -3,20 +3,18 @@
 #ifndef PLAN_SCENARIO_FILE_H
 #define PLAN_SCENARIO_FILE_H
 
+#include "plan/condition.h"
 #include "plan/plan.h"
 #include "plan/setting.h"
 
-enum { SCENARIO_MAX_SETTINGS = 512, SCENARIO_MAX_PROGRAMS = 32, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS = 100000 };
-
-struct setting_list {
-    int n;
-    struct setting *at; /* (n) in the order given */
-};
+enum { SCENARIO_MAX_PROGRAMS = 32, SCENARIO_MAX_AXES = 16, SCENARIO_MAX_POINTS = 100000,
+       SCENARIO_MAX_CONDITIONS = 16 };
 
 /* One axis of the sweep: at each point several settings change together. */
 struct axis {
-    const char *key; /* full key, or "variant" */
+    const char *key; /* full key, "variant" or "sample" */
     int line;
+    bool searched;   /* one of its points is chosen (`optimise:`) */
     int npoint;
     struct setting_list *point; /* (npoint) */
 };
@@ -34,8 +32,9 @@ struct scenario {
     int naxis;
     struct axis axis[SCENARIO_MAX_AXES];
     int repetitions;
-    bool only_bodies_for_all; /* leave out points with n < P */
-    bool only_fitting;        /* leave out points with P > processors */
+    int ncondition;
+    struct condition condition[SCENARIO_MAX_CONDITIONS]; /* points that fail one are left out */
+    struct plan_search *search; /* NULL: nothing is optimised */
     int nfigure;
     const char **figure;
 };

@@ -142,6 +142,27 @@ bool setting_make(struct setting *s, const char *key, const char *text, const ch
     return fine || err_set_at(e, ERR_DATA, file, line, "%s: '%.80s': %s", s->key, text, why);
 }
 
+/* Add a setting; a key may be given only once in a list. */
+bool setting_list_add(struct setting_list *list, const char *key, const char *text,
+                      const char *file, int line, struct arena *a, struct err *e)
+{
+    struct setting s;
+    if (!setting_make(&s, key, text, file, line, a, e)) return false;
+    for (int i = 0; i < list->n; i++)
+        if (strcmp(list->at[i].key, s.key) == 0)
+            return err_set_at(e, ERR_DATA, file, line, "duplicate key '%s'; first given in line %d",
+                              s.key, list->at[i].line);
+    if (list->n == SETTING_MOST)
+        return err_set_at(e, ERR_DATA, file, line, "too many settings");
+    if ((list->n & (list->n - 1)) == 0) { /* full: room for twice as many */
+        struct setting *at = TAKE(a, size_sum(size_product(2, list->n), 1), struct setting);
+        if (list->n > 0) memcpy(at, list->at, (size_t)list->n * sizeof *at);
+        list->at = at;
+    }
+    list->at[list->n++] = s;
+    return true;
+}
+
 /* Cannot fail: setting_make has tried the same text. */
 void setting_apply(const struct setting *s, struct run_spec *run, struct arena *a)
 {

@@ -29,6 +29,13 @@ struct setting {
     int line;         /* 0: none */
 };
 
+struct setting_list {
+    int n;
+    struct setting *at; /* (n) in the order given */
+};
+
+enum { SETTING_MOST = 512 }; /* in one list */
+
 /* setting_key: the full key of a short one: n, level, kernel, program; others as they are. */
 const char *setting_key(const char *key);
 
@@ -44,6 +51,10 @@ bool setting_takes_maps(const char *key);
  */
 bool setting_make(struct setting *s, const char *key, const char *text, const char *file, int line, struct arena *a,
                   struct err *e);
+
+/* setting_list_add: one more setting; a key may be given once in a list. Returns false with ERR_DATA. */
+bool setting_list_add(struct setting_list *list, const char *key, const char *text, const char *file, int line,
+                      struct arena *a, struct err *e);
 
 /* setting_apply: put a field's value into *run; other kinds do nothing. */
 void setting_apply(const struct setting *s, struct run_spec *run, struct arena *a);

@@ -1,0 +1,122 @@
+/* range.c - see range.h.
+ *
+ * Values are rounded to four digits, so that a point of a sample or a search is what its text says,
+ * and typing that text in gives the same run. */
+#include "plan/range.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/check.h"
+#include "base/text.h"
+
+/* The number of a setting whose field holds one. */
+static double number_of(const struct setting *s, struct arena *a)
+{
+    struct run_spec trial;
+    char why[256];
+    const char *at = (const char *)&trial + s->table->offset + s->field->offset;
+    CHECK(field_set(s->field, (char *)&trial + s->table->offset, s->text, a, why, (int)sizeof why));
+    if (s->field->kind == FIELD_INT) {
+        int whole;
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    }
+    if (s->field->kind == FIELD_INT64) {
+        int64_t large;
+        memcpy(&large, at, sizeof large);
+        return (double)large;
+    }
+    /* FIELD_REAL: others were refused */
+    double real;
+    memcpy(&real, at, sizeof real);
+    return real;
+}
+
+/* Settings of other kinds have values, but no order between them. */
+static bool is_number(const struct setting *s)
+{
+    return s->kind == SETTING_FIELD &&
+           (s->field->kind == FIELD_REAL || s->field->kind == FIELD_INT ||
+            s->field->kind == FIELD_INT64);
+}
+
+/* One end of the range, through the checks of the setting. */
+static bool read_end(struct range *r, const struct node *n, double *value, const char *file,
+                     struct arena *a, struct err *e)
+{
+    struct setting s;
+    const char *text = setting_value(r->key, n, file, a, e);
+    if (text == NULL || !setting_make(&s, r->key, text, file, n->line, a, e)) return false;
+    if (!is_number(&s))
+        return err_set_at(e, ERR_DATA, file, n->line,
+                          "%s: no number, so it has no range; expected a list of values", r->key);
+    r->field = s.field;
+    r->key = s.key;
+    *value = number_of(&s, a);
+    return true;
+}
+
+/* The logarithm of 0 is no number. */
+static bool read_scale(struct range *r, const struct node *n, const char *file, struct err *e)
+{
+    if (n->text != NULL && strcmp(n->text, "linear") == 0) return r->log = false, true;
+    if (n->text != NULL && strcmp(n->text, "log") == 0 && r->low > 0) return r->log = true, true;
+    return err_set_at(e, ERR_DATA, file, n->line, "%s: scale: '%.40s': expected linear%s", r->key,
+                      n->text != NULL ? n->text : "a list or mapping",
+                      r->low > 0 ? " or log" : ", as the range begins at 0");
+}
+
+/* Unknown keys first, as a misspelt 'to' would be told as missing otherwise. */
+bool range_read(struct range *r, const char *key, const struct node *n, const char *file,
+                struct arena *a, struct err *e)
+{
+    static const char *const known[] = {"from", "to", "scale"};
+    *r = (struct range){.key = key, .line = n->line};
+    const struct node *from = n->kind == NODE_MAP ? document_find(n, "from") : NULL,
+                      *to = n->kind == NODE_MAP ? document_find(n, "to") : NULL;
+    if (from == NULL || to == NULL)
+        return err_set_at(e, ERR_DATA, file, n->line,
+                          "%s: expected a list of values, or a range such as {from: 1, to: 8}",
+                          key);
+    /* what the mapping may hold */
+    for (const struct node *c = n->child; c != NULL; c = c->next)
+        if (strcmp(c->key, "from") != 0 && strcmp(c->key, "to") != 0 &&
+            strcmp(c->key, "scale") != 0) {
+            const char *near = text_nearest(c->key, known, 3);
+            return err_set_at(e, ERR_DATA, file, c->line,
+                              "%s: unknown key '%.80s'; did you mean '%s'?", key, c->key,
+                              near != NULL ? near : "scale");
+        }
+    if (!read_end(r, from, &r->low, file, a, e) || !read_end(r, to, &r->high, file, a, e))
+        return false;
+    if (!(r->low < r->high))
+        return err_set_at(e, ERR_DATA, file, to->line, "%s: 'from' has to be below 'to'", key);
+    /* by default even in the logarithm, where there is one */
+    r->log = r->low > 0;
+    const struct node *scale = document_find(n, "scale");
+    return scale == NULL || read_scale(r, scale, file, e);
+}
+
+/* Four digits, by way of their text: the double that they read back to. */
+static double rounded(double x)
+{
+    char digits[40];
+    double value = x;
+    snprintf(digits, sizeof digits, "%.3e", x);
+    CHECK(sscanf(digits, "%lf", &value) == 1);
+    return value;
+}
+
+/* Even in the logarithm: a factor of two is as likely anywhere in the range. */
+const char *range_text(const struct range *r, double u, struct arena *a)
+{
+    char text[64];
+    double x = r->log ? r->low * exp(u * log(r->high / r->low)) : r->low + u * (r->high - r->low);
+    x = r->field->kind == FIELD_REAL ? rounded(x) : round(x);
+    /* Rounding must not leave the range. */
+    x = fmin(fmax(x, r->low), r->high);
+    units_print(x, r->field->unit, text, (int)sizeof text);
+    return arena_text(a, text);
+}

@@ -1,0 +1,133 @@
+#!/usr/bin/env bats
+# studies.bats - sweeps with conditions, samples, searches and uncertainty: what is run, stored, told and refused.
+
+load helper
+
+# scenario LINE...: a chain of 16 bodies on the T3E at level loggp, with these lines besides, as s.yaml.
+scenario() {
+    printf '%s\n' 'schema_version: 1' 'question: what?' 'machine: t3e-300' 'model: {generator: serial-chain}' \
+        'kernel: dynamics' 'level: loggp' "$@" >s.yaml
+}
+
+@test "conditions leave points out: on sizes, settings, and what follows from them" {
+    scenario 'ranks: [2, 4, 8, 256]' 'n: [4, 8, 256]' 'when: [P <= machine.processors, "n % P == 0"]'
+    works mimdsim run s.yaml -o s.db --quiet
+    sql_is s.db "SELECT group_concat(n || '/' || P, ' ') FROM (SELECT n, P FROM run ORDER BY P, n)" \
+        '4/2 8/2 256/2 4/4 8/4 256/4 8/8 256/8'
+    # below `sweep`, and in one text
+    scenario 'sweep: {ranks: [2, 4, 8], n: [4, 8], when: "n >= 2 * P and kernel.solver == pcr-symmetric"}'
+    works mimdsim plan s.yaml --json
+    json_is '$[#-1].n' 8
+    json_is '$[#-1].P' 4
+    works mimdsim run s.yaml -o t.db --quiet
+    sql_is t.db "SELECT group_concat(n || '/' || P, ' ') FROM (SELECT n, P FROM run ORDER BY P, n)" '4/2 8/2 8/4'
+}
+
+@test "--only picks points of any plan, and composes with the scenario's own conditions" {
+    works mimdsim run speedup-t3e --only 'n >= 96 and level == loggp' -o only.db --quiet
+    sql_is only.db "SELECT group_concat(level || n, ' ') FROM (SELECT * FROM run ORDER BY n)" 'loggp96 loggp128'
+    # nothing new: what is picked is stored already
+    works mimdsim run speedup-t3e --only 'n == 128 and level == loggp' -o only.db --quiet
+    sql_is only.db 'SELECT count(*) FROM run' 2
+    [ "$(grep -c loggp <<<"$output")" -eq 1 ]
+    works mimdsim explain speedup-t3e --only 'n == 128'
+    fails_with 78 mimdsim run speedup-t3e --only 'n > 4096' -o none.db
+    stderr_says '--only excludes all runs'
+    rm only.db*
+    nothing_left_behind
+}
+
+@test "conditions that make no sense are refused with their place" {
+    fails_with 64 mimdsim run speedup-t3e --only 'n >= ' -o none.db
+    stderr_says "--only: condition 'n >= ': expected a number or a name at its end"
+    fails_with 64 mimdsim run speedup-t3e --only 'rank >= 2' -o none.db
+    stderr_says "unknown name 'rank'; did you mean 'ranks'?"
+    fails_with 64 mimdsim run speedup-t3e --only 'machine.network.link.bandwith > 1 GB/s' -o none.db
+    stderr_says "did you mean 'machine.network.link.bandwidth'?"
+    fails_with 64 mimdsim run speedup-t3e --only 'machine.network.hop_latency > 60' -o none.db
+    stderr_says "a time on the left of '>', a bare number on the right"
+    fails_with 64 mimdsim run speedup-t3e --only 'n' -o none.db
+    stderr_says 'a value, not a condition'
+    nothing_left_behind
+    scenario 'n: 4' 'ranks: n' 'when: n => 4'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "s.yaml:9: condition 'n => 4': a single '=' where '==' was meant"
+    scenario 'n: 4' 'ranks: n' 'when: {n: 4}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says 's.yaml:9: when:'
+}
+
+@test "a sample is a sweep: the same points again, with lists, and beside other axes" {
+    scenario 'ranks: 4' 'sweep:' '  seed: [1, 2]' '  sample:' '    points: 8' '    method: sobol' '    of:' \
+        '      machine.network.link.bandwidth: {from: 100 MB/s, to: 1 GB/s}' \
+        '      n: {from: 4, to: 32, scale: linear}' '      kernel.solver: [cr, pcr-symmetric]'
+    works mimdsim run s.yaml -o s.db --quiet
+    sql_is s.db 'SELECT count(*), count(DISTINCT n) FROM run' '16|8'
+    sql_is s.db "SELECT count(*) FROM run WHERE n BETWEEN 4 AND 32" 16
+    sql_is s.db "SELECT group_concat(c) FROM (SELECT count(*) AS c FROM run GROUP BY solver)" '8,8'
+    # the first point of a Sobol' sequence is the middle: of a logarithm, and of a line
+    sql_is s.db "SELECT DISTINCT value FROM v_setting JOIN run ON run.id = run_id WHERE key = 'machine.network.link.bandwidth' AND n = 18" \
+        '316.2 MB/s'
+    cp s.db before.db
+    works mimdsim run s.yaml -o s.db --quiet
+    sql_is s.db 'SELECT count(*), max(id) FROM run' "$(sql before.db 'SELECT count(*), max(id) FROM run')"
+    for method in latin-hypercube halton random; do
+        sed "s/sobol/$method/" s.yaml >other.yaml
+        works mimdsim run other.yaml -o other-$method.db --quiet
+        sql_is other-$method.db 'SELECT count(*) FROM run' 16
+    done
+}
+
+@test "samples that make no sense are refused with line and nearest name" {
+    scenario 'ranks: 4' 'sweep: {sample: {points: 8, of: {n: {from: 4, to: 32, scal: linear}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "s.yaml:8: model.n: unknown key 'scal'; did you mean 'scale'?"
+    scenario 'ranks: 4' 'sweep: {sample: {points: 8, method: sobl, of: {n: {from: 4, to: 32}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "did you mean 'sobol'?"
+    scenario 'ranks: 4' 'sweep: {sample: {points: 8, of: {kernel.solver: {from: cr, to: pcr}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says 'kernel.solver: no number, so it has no range'
+    scenario 'ranks: 4' 'sweep: {sample: {points: 8, of: {n: {from: 32, to: 4}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "model.n: 'from' has to be below 'to'"
+    scenario 'ranks: 4' 'sweep: {sample: {points: 1e9, of: {n: {from: 4, to: 32}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says 'sample: points:'
+    scenario 'ranks: 4' 'n: 8' 'sweep: {sample: {points: 8, of: {n: {from: 4, to: 32}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "'model.n' is swept here and set for all runs in line 8"
+    scenario 'ranks: 4' 'sweep: {n: [4, 8], sample: {points: 8, of: {n: {from: 4, to: 32}}}}'
+    fails_with 65 mimdsim run s.yaml -o none.db
+    stderr_says "'model.n' is swept here and sampled in line 8"
+    scenario 'ranks: 4' 'sweep: {seed: [1, 2], sample: {points: 60000, of: {n: {from: 4, to: 32}}}}'
+    fails_with 78 mimdsim run s.yaml -o none.db
+    stderr_says 'the sweep has 120000 runs; expected at most 100000'
+    rm s.yaml
+    nothing_left_behind
+}
+
+# documented PAGE: its indented blocks in order: after "Save this as `NAME`:" a file, else commands that have to work.
+documented() {
+    awk '/^    / { block = block substr($0, 5) "\n"; next }
+         /^$/ { if (block != "") block = block "\n"; next }
+         { if (block != "") finish(); kept = $0 }
+         function finish() {
+             sub(/\n+$/, "\n", block)
+             n = split(block, part, "\n\n")
+             for (i = 1; i <= n; i++)
+                 if (i == 1 && match(kept, /Save this as `[^`]*`:/)) {
+                     split(substr(kept, RSTART, RLENGTH), name, "`")
+                     printf "cat >%s <<\"END\"\n%s\nEND\n", name[2], part[i]
+                 } else print part[i]
+             block = ""
+         }
+         END { if (block != "") finish() }' "$MIMDSIM_SRCDIR/docs/$1" | sed 's/^mimdsim \(.*\)$/works mimdsim \1/'
+}
+
+@test "the commands of docs/studies.md work in their order" {
+    documented studies.md >commands
+    [ "$(grep -c '^works mimdsim' commands)" -ge 4 ]
+    # shellcheck disable=SC1091
+    source ./commands
+}
