@@ -13,6 +13,7 @@
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "measure/run_row.h"
@@ -68,8 +69,7 @@ static const struct run_estimate *unused_by_all(const struct plan *p, const stru
  * largest bound. To be freed. */
 static struct kinds *kinds_of(const struct plan *p, const struct run_estimate *r)
 {
-    struct kinds *k = calloc(1, sizeof *k);
-    CHECK(k);
+    struct kinds *k = memory_zeroed(1, sizeof *k);
     for (int i = 0; i < p->nrun; i++)
         for (int j = 0; j < r[i].nomission; j++) {
             const struct omission *o = &r[i].omission[j];
@@ -289,12 +289,11 @@ int cmd_explain(int argc, char **argv)
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     bool ok = plan_read(&p, c.arg[0], &o, &e);
-    struct run_estimate *r = calloc(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
+    struct run_estimate *r = memory_zeroed(ok && p.nrun ? (size_t)p.nrun : 1, sizeof *r);
     /* calloc of 1: an empty plan still has an array. */
     ok = ok && r && estimate_all(&p, r, &e);
     /* Too large for the stack: a row for every omission. */
-    struct savings *all = calloc(1, sizeof *all);
-    CHECK(all);
+    struct savings *all = memory_zeroed(1, sizeof *all);
     if (ok && !c.json) print_text(&p, r);
     /* The table first: measuring takes seconds to minutes. */
     ok = ok && (!measure || savings_measure(&p, r, all, &e));

@@ -46,6 +46,7 @@ struct paper {
     struct run_order *order; /* (runs) in step with `run` */
     bool paper_only; /* without the scenes */
     int failed;      /* runs that could not be made, or did not end */
+    int undrawn; /* figures of which gnuplot has made no picture */
     int nplan;
     struct plan plan[MOST_PLANS]; /* (nplan) kept to the end for figures and parameters */
 };
@@ -133,6 +134,7 @@ static bool draw(struct paper *p, const char *name)
     if (e.kind == ERR_NO_INPUT && has_section(name)) return true; /* nobody measured it */
     if (e.kind == ERR_UNAVAILABLE) {
         err_print(&e);
+        p->undrawn++;
         return true;
     }
     *p->e = e;
@@ -245,6 +247,7 @@ int cmd_paper(int argc, char **argv)
                         "next time\n",
                 p.failed);
     /* Failed runs are a finding: everything was written, but the exit status says so. */
-    if (ok) return p.failed > 0 ? err_exit_status(ERR_CHECK) : 0;
+    if (ok && p.failed > 0) return err_exit_status(ERR_CHECK);
+    if (ok) return p.undrawn > 0 ? err_exit_status(ERR_UNAVAILABLE) : 0;
     return common_fail(&c, &e);
 }

@@ -8,8 +8,8 @@
 #include "app/arguments.h"
 #include "app/parameters.h"
 #include "app/verb.h"
-#include "base/check.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "report/report.h"
 #include "report/report_document.h"
@@ -30,6 +30,7 @@ struct report {
     const struct common *common;
     struct store *store; /* opened for reading */
     struct err *e;
+    int undrawn; /* figures of which gnuplot has made no picture */
     int nfigure;
     char *figure[MOST_FIGURES]; /* drawn, and not shown in a section of their own */
     int nplan;
@@ -51,6 +52,7 @@ static bool draw(struct report *r, char *name)
     bool drawn = report_figure(r->store, plan_data_dir(), name, r->common->directory, &e);
     if (!drawn && e.kind == ERR_UNAVAILABLE) {
         err_print(&e);
+        r->undrawn++;
         drawn = true; /* as numbers */
     }
     /* The name is kept, or freed here. */
@@ -95,8 +97,7 @@ static bool add_plan(void *context, int ncolumn, const char *const *name, const 
 static char *stem_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *stem = strdup(slash ? slash + 1 : path);
-    CHECK(stem);
+    char *stem = memory_text(slash ? slash + 1 : path);
     char *dot = strrchr(stem, '.');
     if (dot && dot != stem) *dot = '\0';
     return stem;
@@ -154,8 +155,7 @@ int cmd_report(int argc, char **argv)
     struct err e;
     err_clear(&e);
     /* Too large for the stack: plans are kept until the document is written. */
-    struct report *r = calloc(1, sizeof *r);
-    CHECK(r);
+    struct report *r = memory_zeroed(1, sizeof *r);
     *r = (struct report){.common = &c, .e = &e};
     r->store = arguments_database(&c, "mimdsim.db", &e);
     bool ok = r->store && draw_all(r) && write_document(r, path, stem);
@@ -163,7 +163,10 @@ int cmd_report(int argc, char **argv)
     store_close(r->store);
     for (int i = 0; i < r->nfigure; i++) free(r->figure[i]);
     for (int i = 0; i < r->nplan; i++) plan_free(&r->plan[i]);
+    const int undrawn = r->undrawn;
     free(r);
     free(stem);
-    return ok ? 0 : common_fail(&c, &e);
+    if (!ok) return common_fail(&c, &e);
+    /* The report is there, and says which figures are not. */
+    return undrawn > 0 ? err_exit_status(ERR_UNAVAILABLE) : 0;
 }

@@ -12,6 +12,7 @@
 #include "app/shard.h"
 #include "app/verb.h"
 #include "base/check.h"
+#include "base/memory.h"
 #include "run/run.h"
 #include "store/store.h"
 #include "study/model_file.h"
@@ -103,8 +104,7 @@ static bool check_point(const char *point, const struct plan *p, struct err *e)
 static bool *skipped(struct store *s, const struct plan *p, const struct run_spec *settled, const struct part *part,
                      bool force)
 {
-    bool *skip = calloc((size_t)p->nrun, sizeof *skip);
-    CHECK(skip);
+    bool *skip = memory_zeroed((size_t)p->nrun, sizeof *skip);
     for (int i = 0; i < p->nrun; i++)
         skip[i] = !shard_has(&part->shard, &p->run[i]) || !is_point(part->point, &p->run[i]) ||
                   (!force && store_has(s, &settled[i]));

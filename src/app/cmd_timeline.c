@@ -8,6 +8,7 @@
 
 #include "app/arguments.h"
 #include "app/verb.h"
+#include "base/beside.h"
 #include "base/check.h"
 #include "plan/file_kind.h"
 #include "report/report.h"
@@ -119,15 +120,14 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     char path[512] = "standard output";
     int64_t left_out = 0;
     struct trace_options o = {.title = t->title};
-    FILE *out = stdout;
+    struct beside file = {.out = stdout};
     if (ending) {
         if (!report_folder(t->common->directory, t->e)) return false;
         snprintf(path, sizeof path, "%s/timeline.%s", t->common->directory, ending);
-        out = fopen(path, "w");
-        if (!out) return err_set(t->e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
+        if (!beside_begin(&file, path, t->e)) return false;
     }
-    bool ok = trace_write(&t->result, format, &o, out, &left_out, t->e);
-    if (ending && fclose(out) != 0 && ok) ok = err_set(t->e, ERR_IO, "writing %s failed", path);
+    bool ok = trace_write(&t->result, format, &o, file.out, &left_out, t->e);
+    if (ending) ok = beside_end(&file, ok, t->e) && ok;
     if (ok && ending && !t->common->quiet) fprintf(stderr, "mimdsim: %s\n", path);
     /* What was cut is said: a trace that ends early would be misread. */
     if (ok && format == TRACE_GOAL && left_out > 0)

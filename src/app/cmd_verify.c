@@ -9,6 +9,7 @@
 
 #include "app/verb.h"
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "study/verify.h"
 
@@ -198,11 +199,11 @@ static bool any_failed(const struct request *r, const struct verify_report *repo
 int cmd_verify(int argc, char **argv)
 {
     struct request r = {.options = {.parallel = true},
-                        .file = calloc((size_t)argc, sizeof *r.file)};
-    CHECK(r.file);
+                        .file = memory_zeroed((size_t)argc, sizeof *r.file)};
     static const struct argp argp = {
         .options = options, .parser = parse, .args_doc = "FILE.json...", .doc = doc};
-    argp_parse(&argp, argc, argv, 0, NULL, &r);
+    /* Anything else than wrong usage, which ends the process, is a lack of memory. */
+    if (argp_parse(&argp, argc, argv, 0, NULL, &r) != 0) check_memory(0);
     struct arena *a = arena_create();
     struct verify_report *report = TAKE(a, r.nfile, struct verify_report);
     /* All files first, then the report: JSON is one document. */

@@ -258,7 +258,9 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     /* Looked at first, since argp ends the process at an unknown option. */
     const char *unknown = unknown_option(argc, argv, option);
     if (unknown) refuse_option(argv[0], unknown, option, document);
-    if (argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p) == 0) return;
+    const int code = argp_parse(&argp, argc, argv, document ? ARGP_NO_EXIT : 0, NULL, &p);
+    if (code == 0) return;
+    if (code == ENOMEM) check_memory(0);
     err_set(&p.error, ERR_USAGE, "unknown option, or one without its value; `%s --help` lists them",
             argv[0]);
     print_error(&p.error);

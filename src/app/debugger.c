@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 
 int debugger_wanted(int n, char **argv)
 {
@@ -47,8 +47,7 @@ void debugger_run(int argc, char **argv, int place, struct err *e)
         "-ex",    "continue",
         "--args", self, "mpirun"};
     const size_t nbefore = sizeof before / sizeof *before;
-    const char **word = calloc(nbefore + (size_t)argc + 1, sizeof *word);
-    CHECK(word != NULL);
+    const char **word = memory_zeroed(nbefore + (size_t)argc + 1, sizeof *word);
     memcpy(word, before, sizeof before);
     size_t k = nbefore;
     for (int i = 1; i < argc; i++)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/random.h"
 
@@ -345,7 +346,7 @@ static bool simplex(struct round *r, int start)
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
     gsl_multimin_fminimizer *m = gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, (size_t)d.n);
     gsl_vector *x = gsl_vector_alloc((size_t)d.n), *step = gsl_vector_alloc((size_t)d.n);
-    CHECK(m && x && step);
+    if (!m || !x || !step) check_memory(0);
     for (int i = 0; i < d.n; i++) {
         const struct explain_axis *a = &space->axis[d.axis[i]];
         double u = d.u[d.axis[i]];
@@ -474,8 +475,7 @@ static bool advance(struct round *r)
 bool explain_search_all(struct explain_bench *b, struct explain_search *search, int n)
 {
     enum { MOST_REQUESTS = 512 }; /* points of one batch */
-    struct explain_request *request = calloc(MOST_REQUESTS, sizeof *request);
-    CHECK(request);
+    struct explain_request *request = memory_zeroed(MOST_REQUESTS, sizeof *request);
     struct progress progress = progress_make("points", 4000, b->common->quiet);
     bool ok = true;
     for (int nrequest = 1; ok && nrequest > 0;) {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "study/level_choice.h"
 
@@ -63,7 +64,7 @@ static bool find_known(struct store *s, const char *family, struct known *k, str
 static bool measure(struct store *s, const struct run_spec *run, int nrun, const char *family,
                     struct err *e)
 {
-    struct run_spec *alike = calloc((size_t)nrun, sizeof *alike);
+    struct run_spec *alike = memory_zeroed((size_t)nrun, sizeof *alike);
     struct arena *a = arena_create();
     struct accuracy_report r;
     int n = 0;
@@ -143,9 +144,8 @@ static int settle_run(struct store *s, const struct run_spec *run, int nrun, int
 bool levels_settle(struct store *s, struct run_spec *run, struct run_order *order, int nrun,
                    bool quiet, struct arena *a, struct err *e)
 {
-    struct settled *known = calloc((size_t)nrun + 1, sizeof *known);
-    int *taken = calloc((size_t)nrun + 1, sizeof *taken), n = 0;
-    CHECK(known && taken);
+    struct settled *known = memory_zeroed((size_t)nrun + 1, sizeof *known);
+    int *taken = memory_zeroed((size_t)nrun + 1, sizeof *taken), n = 0;
     bool ok = true;
     /* All are settled before the first one changes: a ladder is climbed over the runs that ask. */
     for (int i = 0; i < nrun && ok; i++) {

@@ -5,6 +5,7 @@
 #include "config.h"
 
 #include <argp.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,6 +108,8 @@ static const struct verb *verb_of_name(const char *program)
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";
+    /* A limit on the size of files is an error of a write, told as such, and not the end. */
+    signal(SIGXFSZ, SIG_IGN);
     /* argp's own errors end with the status for wrong usage. */
     argp_err_exit_status = err_exit_status(ERR_USAGE);
     const struct verb *named = argc > 0 ? verb_of_name(argv[0]) : NULL;

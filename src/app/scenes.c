@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "app/keep.h"
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "study/savings.h"
 
@@ -75,9 +75,8 @@ static bool savings(const struct common *c, const struct plan *p, struct store *
     if (!is_wanted(c, s, "SELECT 1 FROM omission WHERE scenario = ?1", name, &wanted, e))
         return false;
     if (!wanted) return true;
-    struct run_estimate *r = calloc((size_t)p->nrun + 1, sizeof *r);
-    struct savings *all = calloc(1, sizeof *all);
-    CHECK(r && all);
+    struct run_estimate *r = memory_zeroed((size_t)p->nrun + 1, sizeof *r);
+    struct savings *all = memory_zeroed(1, sizeof *all);
     bool ok = true;
     for (int i = 0; ok && i < p->nrun; i++) ok = run_explain(&p->run[i], &r[i], e);
     ok = ok && savings_measure(p, r, all, e) && savings_store(s, all, e);

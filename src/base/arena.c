@@ -17,6 +17,7 @@
 #include <sys/mman.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 
 #if defined __has_feature
 #if __has_feature(address_sanitizer)
@@ -73,8 +74,7 @@ struct arena {
 /* Nothing is mapped before the first take. */
 struct arena *arena_create(void)
 {
-    struct arena *a = calloc(1, sizeof *a);
-    CHECK(a != NULL && "out of memory");
+    struct arena *a = memory_zeroed(1, sizeof *a);
     a->next = FIRST_BLOCK;
     return a;
 }

@@ -2,6 +2,7 @@
  * itself. */
 #include "base/check.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -24,10 +25,14 @@ void check_note_set(void (*describe)(void *context, char *buffer, int size), voi
 
 void check_memory(size_t bytes)
 {
+    char how_much[48] = "more";
+    /* What a wrapped product or a small table needed says nothing to anybody. */
+    if (bytes >= 1 << 20 && bytes < SIZE_MAX)
+        snprintf(how_much, sizeof how_much, "%.3g MiB more", (double)bytes / (1 << 20));
     fprintf(stderr,
-            "mimdsim: out of memory: the system refuses %.3g MiB more; `mimdsim explain` shows how "
-            "much a run needs\n",
-            (double)bytes / (1 << 20));
+            "mimdsim: out of memory: the system refuses %s; `mimdsim explain` shows how much a run "
+            "needs\n",
+            how_much);
     _exit(ERR_INTERNAL_STATUS); /* a worker's copy of the parent's output is not its own to flush */
 }
 

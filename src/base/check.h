@@ -12,8 +12,8 @@
 /* check_failed: print the failed condition and the current note to stderr and abort(); never returns. */
 _Noreturn void check_failed(const char *file, int line, const char *cond);
 
-/* check_memory: say that the system refuses `bytes` more of memory, which is nobody's mistake, and end the process with
- * the status of ERR_INTERNAL; never returns. */
+/* check_memory: say that the system refuses `bytes` more of memory (0: how many is not known), which is nobody's
+ * mistake, and end the process with the status of ERR_INTERNAL; never returns. */
 _Noreturn void check_memory(size_t bytes);
 
 /* check_note_set: register a function that describes the run in progress (time, rank, seed) for check_failed.

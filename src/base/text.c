@@ -11,6 +11,7 @@
 #include <strings.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 
 enum { NEAREST_MAX = 64 }; /* longer words are no misspelt keys */
 
@@ -87,8 +88,7 @@ void text_reserve(struct text *t, size_t n)
     if (need <= t->capacity) return;
     size_t capacity = t->capacity ? t->capacity : 128;
     while (capacity < need) capacity *= 2;
-    t->s = realloc(t->s, capacity);
-    CHECK(t->s != NULL && "out of memory");
+    t->s = memory_resize(t->s, capacity, 1);
     t->capacity = capacity;
 }
 
@@ -99,7 +99,8 @@ void text_add(struct text *t, const char *format, ...)
     /* Twice: once to know the length, once to write. */
     int n = vsnprintf(NULL, 0, format, args);
     va_end(args);
-    CHECK(n >= 0);
+    /* The formatting itself may want memory. */
+    if (n < 0) check_memory(0);
     text_reserve(t, (size_t)n);
     va_start(args, format);
     vsnprintf(t->s + t->length, (size_t)n + 1, format, args);

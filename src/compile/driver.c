@@ -94,7 +94,8 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     const bool plain = s->language != NULL ? strcmp(s->language, "assembler") == 0
                                            : dot != NULL && strcmp(dot, ".s") == 0;
     if (s->assembly && plain)
-        return text_read_file(assembly, strcmp(s->path, "-") == 0 ? "/dev/stdin" : s->path, d->e)
+        return (strcmp(s->path, "-") == 0 ? text_read_stream(assembly, stdin, "standard input", d->e)
+                                          : text_read_file(assembly, s->path, d->e))
                    ? 0
                    : FAILED;
     struct words w = new_words(d);

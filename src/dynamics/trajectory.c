@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "base/text.h"
 #include "dynamics/integrate.h"
 
@@ -148,8 +149,11 @@ bool trajectory_advance(const struct model *m, struct state *s, double duration,
     double first = options->first_step > 0 ? options->first_step : duration / 1000;
     gsl_odeiv2_system system = {derivative, jacobian, n, &f};
     /* The first step is a guess; the driver finds its own. */
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     gsl_odeiv2_driver *driver =
         gsl_odeiv2_driver_alloc_y_new(&system, stepper_of(which), first, options->tolerance, options->tolerance);
+    gsl_set_error_handler(handler);
+    if (!driver) check_memory(n * sizeof(double));
     long steps = options->fixed_steps > 0
                      ? drive_fixed(driver, duration, options->fixed_steps, y, TAKE(scratch, n, double))
                      : drive(driver, duration, y);

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/picoseconds.h"
 #include "comm/collectives.h"
 #include "guest/guest_world.h"
@@ -142,8 +143,7 @@ static void call_wait(struct comm *handle, struct mimdsim_request *r, const char
  * than ours. */
 static int complete_any(struct comm *c, int n, struct mimdsim_request **r, int block)
 {
-    struct comm_request **list = calloc((size_t)n + 1, sizeof *list);
-    CHECK(list != NULL);
+    struct comm_request **list = memory_zeroed((size_t)n + 1, sizeof *list);
     for (int i = 0; i < n; i++) list[i] = r[i] != NULL ? ours(r[i]) : NULL;
     const int done = c->type->complete_any(c, n, list, block);
     free(list);
@@ -303,8 +303,7 @@ static void call_collective(struct comm *handle, const struct mimdsim_collective
              c->size, by->needs);
     if (by == NULL) by = collective_choose(&shape, g->world->rule, g->world->nrule);
     /* From the heap and not from the run's arena, which would keep it until the run ends. */
-    call.scratch = malloc((size_t)collective_scratch(by, &shape, c->rank) + 64);
-    CHECK(call.scratch != NULL);
+    call.scratch = memory_take((size_t)collective_scratch(by, &shape, c->rank) + 64, 1);
     collective_run(by, &call);
     free(call.scratch);
 }

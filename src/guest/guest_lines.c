@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 
 /* One whole line goes to the result, up to a limit, and to people. Ranks share the host's
  * output, so lines are whole or not there: those of ranks that write at the same
@@ -26,8 +26,7 @@ static void emit(const struct guest_line *line, int rank, int stream, enum progr
 void guest_line_add(struct guest_line *line, int rank, int stream, const char *data, size_t n,
                     enum program_output output, struct text *said)
 {
-    if (line->text == NULL) line->text = malloc(GUEST_LINE);
-    CHECK(line->text != NULL);
+    if (line->text == NULL) line->text = memory_take(GUEST_LINE, 1);
     for (size_t i = 0; i < n; i++) {
         /* Lines that are too long are cut into several; an empty line is a line. */
         const bool end = data[i] == '\n';

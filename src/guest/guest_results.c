@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 
 /* Room for `n` elements; those that are new are not numbers, and given by nobody. */
 static void grow(struct guest_result *r, int64_t n)
@@ -17,9 +17,8 @@ static void grow(struct guest_result *r, int64_t n)
      * elements have come: a published NaN is a number that came. */
     if (n > r->capacity) {
         const int64_t capacity = n > 2 * r->capacity ? n : 2 * r->capacity;
-        r->x = realloc(r->x, (size_t)capacity * sizeof *r->x);
-        r->given = realloc(r->given, (size_t)capacity);
-        CHECK(r->x != NULL && r->given != NULL);
+        r->x = memory_resize(r->x, (size_t)capacity, sizeof *r->x);
+        r->given = memory_resize(r->given, (size_t)capacity, 1);
         r->capacity = capacity;
     }
     for (int64_t i = r->n; i < n; i++) r->x[i] = NAN, r->given[i] = 0;

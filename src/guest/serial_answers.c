@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
 #include "base/digest.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 enum { MOST_ANSWERS = 16 }; /* more than one run needs, so what a run was given stays */
@@ -22,8 +22,7 @@ struct program_cache {
 
 struct program_cache *serial_answers_create(void)
 {
-    struct program_cache *c = calloc(1, sizeof *c);
-    CHECK(c != NULL);
+    struct program_cache *c = memory_zeroed(1, sizeof *c);
     return c;
 }
 

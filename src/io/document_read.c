@@ -295,13 +295,9 @@ static struct node *read_as(const struct form *form, const char *path, struct ar
     struct text file = {0};
     struct node *root = NULL;
     struct stat st;
-    /* before it is opened: devices never end, and files beyond the limit need not be read */
-    if (stat(path, &st) == 0) {
-        if (S_ISDIR(st.st_mode))
-            return err_set_at(e, ERR_DATA, path, 0, "a folder, not a file"), NULL;
-        if (S_ISCHR(st.st_mode) || (uint64_t)st.st_size > form->bytes)
-            return refuse_size(form, path, e), NULL;
-    }
+    /* before it is opened: files beyond the limit need not be read */
+    if (stat(path, &st) == 0 && S_ISREG(st.st_mode) && (uint64_t)st.st_size > form->bytes)
+        return refuse_size(form, path, e), NULL;
     if (text_read_file(&file, path, e))
         root = parse(form, file.s ? file.s : "", file.length, path, a, e);
     text_free(&file);

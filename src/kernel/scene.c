@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "dynamics/planar_dynamics.h"
 #include "dynamics/system.h"
 #include "kernel/omission.h"
@@ -21,8 +21,7 @@ struct program_cache {
 
 struct program_cache *scene_cache_create(void)
 {
-    struct program_cache *cache = calloc(1, sizeof *cache);
-    CHECK(cache);
+    struct program_cache *cache = memory_zeroed(1, sizeof *cache);
     return cache;
 }
 

@@ -9,6 +9,9 @@
 #include <sys/stat.h>
 
 #include "base/check.h"
+#include "base/memory.h"
+#include "base/size.h"
+#include "base/text.h"
 #include "loader/elf_dynamic.h"
 
 /* Gaps between segments are at most this much; more is a damaged address. */
@@ -22,15 +25,12 @@ static const uint64_t MOST_SPAN = UINT64_C(1) << 46;
 static bool read_bytes(struct elf_file *f, struct err *e)
 {
     struct stat s;
-    FILE *in = fopen(f->path, "rbe");
-    if (!in)
-        return err_set_at(e, ERR_NO_INPUT, f->path, 0, "cannot be opened: %s", strerror(errno));
-    bool ok = fstat(fileno(in), &s) == 0 && S_ISREG(s.st_mode);
-    if (!ok) err_set_at(e, ERR_DATA, f->path, 0, "is not a regular file");
+    FILE *in = text_open_file(f->path, e);
+    if (!in) return false;
+    bool ok = fstat(fileno(in), &s) == 0 && size_in_memory((size_t)s.st_size, f->path, 0, "the file", e);
     if (ok) {
         f->size = (size_t)s.st_size;
-        f->bytes = malloc(f->size + 1);
-        if (!f->bytes) check_memory(f->size + 1);
+        f->bytes = memory_take(f->size + 1, 1);
         /* Shorter than told, and longer, are both changes while it is read. */
         ok = fread(f->bytes, 1, f->size + 1, in) == f->size;
         if (!ok) err_set_at(e, ERR_IO, f->path, 0, "cannot be read, or changes while it is read");
@@ -167,8 +167,7 @@ static bool check_segments(struct elf_file *f, struct err *e)
 
 bool elf_file_read(struct elf_file *f, const char *path, struct err *e)
 {
-    *f = (struct elf_file){.path = strdup(path)};
-    if (!f->path) check_memory(strlen(path));
+    *f = (struct elf_file){.path = memory_text(path)};
     if (read_bytes(f, e) && check_header(f, e) && check_segments(f, e)) return true;
     elf_file_free(f);
     return false;

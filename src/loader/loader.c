@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "loader/elf_dynamic.h"
 #include "loader/template.h"
 
@@ -30,8 +31,7 @@ struct loader_template *loader_open(const char *path, struct err *e)
                "programs of users run on x86-64 hosts only; built-in programs run on this one");
     return NULL;
 #endif
-    struct loader_template *t = calloc(1, sizeof *t);
-    if (!t) check_memory(sizeof *t);
+    struct loader_template *t = memory_zeroed(1, sizeof *t);
     t->memory = -1;
     if (!getcwd(t->directory, sizeof t->directory)) t->directory[0] = '\0';
     if (files_read(t, path, e) && symbols_make(t, e) && image_make(t, e) &&

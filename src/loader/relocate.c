@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "loader/elf_dynamic.h"
 #include "loader/template.h"
@@ -23,8 +23,7 @@ static void add_relative(struct loader_template *t, uint64_t place)
 {
     if (t->nrelative == t->relative_capacity) {
         t->relative_capacity = t->relative_capacity ? 2 * t->relative_capacity : 1024;
-        t->relative = realloc(t->relative, t->relative_capacity * sizeof *t->relative);
-        if (!t->relative) check_memory(t->relative_capacity * sizeof *t->relative);
+        t->relative = memory_resize(t->relative, t->relative_capacity, sizeof *t->relative);
     }
     t->relative[t->nrelative++] = place;
 }
@@ -33,8 +32,7 @@ static void add_indirect(struct loader_template *t, uint64_t place, uint64_t res
 {
     if (t->nindirect == t->indirect_capacity) {
         t->indirect_capacity = t->indirect_capacity ? 2 * t->indirect_capacity : 64;
-        t->indirect = realloc(t->indirect, t->indirect_capacity * sizeof *t->indirect);
-        if (!t->indirect) check_memory(t->indirect_capacity * sizeof *t->indirect);
+        t->indirect = memory_resize(t->indirect, t->indirect_capacity, sizeof *t->indirect);
     }
     t->indirect[t->nindirect++] = (struct indirect){place, resolver};
 }

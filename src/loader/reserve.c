@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/size.h"
 #include "loader/template.h"
 
@@ -87,8 +88,7 @@ bool loader_reserve(struct loader_template *t, int nrank, const struct loader_ho
     t->nrank = nrank;
     t->hooks = hooks;
     runtime_fill(&t->runtime);
-    t->instance = aligned_alloc(64, size_product(sizeof *t->instance, (size_t)nrank));
-    if (!t->instance) check_memory((size_t)nrank * sizeof *t->instance);
+    t->instance = memory_aligned(64, (size_t)nrank, sizeof *t->instance);
     memset(t->instance, 0, (size_t)nrank * sizeof *t->instance);
     return map_groups(t, e);
 }

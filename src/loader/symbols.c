@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "loader/template.h"
 
 /* Names that mean a function of the host even where a file defines the rest of the name. */
@@ -87,8 +88,7 @@ bool symbols_make(struct loader_template *t, struct err *e)
     size_t n = 0;
     for (int i = 0; i < t->nfile; i++) n += t->file[i].elf.nsymbol;
     for (t->nslot = 64; t->nslot < 2 * n;) t->nslot *= 2;
-    t->symbol = calloc(t->nslot, sizeof *t->symbol);
-    if (!t->symbol) check_memory(t->nslot * sizeof *t->symbol);
+    t->symbol = memory_zeroed(t->nslot, sizeof *t->symbol);
     for (int i = 0; i < t->nfile; i++) {
         const struct loader_file *f = &t->file[i];
         for (size_t k = 1; k < f->elf.nsymbol; k++) {

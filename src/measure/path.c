@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/size.h"
 
 /* `before` has a number of 32 bits: 128 GiB of nodes. */
@@ -36,15 +37,13 @@ const char *path_cause_word(enum path_cause cause)
 static void *grown(void *old, int64_t *capacity, size_t each)
 {
     *capacity = *capacity > 0 ? 2 * *capacity : 1024;
-    void *p = realloc(old, size_product(*capacity, each));
-    CHECK(p != NULL);
+    void *p = memory_resize(old, size_product(*capacity, each), 1);
     return p;
 }
 
 struct path_log *path_log_create(void)
 {
-    struct path_log *p = calloc(1, sizeof *p);
-    CHECK(p != NULL);
+    struct path_log *p = memory_zeroed(1, sizeof *p);
     p->node = grown(NULL, &p->capacity, sizeof *p->node);
     p->node[p->n++] = (struct node){.cause = PATH_START, .resource = -1};
     return p;

@@ -448,7 +448,9 @@ static bool xml_parse(struct reader *r, const struct text *text)
     XML_SetElementHandler(r->parser, on_start, on_end);
     /* Handlers stop the parser themselves; then our own message stands. */
     bool good = XML_Parse(r->parser, text->s ? text->s : "", (int)text->length, XML_TRUE) == XML_STATUS_OK;
-    if (!good && r->e->kind == ERR_NONE)
+    if (!good && r->e->kind == ERR_NONE && XML_GetErrorCode(r->parser) == XML_ERROR_NO_MEMORY)
+        err_set(r->e, ERR_INTERNAL, "out of memory reading %s", r->robot->path);
+    else if (!good && r->e->kind == ERR_NONE)
         err_set_at(r->e, ERR_DATA, r->robot->path, line_now(r), "XML: %s",
                    XML_ErrorString(XML_GetErrorCode(r->parser)));
     return good && r->e->kind == ERR_NONE;

@@ -5,7 +5,7 @@
  * not stay for good; a list of them gives back those of ranks that never came to their end. */
 #include <stdlib.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "mpi/mpi_internal.h"
 
 enum { SMALLEST = 5, HEAD = 32 /* [B], keeps the alignment of long double and vectors */ };
@@ -33,9 +33,8 @@ static int class_of(size_t bytes)
 
 static void *take_large(struct mpi_world *w, size_t bytes)
 {
-    union head *h = malloc(HEAD + bytes);
+    union head *h = memory_take(HEAD + bytes, 1);
     /* Out of memory ends the process with a message: no caller has a way to go on. */
-    if (!h) check_memory(HEAD + bytes);
     h->class = -1;
     h->list.next = w->large;
     /* `before` is the link that leads here, so that a block is taken off without a

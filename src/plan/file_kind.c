@@ -24,7 +24,8 @@ static bool ends_with(const char *name, const char *ending)
 static bool is_database(const char *path)
 {
     char head[16] = "";
-    FILE *f = fopen(path, "rb");
+    struct err unread = {0};
+    FILE *f = text_open_file(path, &unread);
     bool yes = f != NULL && fread(head, 1, sizeof head, f) == sizeof head &&
                memcmp(head, "SQLite format 3", 16) == 0;
     if (f != NULL) fclose(f);

@@ -36,7 +36,8 @@ static const char *ending_of(const char *name)
 static bool is_elf(const char *path)
 {
     char head[4] = "";
-    FILE *f = fopen(path, "rb");
+    struct err unread = {0};
+    FILE *f = text_open_file(path, &unread);
     const bool yes = f != NULL && fread(head, 1, 4, f) == 4 && memcmp(head, "\177ELF", 4) == 0;
     if (f != NULL) fclose(f);
     return yes;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 /* Where the rows go, and whom to tell about run ids. */
@@ -47,8 +47,7 @@ void csv_plain(char *s)
 static void plain_cell(FILE *out, const char *s, bool last)
 {
     /* a copy: the row's text belongs to SQLite */
-    char *copy = strdup(s);
-    CHECK(copy != NULL);
+    char *copy = memory_text(s);
     csv_plain(copy);
     csv_cell(out, copy, last);
     free(copy);

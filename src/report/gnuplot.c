@@ -6,13 +6,19 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/progress.h"
 #include "base/text.h"
+
+/* Complaints kept [B]; how long a silent child, and one that has closed the pipe, is left alone. */
+enum { MOST_COMPLAINTS = 1 << 16, PATIENCE_MS = 20, SHORT_MS = 5 };
 
 /* Another program for tests, and for gnuplot outside of PATH. */
 static const char *program(void)
@@ -39,13 +45,42 @@ static int start(const char *dir, const char *file, int complaints, pid_t *child
     return code;
 }
 
-/* Everything that comes through `from`, up to its end; a signal does not end it. */
-static void read_all(int from, struct text *t)
+/* The seconds that a drawing may take: 120, or what $MIMDSIM_GNUPLOT_SECONDS says. */
+static double seconds_allowed(void)
 {
-    char buffer[512];
-    ssize_t n;
-    while ((n = read(from, buffer, sizeof buffer)) > 0 || (n < 0 && errno == EINTR))
-        if (n > 0) text_add_bytes(t, buffer, (size_t)n);
+    const char *named = getenv("MIMDSIM_GNUPLOT_SECONDS");
+    const double seconds = named ? strtod(named, NULL) : 0;
+    return seconds > 0 ? seconds : 120;
+}
+
+/* What has come through `from`: the first of it is kept, the rest is read and forgotten, so that a
+ * child that floods us neither waits nor fills our memory. False: its end. */
+static bool take_complaints(int from, struct text *t)
+{
+    char buffer[4096];
+    const ssize_t n = read(from, buffer, sizeof buffer);
+    if (n > 0 && t->length < MOST_COMPLAINTS) text_add_bytes(t, buffer, (size_t)n);
+    return n > 0 || (n < 0 && (errno == EINTR || errno == EAGAIN));
+}
+
+/* Until the child has ended: false when it had to be killed for its time. The pipe may stay open
+ * behind it, in a process that it has started. */
+static bool wait_for(pid_t child, int from, struct text *complaints, int *status)
+{
+    const double end = host_seconds() + seconds_allowed();
+    bool open = true;
+    fcntl(from, F_SETFL, O_NONBLOCK);
+    while (host_seconds() < end) {
+        struct pollfd p = {.fd = open ? from : -1, .events = POLLIN};
+        const bool ready = poll(&p, 1, open ? PATIENCE_MS : SHORT_MS) > 0;
+        if (ready) open = take_complaints(from, complaints);
+        /* It is asked for only when nothing is left to be read, or nothing comes any more. */
+        const pid_t ended = ready && open ? 0 : waitpid(child, status, WNOHANG);
+        if (ended == child || (ended < 0 && errno != EINTR)) return true;
+    }
+    kill(child, SIGKILL);
+    while (waitpid(child, status, 0) < 0 && errno == EINTR) {}
+    return false;
 }
 
 /* The line that names the place and the reason: gnuplot puts it after an echo of the command. */
@@ -76,13 +111,17 @@ bool gnuplot_run(const char *dir, const char *file, struct err *e)
                        "gnuplot-nox) and run it there on %s", program(), strerror(code), dir, file);
     }
     struct text complaints = {0};
-    read_all(ends[0], &complaints);
+    const bool ended = wait_for(child, ends[0], &complaints, &status);
     close(ends[0]);
-    /* Read first, wait afterwards: a child that fills the pipe would wait for us. */
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     /* A signal counts as a failure, too. */
-    bool ok = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (!ok)
+    bool ok = ended && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (!ended)
+        err_set(e, ERR_UNAVAILABLE, "%s had not drawn %s/%s after %g s and was ended", program(), dir, file,
+                seconds_allowed());
+    else if (WIFSIGNALED(status))
+        err_set(e, ERR_UNAVAILABLE, "%s was ended by signal %d (%s) before it had drawn %s/%s", program(),
+                WTERMSIG(status), strsignal(WTERMSIG(status)), dir, file);
+    else if (!ok)
         err_set(e, ERR_UNAVAILABLE, "%s could not draw %s/%s: %s", program(), dir, file,
                 reason(&complaints));
     text_free(&complaints);

@@ -6,10 +6,10 @@
 #include "report/page.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/beside.h"
 #include "base/check.h"
 #include "base/text.h"
 
@@ -33,17 +33,6 @@ static const char style[] =
     "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: "
     "0.85em; color: #444 }\n</style>\n";
 
-/* Makes folder/NAME.ENDING; false with ERR_CREATE becomes NULL. */
-static FILE *make_file(const char *folder, const char *name, const char *ending, struct err *e)
-{
-    struct text path = {0};
-    text_add(&path, "%s/%s.%s", folder, name, ending);
-    FILE *f = fopen(path.s, "w");
-    if (!f) err_set(e, ERR_CREATE, "cannot make %s: %s", path.s, strerror(errno));
-    text_free(&path);
-    return f;
-}
-
 /* Any text in HTML, also inside attributes. */
 static void escape(FILE *html, const char *s)
 {
@@ -66,71 +55,61 @@ static void escape_md(FILE *md, const char *s, bool cell)
     }
 }
 
-/* On failure the caller closes the page, which knows what is open. */
-bool page_open(struct page *p, const char *folder, const char *name, const char *title,
-               const char *figures, struct err *e)
+/* Everything is written to memory: the list of contents needs headings that are not known yet, and
+ * the files appear whole. */
+void page_open(struct page *p, const char *title, const char *figures)
 {
     *p = (struct page){.figures = figures};
-    p->md = make_file(folder, name, "md", e);
-    p->html = p->md ? make_file(folder, name, "html", e) : NULL;
-    if (!p->html) return false;
+    p->md = text_stream(&p->text_md);
+    p->html = text_stream(&p->text_html);
     fputs(style, p->html);
     fputs("<title>", p->html);
     escape(p->html, title);
     fputs("</title>\n</head>\n<body>\n", p->html);
     page_heading(p, 1, title);
-    return true;
 }
 
-/* Ends the part that waited in memory: into the file go the list of contents and then that part. */
-static FILE *join(FILE *front, FILE *waiting, char *const *rest, const size_t *size,
-                  const struct text *list)
-{
-    CHECK(fclose(waiting) == 0); /* in memory */
-    fputs(list->s ? list->s : "", front);
-    fwrite(*rest, 1, *size, front);
-    free(*rest);
-    return front;
-}
-
-/* All headings are known. */
-static void write_contents(struct page *p)
-{
-    text_add(&p->list_md, "\n");
-    text_add(&p->list_html, "</ul>\n</nav>\n");
-    p->md = join(p->front_md, p->md, &p->rest_md, &p->size_md, &p->list_md);
-    p->html = join(p->front_html, p->html, &p->rest_html, &p->size_html, &p->list_html);
-    text_free(&p->list_md);
-    text_free(&p->list_html);
-}
-
-/* From here on everything is written to memory: the list of contents needs headings that are not
- * known yet. */
+/* The list goes here when it is known. */
 void page_contents(struct page *p)
 {
-    CHECK(!p->front_md);
+    CHECK(!p->has_contents);
     page_heading(p, 2, "Contents");
     fputs("<nav>\n<ul>\n", p->html);
-    p->front_md = p->md;
-    p->front_html = p->html;
-    p->md = open_memstream(&p->rest_md, &p->size_md);
-    p->html = open_memstream(&p->rest_html, &p->size_html);
-    CHECK(p->md && p->html);
+    fflush(p->md);
+    fflush(p->html);
+    p->has_contents = true;
+    p->list_at_md = p->text_md.length;
+    p->list_at_html = p->text_html.length;
 }
 
-/* Writing errors are asked for at the end, once: stdio remembers them. */
-bool page_close(struct page *p, struct err *e)
+/* One of the two files: what came before the list of contents, the list, and the rest. */
+static bool write_file(const char *folder, const char *name, const char *ending, const struct text *body,
+                       size_t list_at, const struct text *list, struct err *e)
 {
-    bool ok = true;
-    if (p->front_md) write_contents(p);
-    if (p->html) fputs("</body>\n</html>\n", p->html);
-    /* Both are closed, whatever the first one says. */
-    for (int i = 0; i < 2; i++) {
-        FILE *f = i ? p->html : p->md;
-        if (!f) continue;
-        bool bad = ferror(f) != 0;
-        if (fclose(f) != 0 || bad) ok = err_set(e, ERR_IO, "the report cannot be written");
+    struct text path = {0}, all = {0};
+    text_add(&path, "%s/%s.%s", folder, name, ending);
+    text_add_bytes(&all, body->s, list_at);
+    if (list->length > 0) text_add_bytes(&all, list->s, list->length);
+    text_add_bytes(&all, body->s + list_at, body->length - list_at);
+    const bool ok = beside_write(path.s, all.s, all.length, e);
+    text_free(&path);
+    text_free(&all);
+    return ok;
+}
+
+bool page_close(struct page *p, const char *folder, const char *name, bool keep, struct err *e)
+{
+    fputs("</body>\n</html>\n", p->html);
+    text_stream_end(p->md);
+    text_stream_end(p->html);
+    if (p->has_contents) {
+        text_add(&p->list_md, "\n");
+        text_add(&p->list_html, "</ul>\n</nav>\n");
     }
+    const bool ok = !keep || (write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
+                              write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
+    struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html};
+    for (int i = 0; i < 4; i++) text_free(mine[i]);
     *p = (struct page){0};
     return ok;
 }
@@ -150,18 +129,16 @@ static void add_anchor(struct text *out, const char *heading)
 /* One line of the contents. */
 static void list_heading(struct page *p, const char *text, const char *anchor)
 {
-    /* In memory, since the list itself is a text. */
-    char *md = NULL, *html = NULL;
-    size_t size;
-    FILE *to_md = open_memstream(&md, &size), *to_html = open_memstream(&html, &size);
-    CHECK(to_md && to_html);
+    struct text md = {0}, html = {0};
+    FILE *to_md = text_stream(&md), *to_html = text_stream(&html);
     escape_md(to_md, text, false);
     escape(to_html, text);
-    CHECK(fclose(to_md) == 0 && fclose(to_html) == 0);
-    text_add(&p->list_md, "- [%s](#%s)\n", md, anchor);
-    text_add(&p->list_html, "<li><a href=\"#%s\">%s</a></li>\n", anchor, html);
-    free(md);
-    free(html);
+    text_stream_end(to_md);
+    text_stream_end(to_html);
+    text_add(&p->list_md, "- [%s](#%s)\n", md.s, anchor);
+    text_add(&p->list_html, "<li><a href=\"#%s\">%s</a></li>\n", anchor, html.s);
+    text_free(&md);
+    text_free(&html);
 }
 
 /* Only headings of level 2 have anchors: the contents list no others. */
@@ -177,7 +154,7 @@ void page_heading(struct page *p, int level, const char *text)
     else fprintf(p->html, "<h%d>", level);
     escape(p->html, text);
     fprintf(p->html, "</h%d>\n", level);
-    if (level == 2 && p->front_md) list_heading(p, text, anchor.s);
+    if (level == 2 && p->has_contents) list_heading(p, text, anchor.s);
     text_free(&anchor);
 }
 

@@ -10,22 +10,21 @@
 #include "store/store.h"
 
 struct page {
-    FILE *md, *html;     /* owned */
+    FILE *md, *html;     /* into the texts below */
     const char *figures; /* folder of the pictures */
     int columns;         /* of the table being written */
-    /* with a list of contents: what follows it waits in memory until all headings are known */
-    FILE *front_md, *front_html; /* the files */
-    char *rest_md, *rest_html;   /* what waits */
-    size_t size_md, size_html;
+    struct text text_md, text_html; /* all but the list of contents */
+    bool has_contents;
+    size_t list_at_md, list_at_html; /* where the list goes */
     struct text list_md, list_html;
 };
 
-/* page_open: make folder/NAME.md and folder/NAME.html; `figures` is borrowed. Returns false with ERR_CREATE. */
-bool page_open(struct page *p, const char *folder, const char *name, const char *title, const char *figures,
-               struct err *e);
+/* page_open: begin a report; `figures` is borrowed. */
+void page_open(struct page *p, const char *title, const char *figures);
 
-/* page_close: end both files; false with ERR_IO when writing failed. Accepts a page that was never opened. */
-bool page_close(struct page *p, struct err *e);
+/* page_close: end it: folder/NAME.md and folder/NAME.html are there, whole, in place of older ones, when `keep`; else
+ * nothing is written. Returns false with ERR_CREATE or ERR_IO. */
+bool page_close(struct page *p, const char *folder, const char *name, bool keep, struct err *e);
 
 /* page_contents: put a section "Contents" here, with links to all headings of level 2 that follow. Once a page. */
 void page_contents(struct page *p);

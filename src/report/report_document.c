@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "report/explanations.h"
 #include "report/findings.h"
@@ -379,8 +379,7 @@ bool document_write(const struct document *d, struct err *e)
     struct page page = {0};
     /* The report lies beside its folder of figures, so that links are short: its folder is the
      * path above, without trailing slashes. */
-    char *figures_folder = strdup(d->figures);
-    CHECK(figures_folder);
+    char *figures_folder = memory_text(d->figures);
     for (size_t n = strlen(figures_folder); n > 1 && figures_folder[n - 1] == '/'; n--)
         figures_folder[n - 1] = '\0';
     char *slash = strrchr(figures_folder, '/');
@@ -390,10 +389,10 @@ bool document_write(const struct document *d, struct err *e)
                  figures_folder);
     else text_add(&folder, ".");
     struct chapter c = {d, &page, e};
-    bool ok = page_open(&page, folder.s, d->name, d->title, figures_folder, e) &&
-              chapters(&c);
-    /* Close in any case: half a report is closed, and the error stays. */
-    ok = page_close(&page, e) && ok;
+    page_open(&page, d->title, figures_folder);
+    bool ok = chapters(&c);
+    /* Half a report is none: the files of an earlier one stay. */
+    ok = page_close(&page, folder.s, d->name, ok, e) && ok;
     text_free(&folder);
     free(figures_folder);
     return ok;

@@ -20,12 +20,15 @@
 #include <unistd.h>
 
 #include "base/arena.h"
+#include "base/beside.h"
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "report/csv.h"
 #include "report/figure_text.h"
 #include "report/gnuplot.h"
+#include "report/images.h"
 #include "report/report.h"
 
 /* One figure in the making. */
@@ -58,7 +61,7 @@ static char *figure_stem(const char *plots, const char *file)
     text_add(&script, "%s/%.*s.gp", plots, (int)(n - 4), file);
     bool drawn = access(script.s, R_OK) == 0;
     text_free(&script);
-    return drawn ? strndup(file, n - 4) : NULL;
+    return drawn ? memory_text_part(file, n - 4) : NULL;
 }
 
 /* For qsort. */
@@ -73,8 +76,7 @@ int report_figures(const char *data_dir, char ***name)
     char *plots = joined(data_dir, "/plots", "");
     struct dirent **entry = NULL;
     int nentry = scandir(plots, &entry, NULL, alphasort), n = 0;
-    *name = calloc((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
-    CHECK(*name != NULL);
+    *name = memory_zeroed((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
     for (int i = 0; i < nentry; i++) {
         char *stem = figure_stem(plots, entry[i]->d_name);
         if (stem != NULL) (*name)[n++] = stem;
@@ -114,37 +116,22 @@ static void remember_run(void *context, int64_t id)
     text_add(ids, "%s%lld", ids->length == 0 ? "[" : ",", (long long)id);
 }
 
-/* A file is written whole or not at all. */
-static bool write_file(const char *path, const char *data, size_t size, struct err *e)
-{
-    FILE *out = fopen(path, "w");
-    if (out == NULL) return err_set(e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
-    bool ok = fwrite(data, 1, size, out) == size;
-    if (fclose(out) != 0 || !ok)
-        ok = err_set(e, ERR_IO, "writing %s failed: %s", path, strerror(errno));
-    if (!ok) unlink(path);
-    return ok;
-}
-
 /* One table of the figure into its file. It is made in memory first: a main table without rows
  * leaves what an earlier drawing wrote. */
 static bool write_table(struct figure *f, const char *sql, const char *table, int64_t *nrow,
                         struct err *e)
 {
-    struct text path = {0};
-    char *data = NULL;
-    size_t size = 0;
+    struct text path = {0}, data = {0};
     /* ?1 is bound only where the description asks for a run. */
-    FILE *out = open_memstream(&data, &size);
-    CHECK(out != NULL);
+    FILE *out = text_stream(&data);
     bool ok = csv_write(f->s, sql, strstr(sql, "?1") != NULL, &f->run, out, remember_run,
                         &f->run_ids, nrow, e);
     if (!ok) err_in(e, f->name);
-    CHECK(fclose(out) == 0);
+    text_stream_end(out);
     text_add(&path, "%s/%s%s%s.csv", f->dir, f->as, *table ? "." : "", table);
-    if (ok && (*table || *nrow > 0)) ok = write_file(path.s, data, size, e);
+    if (ok && (*table || *nrow > 0)) ok = beside_write(path.s, data.s, data.length, e);
     text_free(&path);
-    free(data);
+    text_free(&data);
     return ok;
 }
 
@@ -257,7 +244,7 @@ static bool write_provenance(struct figure *f, struct err *e)
     csv_plain(source.s);
     text_add(&source, "\n");
     text_add(&path, "%s/%s.provenance", f->dir, f->as);
-    ok = ok && write_file(path.s, source.s, source.length, e);
+    ok = ok && beside_write(path.s, source.s, source.length, e);
     text_free(&source);
     text_free(&path);
     return ok;
@@ -273,30 +260,16 @@ static bool write_script(struct figure *f, struct err *e)
     text_add(&script, "'\n");
     bool ok = add_file(&script, f->plots, "style", e) && add_file(&script, f->plots, f->name, e);
     text_add(&path, "%s/%s.gp", f->dir, f->as);
-    ok = ok && write_file(path.s, script.s, script.length, e);
+    ok = ok && beside_write(path.s, script.s, script.length, e);
     text_free(&script);
     text_free(&path);
     return ok;
 }
 
-/* Images of an earlier drawing must not be taken for this one's. PNG and SVG are what the scripts
- * make. */
-static void remove_images(const struct figure *f)
-{
-    static const char *const suffix[] = {".png", ".svg"};
-    for (int i = 0; i < 2; i++) {
-        struct text path = {0};
-        text_add(&path, "%s/%s%s", f->dir, f->as, suffix[i]);
-        unlink(path.s);
-        text_free(&path);
-    }
-}
-
 /* As mkdir -p. That a folder exists is no error; that a file has its name is one. */
 bool report_folder(const char *dir, struct err *e)
 {
-    char *path = strdup(dir);
-    CHECK(path != NULL);
+    char *path = memory_text(dir);
     for (char *slash = strchr(path + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
         mkdir(path, 0777);
@@ -329,10 +302,11 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     struct text script = {0};
     bool ok = write_tables(f, sql, e);
     if (ok && f->nrow == 0) return no_rows(f, sql, e);
-    remove_images(f);
+    images_remove(f->dir, f->as);
     text_add(&script, "%s.gp", f->as);
-    ok = ok && write_provenance(f, e) && write_script(f, e) && gnuplot_run(f->dir, script.s, e);
-    if (!ok) remove_images(f);
+    ok = ok && write_provenance(f, e) && write_script(f, e) && gnuplot_run(f->dir, script.s, e) &&
+         images_check(f->dir, f->as, e);
+    if (!ok) images_remove(f->dir, f->as);
     text_free(&script);
     return ok;
 }
@@ -380,10 +354,9 @@ static bool add_drawing(void *context, int ncolumn, const char *const *name,
     CHECK(ncolumn == 2);
     if (value[0] == NULL || value[1] == NULL)
         return true; /* a row that was left without its name */
-    d->which = realloc(d->which, ((size_t)d->n + 1) * sizeof *d->which);
-    d->as = realloc(d->as, ((size_t)d->n + 1) * sizeof *d->as);
-    CHECK(d->which != NULL && d->as != NULL);
-    d->which[d->n] = strdup(value[0]);
+    d->which = memory_resize(d->which, (size_t)d->n + 1, sizeof *d->which);
+    d->as = memory_resize(d->as, (size_t)d->n + 1, sizeof *d->as);
+    d->which[d->n] = memory_text(value[0]);
     d->as[d->n++] = figure_file_name(d->figure, value[1]);
     return true;
 }

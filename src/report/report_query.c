@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "base/check.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "report/report.h"
 
@@ -53,8 +53,7 @@ static void grid_add(struct grid *g, char *const *cell)
 {
     if (g->nrow == g->capacity) {
         g->capacity = g->capacity ? 2 * g->capacity : 64;
-        g->cell = realloc(g->cell, (size_t)(g->capacity * g->ncolumn) * sizeof *g->cell);
-        CHECK(g->cell != NULL);
+        g->cell = memory_resize(g->cell, (size_t)(g->capacity * g->ncolumn), sizeof *g->cell);
     }
     for (int i = 0; i < g->ncolumn; i++) {
         int width = text_width(cell[i]);

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 
 /* In the order of enum span_kind. */
 const char *timeline_kind(enum span_kind kind)
@@ -48,9 +48,8 @@ static int compare_message(const void *a, const void *b)
  * the limit cut it off, or the rank is not shown. */
 int64_t *timeline_partners(const struct timeline *t)
 {
-    int64_t *partner = malloc((size_t)t->nspan * sizeof *partner), n = 0;
-    struct message_end *end = malloc((size_t)t->nspan * sizeof *end);
-    CHECK(partner != NULL && end != NULL);
+    int64_t *partner = memory_take((size_t)t->nspan, sizeof *partner), n = 0;
+    struct message_end *end = memory_take((size_t)t->nspan, sizeof *end);
     for (int64_t i = 0; i < t->nspan; i++) {
         partner[i] = -1;
         bool is_end = t->span[i]->kind == SPAN_SEND || t->span[i]->kind == SPAN_RECV;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "report/csv.h"
 #include "report/timeline.h"
@@ -43,8 +43,7 @@ static int compare_rank(const void *a, const void *b)
 static int64_t pick(struct timeline *t, int64_t max)
 {
     const struct run_result *r = t->run;
-    t->span = malloc((size_t)r->nspan * sizeof *t->span);
-    CHECK(t->span != NULL);
+    t->span = memory_take((size_t)r->nspan, sizeof *t->span);
     for (int64_t i = 0; i < r->nspan; i++) {
         const struct span *p = &r->span[i];
         /* A span that reaches into the window is shown whole: cutting it would falsify its

@@ -3,7 +3,7 @@
  * "Paje trace file" (Kergommeaux and Stein, 2003), with the fields that ViTE and pj_dump read. */
 #include <stdlib.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "report/timeline.h"
 
 /* In the order in which events of one time must be written. */
@@ -138,8 +138,7 @@ void trace_paje(const struct timeline *t, FILE *out)
     /* At most four events a span: stage, span, message end, idle. Gather and sort first: Paje is
      * read from start to end, in the order of time, while spans lie rank by rank. */
     int64_t *partner = timeline_partners(t), end = t->begin_ps;
-    struct event *event = malloc((size_t)t->nspan * 4 * sizeof *event);
-    CHECK(event != NULL);
+    struct event *event = memory_take((size_t)t->nspan * 4, sizeof *event);
     int64_t n = gather(t, partner, event),
             start = event[0].time < t->begin_ps ? event[0].time : t->begin_ps;
     if (n > 0 && event[n - 1].time > end) end = event[n - 1].time;

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "loader/crash.h"
 #include "measure/run_heartbeat.h"
@@ -385,9 +386,8 @@ static bool run_here(struct campaign *c)
 
 static bool run_workers(struct campaign *c, int workers, struct err *e)
 {
-    c->slot = calloc((size_t)c->nspec, sizeof *c->slot);
-    c->arena = calloc((size_t)c->nspec, sizeof *c->arena);
-    CHECK(c->slot && c->arena);
+    c->slot = memory_zeroed((size_t)c->nspec, sizeof *c->slot);
+    c->arena = memory_zeroed((size_t)c->nspec, sizeof *c->arena);
     /* A worker that dies must not end the parent when it is written to. */
     signal(SIGPIPE, SIG_IGN);
     bool ok = true;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/picoseconds.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -30,8 +31,7 @@ struct run_cache {
 
 struct run_cache *run_cache_create(void)
 {
-    struct run_cache *c = calloc(1, sizeof *c);
-    CHECK(c);
+    struct run_cache *c = memory_zeroed(1, sizeof *c);
     return c;
 }
 

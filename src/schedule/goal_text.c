@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/picoseconds.h"
 #include "base/size.h"
 #include "schedule/schedule.h"
@@ -223,8 +223,7 @@ static void more_labels(struct reader *g)
     struct label *old = g->label;
     const int64_t n = g->label_capacity;
     g->label_capacity = n > 0 ? 2 * n : 1024;
-    g->label = calloc((size_t)g->label_capacity, sizeof *g->label);
-    if (!g->label) check_memory((size_t)g->label_capacity * sizeof *g->label);
+    g->label = memory_zeroed((size_t)g->label_capacity, sizeof *g->label);
     for (int64_t i = 0; i < n; i++)
         if (!is_free(g, &old[i])) *place_of(g, old[i].s, old[i].length) = old[i];
     free(old);

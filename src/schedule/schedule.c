@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/check.h"
+#include "base/memory.h"
 #include "base/size.h"
 
 /* Doubling: each entry is copied about once in all, and memory peaks at three times the
@@ -16,8 +16,7 @@ static void *grown(void *list, int64_t *capacity, size_t size)
 {
     const int64_t n = *capacity > 0 ? 2 * *capacity : 1024;
     const size_t bytes = size_product((size_t)n, size);
-    void *more = realloc(list, bytes);
-    if (!more) check_memory(bytes);
+    void *more = memory_resize(list, bytes, 1);
     *capacity = n;
     return more;
 }
@@ -25,9 +24,8 @@ static void *grown(void *list, int64_t *capacity, size_t size)
 void schedule_begin(struct schedule_builder *b, int nrank)
 {
     *b = (struct schedule_builder){.s.nrank = nrank, .s.ncpu = 1};
-    b->begin = calloc((size_t)nrank, sizeof *b->begin);
-    b->end = calloc((size_t)nrank, sizeof *b->end);
-    if (!b->begin || !b->end) check_memory((size_t)nrank * 2 * sizeof *b->begin);
+    b->begin = memory_zeroed((size_t)nrank, sizeof *b->begin);
+    b->end = memory_zeroed((size_t)nrank, sizeof *b->end);
     /* -1 says that the rank has not come yet. */
     for (int i = 0; i < nrank; i++) b->begin[i] = b->end[i] = -1;
 }
@@ -103,8 +101,7 @@ static void order_dependencies(const struct schedule_builder *b, struct schedule
      * file, so that runs of one file are the same. */
     for (int64_t i = 0; i < b->ndependency; i++) s->edge_first[moved[b->dependency[i].on] + 1]++;
     for (int64_t i = 0; i < s->nop; i++) s->edge_first[i + 1] += s->edge_first[i];
-    int64_t *at = malloc(size_product((size_t)s->nop + 1, sizeof *at));
-    if (!at) check_memory((size_t)s->nop * sizeof *at);
+    int64_t *at = memory_take((size_t)s->nop + 1, sizeof *at);
     memcpy(at, s->edge_first, ((size_t)s->nop + 1) * sizeof *at);
     for (int64_t i = 0; i < b->ndependency; i++) {
         const struct schedule_dependency *d = &b->dependency[i];
@@ -122,9 +119,8 @@ static void order_dependencies(const struct schedule_builder *b, struct schedule
 static int64_t left_in_circles(const struct schedule *s, int64_t *some)
 {
     /* A copy: the schedule stays as it was read. */
-    int32_t *needs = malloc(size_product((size_t)s->nop + 1, sizeof *needs));
-    int64_t *list = malloc(size_product((size_t)s->nop + 1, sizeof *list)), n = 0, done = 0;
-    if (!needs || !list) check_memory((size_t)s->nop * (sizeof *needs + sizeof *list));
+    int32_t *needs = memory_take((size_t)s->nop + 1, sizeof *needs);
+    int64_t *list = memory_take((size_t)s->nop + 1, sizeof *list), n = 0, done = 0;
     for (int64_t i = 0; i < s->nop; i++) {
         needs[i] = s->op[i].needs;
         if (needs[i] == 0) list[n++] = i;
@@ -147,8 +143,7 @@ struct schedule *schedule_finish(struct schedule_builder *b, const char *path, s
                                  struct err *e)
 {
     struct schedule *s = TAKE(a, 1, struct schedule);
-    int64_t *moved = malloc(size_product((size_t)b->s.nop + 1, sizeof *moved)), some;
-    if (!moved) check_memory((size_t)b->s.nop * sizeof *moved);
+    int64_t *moved = memory_take((size_t)b->s.nop + 1, sizeof *moved), some;
     /* Arrays of the builder are on the heap and end with it: these are copies in the
      * caller's arena, of the exact length. */
     *s = b->s;

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 
 /* INSERTION_MOST: up to this many keys insertion sort is used, beyond it merge sort. Most instants
  * hold only a few events. */
@@ -37,8 +38,7 @@ void event_queue_done(struct event_queue *q)
 static void bucket_grow(struct event_bucket *b)
 {
     b->capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
-    b->event = realloc(b->event, b->capacity * sizeof *b->event);
-    CHECK(b->event);
+    b->event = memory_resize(b->event, b->capacity, sizeof *b->event);
 }
 
 static inline void bucket_add(struct event_bucket *b, const struct event *e)
@@ -96,8 +96,7 @@ enum { SLAB_CHUNKS = 16 };
  * the queue. In the steady state posting an event calls no allocator. */
 static void pool_refill(struct event_queue *q)
 {
-    char *slab = malloc(sizeof(void *) + SLAB_CHUNKS * sizeof(struct event_chunk));
-    CHECK(slab);
+    char *slab = memory_take(1, sizeof(void *) + SLAB_CHUNKS * sizeof(struct event_chunk));
     *(void **)slab = q->slab;
     q->slab = slab;
     struct event_chunk *c = (struct event_chunk *)(slab + sizeof(void *));
@@ -223,9 +222,8 @@ static void keys_room(struct event_queue *q, uint32_t n)
     q->key_capacity = n * 2;
     free(q->key);
     free(q->scratch);
-    q->key = malloc(q->key_capacity * sizeof *q->key);
-    q->scratch = malloc(q->key_capacity * sizeof *q->scratch);
-    CHECK(q->key && q->scratch);
+    q->key = memory_take(q->key_capacity, sizeof *q->key);
+    q->scratch = memory_take(q->key_capacity, sizeof *q->scratch);
 }
 
 /* Make the bucket of the next instant the run. */

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/size.h"
 
 #ifdef SANITIZERS
@@ -128,10 +129,8 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     sanitizer_fresh(base, stride * (size_t)n);
     madvise(base, stride * (size_t)n,
             MADV_NOHUGEPAGE); /* else one touched page would commit 2 MiB */
-    struct fiber_pool *p = calloc(1, sizeof *p);
-    CHECK(p);
-    p->fiber = calloc((size_t)n, sizeof *p->fiber);
-    CHECK(p->fiber);
+    struct fiber_pool *p = memory_zeroed(1, sizeof *p);
+    p->fiber = memory_zeroed((size_t)n, sizeof *p->fiber);
     p->base = base;
     p->stride = stride;
     p->stack_bytes = stack;
@@ -269,8 +268,7 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
     size_t npage = p->stride / p->page, deepest = 0;
     /* mincore answers for a range of pages at once. In batches, the answer stays small whatever the
      * number of fibers. */
-    unsigned char *resident = malloc(size_product(npage, BATCH));
-    CHECK(resident);
+    unsigned char *resident = memory_take(size_product(npage, BATCH), 1);
     for (int first = 0; first < p->n; first += BATCH) {
         size_t n = (size_t)(p->n - first < BATCH ? p->n - first : BATCH);
         /* A kernel without mincore: report what was found so far, since this is a statistic

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/memory.h"
 #include "base/picoseconds.h"
 #include "sim/event_queue.h"
 
@@ -26,8 +27,7 @@ struct sim {
 
 struct sim *sim_create(void)
 {
-    struct sim *s = calloc(1, sizeof *s);
-    CHECK(s);
+    struct sim *s = memory_zeroed(1, sizeof *s);
     event_queue_init(&s->queue);
     s->digest = DIGEST_START;
     return s;

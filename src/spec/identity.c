@@ -17,6 +17,7 @@
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/memory.h"
 #include "spec/spec_fields.h"
 
 /* Lines that stand for the content of files, in place of the paths. */
@@ -40,17 +41,14 @@ struct identity {
 /* Printed defaults, once: every run of a campaign is compared with these lines. */
 struct identity *identity_create(const struct field_table *const *table, int n)
 {
-    struct identity *x = calloc(1, sizeof *x);
+    struct identity *x = memory_zeroed(1, sizeof *x);
     struct arena *a = arena_create();
-    CHECK(x != NULL);
-    *x = (struct identity){.table = table, .n = n, .part = calloc((size_t)n, sizeof *x->part)};
-    CHECK(x->part != NULL);
+    *x = (struct identity){.table = table, .n = n, .part = memory_zeroed((size_t)n, sizeof *x->part)};
     for (int i = 0; i < n; i++) {
         void *base = arena_take(a, table[i]->size);
         field_defaults(table[i], base, a);
         fields_print(table[i], base, false, &x->part[i].fallback);
-        x->part[i].bytes = malloc(table[i]->size);
-        CHECK(x->part[i].bytes != NULL);
+        x->part[i].bytes = memory_take(table[i]->size, 1);
     }
     arena_destroy(a);
     return x;
@@ -125,8 +123,7 @@ static void sort_lines(struct text *text)
     struct text sorted = {0};
     int n = 0;
     for (const char *s = text->s; s != NULL && *s != '\0'; s = next_line(s)) n++;
-    char **line = calloc((size_t)n + 1, sizeof *line);
-    CHECK(line != NULL);
+    char **line = memory_zeroed((size_t)n + 1, sizeof *line);
     n = 0;
     /* Each line becomes a string of its own for the comparison. */
     for (char *s = text->s, *end; s != NULL && *s != '\0'; s = end + 1) {

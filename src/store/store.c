@@ -16,9 +16,10 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
+#include "base/beside.h"
 #include "base/check.h"
+#include "base/memory.h"
 #include "base/text.h"
-#include "store/beside.h"
 #include "store/connection.h"
 #include "store/image.h"
 #include "store/rows.h"
@@ -133,8 +134,7 @@ static bool prepare_reader(struct store *s, struct err *e)
 static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *folder = slash == NULL ? strdup("./") : strndup(path, (size_t)(slash - path) + 1);
-    CHECK(folder != NULL);
+    char *folder = slash == NULL ? memory_text("./") : memory_text_part(path, (size_t)(slash - path) + 1);
     return folder;
 }
 
@@ -265,10 +265,8 @@ struct store *store_open(const char *path, enum store_mode mode, struct err *e)
     const bool memory = mode == STORE_MEMORY || mode == STORE_SCRATCH;
     if (!memory && !check_path(path, mode, &exists, e)) return NULL;
     if (!exists && !make_file(path, e)) return NULL;
-    struct store *s = calloc(1, sizeof *s);
-    CHECK(s != NULL);
-    s->path = strdup(path);
-    CHECK(s->path != NULL);
+    struct store *s = memory_zeroed(1, sizeof *s);
+    s->path = memory_text(path);
     s->writable = mode != STORE_READ;
     s->fresh = !exists;
     const bool ok = memory        ? open_memory(s, mode == STORE_MEMORY, e)

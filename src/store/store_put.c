@@ -6,6 +6,7 @@
  *
  * Tables that grow with the machine (ranks, links, spans) have limits: a database of 10,000 runs
  * must stay one that can be queried and copied. Sums over all of them are in table run. */
+#include "base/memory.h"
 #include "store/store.h"
 
 #include <stdlib.h>
@@ -264,8 +265,7 @@ static int compare_load(const void *a, const void *b)
 static bool put_links(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     if (r->nlink == 0 || r->link == NULL) return true;
-    const struct link_load **order = malloc((size_t)r->nlink * sizeof *order);
-    CHECK(order != NULL);
+    const struct link_load **order = memory_take((size_t)r->nlink, sizeof *order);
     for (int i = 0; i < r->nlink; i++) order[i] = &r->link[i];
     /* All links where there are few; the busiest of many, as those limit the run. */
     if (r->nlink > STORE_LINK_ROWS) qsort(order, (size_t)r->nlink, sizeof *order, compare_load);

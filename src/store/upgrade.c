@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "store/beside.h"
+#include "base/beside.h"
 #include "store/rows.h"
 #include "store/upgrade_runs.h"
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "model/urdf_model.h"
 #include "model/vector_model.h"
 
@@ -19,7 +20,8 @@ static bool begins_with(const char *path, const char *word)
 {
     /* A scenario in JSON says schema_version near its top; 4 KiB are enough for it. */
     char head[4096];
-    FILE *file = fopen(path, "r");
+    struct err unread = {0};
+    FILE *file = text_open_file(path, &unread);
     if (!file) return false;
     /* A shorter file is read as far as it goes. */
     head[fread(head, 1, sizeof head - 1, file)] = '\0';

@@ -223,7 +223,7 @@ scenario() {
     # without gnuplot the numbers of every drawing are there, and the report says so
     sqlite3 mimdsim.db "UPDATE omission SET scenario = 'other' WHERE what = 'timeline'"
     rm -r figures
-    MIMDSIM_GNUPLOT=/nonexistent works mimdsim report
+    MIMDSIM_GNUPLOT=/nonexistent fails_with 69 mimdsim report
     [ -s figures/omissions-small.csv ] && [ -s figures/omissions-other.csv ] && [ ! -e figures/omissions-other.png ]
     grep -q 'This figure was not drawn' mimdsim.md
     # a database without rows for a figure leaves alone what another's report shows

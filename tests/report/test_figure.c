@@ -91,6 +91,19 @@ static bool exists(struct fixture *f, const char *name)
     return access(scratch_path(path, sizeof path, f->out, name), F_OK) == 0;
 }
 
+/* A program in gnuplot's place: a shell script of one line, called in the folder of the results. */
+static void use_program(struct fixture *f, const char *line)
+{
+    char path[256];
+    struct text text = {0};
+    text_add(&text, "#!/bin/sh\n%s\n", line);
+    write_file(f, "program", text.s);
+    text_free(&text);
+    scratch_path(path, sizeof path, f->folder, "program");
+    assert_int_equal(chmod(path, 0700), 0);
+    setenv("MIMDSIM_GNUPLOT", path, 1);
+}
+
 static bool has_gnuplot(void) { return system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
 /* Draw, or skip the test where gnuplot is not installed. */
@@ -182,6 +195,45 @@ static void an_old_image_does_not_outlive_a_failed_drawing(void **state)
     assert_false(exists(f, "curve.png") || exists(f, "curve.svg"));
 }
 
+/* Each ends with a message that says which, without a picture, and soon. */
+static void a_program_that_misbehaves_is_told_as_such(void **state)
+{
+    struct fixture *f = *state;
+    static const struct {
+        const char *line, *says;
+        enum err_kind kind;
+    } bad[] = {
+        {"exit 0", "has ended without a picture", ERR_UNAVAILABLE},
+        {": >curve.svg; : >curve.png", "curve.png was not drawn to its end", ERR_IO},
+        {"echo '<svg></svg>' >curve.svg; echo '\\0211PNG' >curve.png", "curve.png was not drawn to its end", ERR_IO},
+        {"echo '<svg><g></g>' >curve.svg", "curve.svg was not drawn to its end", ERR_IO},
+        {"kill -9 $$", "was ended by signal 9", ERR_UNAVAILABLE},
+        {"exec sleep 100", "had not drawn", ERR_UNAVAILABLE},
+        {"sleep 100 & sleep 100", "had not drawn", ERR_UNAVAILABLE},
+        {"exec 2>&-; exec sleep 100", "had not drawn", ERR_UNAVAILABLE},
+        {"yes complaint | head -c 50000000 >&2; exit 1", "complaint", ERR_UNAVAILABLE},
+        {"exec yes complaint >&2", "had not drawn", ERR_UNAVAILABLE},
+        {"head -c 1000000 /dev/urandom >&2; exit 3", "could not draw", ERR_UNAVAILABLE},
+    };
+    setenv("MIMDSIM_GNUPLOT_SECONDS", "0.3", 1);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        err_clear(&f->e);
+        if (bad[i].kind == ERR_UNAVAILABLE && strstr(bad[i].line, "50000000"))
+            setenv("MIMDSIM_GNUPLOT_SECONDS", "60", 1);
+        else setenv("MIMDSIM_GNUPLOT_SECONDS", "0.3", 1);
+        use_program(f, bad[i].line);
+        if (report_figure(f->s, f->folder, "curve", f->out, &f->e)) fail_msg("%s: taken for a drawing", bad[i].line);
+        if (f->e.kind != bad[i].kind || !strstr(f->e.text, bad[i].says)) fail_msg("%s: %s", bad[i].line, f->e.text);
+        assert_false(exists(f, "curve.png") || exists(f, "curve.svg"));
+        assert_true(exists(f, "curve.csv") && exists(f, "curve.gp"));
+    }
+    /* A program that leaves another one behind has ended all the same. */
+    unsetenv("MIMDSIM_GNUPLOT_SECONDS");
+    err_clear(&f->e);
+    use_program(f, "echo '<svg></svg>' >curve.svg; sleep 3 & exit 0");
+    if (!report_figure(f->s, f->folder, "curve", f->out, &f->e)) fail_msg("%s", f->e.text);
+}
+
 static void several_tables_become_several_files(void **state)
 {
     struct fixture *f = *state;
@@ -192,7 +244,7 @@ static void several_tables_become_several_files(void **state)
              points);
     write_file(f, "plots/curve.sql", sql.s);
     text_free(&sql);
-    setenv("MIMDSIM_GNUPLOT", "true", 1);
+    use_program(f, "echo '<svg></svg>' >curve.svg");
     assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
     struct text stages = read_out(f, "curve.stages.csv"), none = read_out(f, "curve.none.csv");
     assert_memory_equal(stages.s, "name\r\nPre-processing\r\nNE[1]\r\n", 29);
@@ -209,7 +261,7 @@ static void cells_are_quoted_where_rfc_4180_says_so(void **state)
                "SELECT 'a,b' AS \"x\"\"y\", 'say \"hi\"' AS q, NULL AS n, 0.1 AS r, "
                "1e300*10 AS big, "
                "'two' || char(10) || 'lines' AS t, ' b ' AS blank, 'end' AS e");
-    setenv("MIMDSIM_GNUPLOT", "true", 1);
+    use_program(f, "echo '<svg></svg>' >curve.svg");
     assert_true(report_figure(f->s, f->folder, "curve", f->out, &f->e));
     struct text csv = read_out(f, "curve.csv");
     assert_string_equal(csv.s, "\"x\"\"y\",q,n,r,big,t,blank,e\r\n"
@@ -429,6 +481,7 @@ int main(void)
         TEST(the_picture_names_version_runs_and_configurations),
         TEST(without_gnuplot_data_and_script_are_written),
         TEST(an_old_image_does_not_outlive_a_failed_drawing),
+        TEST(a_program_that_misbehaves_is_told_as_such),
         TEST(several_tables_become_several_files),
         TEST(cells_are_quoted_where_rfc_4180_says_so),
         TEST(an_unknown_figure_names_the_nearest),

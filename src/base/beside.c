@@ -4,12 +4,13 @@
  * A file is made under a name of its own, PATH.new-XXXXXX.part, and gets its real name when it
  * is whole. A lock tells a cleaner whether the maker still lives; the lock ends with the
  * process, however that ends. */
-#include "store/beside.h"
+#include "base/beside.h"
 
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 
 static const char middle[] = ".new-", ending[] = ".part";
@@ -98,4 +100,67 @@ void beside_clean(const char *path)
         if (is_beside(entry->d_name, own)) remove_left(dirfd(dir), entry->d_name);
     if (dir != NULL) closedir(dir);
     text_free(&folder);
+}
+
+/* --- whole files ------------------------------------------------------------------------------ */
+
+/* What a name leads to through links; itself where nothing is there yet. */
+static char *target_of(const char *path)
+{
+    char *real = realpath(path, NULL);
+    if (real != NULL) return real;
+    return memory_text(path);
+}
+
+bool beside_begin(struct beside *b, const char *path, struct err *e)
+{
+    struct stat info;
+    *b = (struct beside){.path = target_of(path)};
+    const bool there = stat(b->path, &info) == 0;
+    /* What is no file cannot be replaced by one: a terminal, a pipe, /dev/null. */
+    if (there && !S_ISREG(info.st_mode)) b->out = fopen(b->path, "we");
+    else {
+        beside_clean(b->path);
+        int file = beside_open(b->path, &b->name);
+        /* A file that is replaced leaves its permissions. */
+        if (file >= 0 && there) (void)!fchmod(file, info.st_mode & 0777);
+        b->out = file >= 0 ? fdopen(file, "w") : NULL;
+        if (file >= 0 && b->out == NULL) close(file), unlink(b->name);
+    }
+    if (b->out != NULL) return true;
+    err_set(e, ERR_CREATE, "cannot make %s: %s", path, strerror(errno));
+    free(b->name);
+    free(b->path);
+    *b = (struct beside){0};
+    return false;
+}
+
+bool beside_end(struct beside *b, bool keep, struct err *e)
+{
+    /* stdio remembers that a write failed, but not why: the flush tells of the last part. */
+    errno = b->why;
+    bool bad = ferror(b->out) != 0 || b->why != 0;
+    if (fclose(b->out) != 0) bad = true;
+    if (!bad && keep && b->name != NULL) bad = rename(b->name, b->path) != 0;
+    if (keep && bad)
+        err_set(e, ERR_IO, "writing %s failed: %s", b->path,
+                errno != 0 ? strerror(errno) : "a part of it could not be written");
+    if (b->name != NULL && (bad || !keep)) unlink(b->name);
+    free(b->name);
+    free(b->path);
+    *b = (struct beside){0};
+    return !bad;
+}
+
+bool beside_write(const char *path, const void *data, size_t size, struct err *e)
+{
+    struct beside b;
+    if (!beside_begin(&b, path, e)) return false;
+    /* write may take less than it is given. */
+    for (size_t done = 0; done < size && b.why == 0;) {
+        ssize_t n = write(fileno(b.out), (const char *)data + done, size - done);
+        if (n > 0) done += (size_t)n;
+        else if (n == 0 || errno != EINTR) b.why = n == 0 ? ENOSPC : errno;
+    }
+    return beside_end(&b, true, e);
 }
