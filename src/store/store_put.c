@@ -126,8 +126,7 @@ static void bind_number(sqlite3_stmt *add, const char *key, int nkey, const char
 {
     double number;
     enum unit unit;
-    char *name = strndup(key, (size_t)nkey), *text = strndup(value, (size_t)nvalue);
-    CHECK(name != NULL && text != NULL);
+    char *name = memory_text_part(key, (size_t)nkey), *text = memory_text_part(value, (size_t)nvalue);
     if (setting_number(name, text, &number, &unit)) sqlite3_bind_double(add, 3, number);
     else sqlite3_bind_null(add, 3);
     sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC);

@@ -107,7 +107,7 @@ static void a_file_that_is_not_there_and_a_folder_are_refused(void **state)
     assert_string_equal(e.file, "no such file");
     err_clear(&e);
     assert_false(text_read_file(&t, ".", &e));
-    assert_int_equal(e.kind, ERR_IO);
+    assert_int_equal(e.kind, ERR_DATA);
     text_free(&t);
 }
 
