@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/arguments.h"
+#include "app/campaign_mpi.h"
 #include "app/flag.h"
 #include "app/levels.h"
 #include "app/run_table.h"
@@ -33,6 +34,8 @@ static const char doc[] =
     "PROGRAM: a program of your own, as source or as made by mimdsim cc, makes a scenario by itself "
     "(t3e-300, 1 to 16 ranks); see docs/own-program.md. --limit SECONDS: a run of such a program has "
     "failed when it takes more processor time than this (default 600 s).\n\n"
+    "--campaign mpi: the processes that mpirun has started share the plan, and the first one stores "
+    "the results: mpirun -n 8 mimdsim run fig6 --campaign mpi. Each makes --jobs runs at a time (default 1).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -47,7 +50,7 @@ struct keep {
     int done, failed;      /* runs, failed ones among them */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
     double limit;          /* of people's own programs [s], 0: as usual */
-    bool quiet;
+    bool quiet, keep_all;
 };
 
 /* One result, in plan order: counted, told where it is no plain success, stored. Remarks that
@@ -111,18 +114,16 @@ static bool *skipped(struct store *s, const struct plan *p, const struct run_spe
     return skip;
 }
 
-/* The plan with its levels settled: runs of its own, everything else is shared. */
-static bool settle_plan(const struct common *c, const struct plan *p, struct plan *settled, struct keep *k,
-                        bool keep_all, struct err *e)
+/* Runs of its own for the settled plan, everything else is shared; and how each is executed. */
+static struct run_spec *orders_usual(const struct plan *p, struct keep *k, struct plan *settled)
 {
     struct run_spec *run = TAKE(p->arena, p->nrun, struct run_spec);
     memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
+    k->run = settled->run = run;
     k->order = TAKE(p->arena, p->nrun, struct run_order);
-    const struct run_order usual = {.keep = keep_all ? KEEP_ALL : 0, .host_limit = k->limit};
+    const struct run_order usual = {.keep = k->keep_all ? KEEP_ALL : 0, .host_limit = k->limit};
     for (int i = 0; i < p->nrun; i++) k->order[i] = usual;
-    *settled = *p;
-    settled->run = k->run = run;
-    return levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e);
+    return run;
 }
 
 /* Settings that act in no run. */
@@ -149,50 +150,70 @@ static bool call_stored(struct store *s, const struct run_spec *run, const bool 
 }
 
 /* Settle levels, leave out what is stored, run the rest, print all. */
-static bool answer(const struct common *c, const struct plan *p, const struct part *part, bool keep_all,
+static bool answer(const struct common *c, const struct plan *p, const struct part *part, struct job *job,
                    struct keep *k, struct err *e)
 {
-    struct plan settled;
+    struct plan settled = *p;
     if (!c->quiet) say_unused(p);
     /* A robot that cannot be read is told before a database is made. */
     if (!model_file_look(p->run, p->nrun, c->quiet ? NULL : stderr, e)) return false;
     k->store = arguments_store(c, c->database, e);
     if (!k->store) return false;
-    if (!settle_plan(c, p, &settled, k, keep_all, e)) return false;
+    struct run_spec *run = orders_usual(p, k, &settled);
+    if (!levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e)) return false;
     bool *skip = skipped(k->store, p, settled.run, part, c->force);
-    bool ok = call_stored(k->store, k->run, skip, p->nrun, e) &&
-              run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
+    if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
+    else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
     return ok && run_table_print(k->store, &settled, c->json, stdout, e);
 }
 
+/* What the other processes of a job do of this: they make runs, and store and print nothing. */
+static bool help_out(struct job *job, const struct common *c, const struct plan *p, struct keep *k, struct err *e)
+{
+    struct plan settled = *p;
+    struct run_spec *run = orders_usual(p, k, &settled);
+    return job_run(job, p, run, k->order, NULL, c, keep_result, k, e);
+}
+
 /* Worst first: an error of the command, a deadlock, a plan of which nothing could run, wrong or
  * failed runs. */
+static int exit_status(bool ok, const struct keep *k, bool none, const struct common *c, const struct err *e)
+{
+    if (!ok && e->kind == ERR_NONE) return 0; /* the first process of a job says why */
+    if (!ok) return common_fail(c, e);
+    if (k->deadlock) return err_exit_status(ERR_DEADLOCK);
+    if (k->failed > 0) say_failed(k);
+    if (k->refusals > 0 && none) return err_exit_status((enum err_kind)k->refusal);
+    return k->invalid ? err_exit_status(ERR_CHECK) : 0;
+}
+
+/* The whole of it, on one process or on several. */
 int cmd_run(int argc, char **argv)
 {
     struct common c;
-    bool keep_all = take_flag(&argc, argv, "--keep-all");
-    const char *shard = take_value(&argc, argv, "--shard");
+    const bool keep_all = take_flag(&argc, argv, "--keep-all");
+    const char *shard = take_value(&argc, argv, "--shard"), *campaign = take_value(&argc, argv, "--campaign");
     struct part part = {.point = take_value(&argc, argv, "--point")};
+    struct job job;
     double limit;
     struct err e;
     err_clear(&e);
     const bool limited = take_seconds(&argc, argv, "--limit", &limit, &e);
+    bool ok = job_open(&job, campaign, &e) && limited;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
+    job_heard(&job, &c);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit};
-    bool ok = limited && shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
-              check_point(part.point, &p, &e);
+    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit, .keep_all = keep_all};
+    ok = ok && shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
+         check_point(part.point, &p, &e);
+    ok = job_agree(&job, &p, ok, &e);
     c.force = c.force || keep_all; /* the same results, but not the same row */
-    ok = ok && answer(&c, &p, &part, keep_all, &k, &e);
+    if (ok) ok = job.h.rank == 0 ? answer(&c, &p, &part, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);
     store_close(k.store);
-    bool none = k.refusals == p.nrun; /* nothing of the plan could run */
+    const bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);
-    if (!ok) return common_fail(&c, &e);
-    /* The worst that happened is the exit status. */
-    if (k.deadlock) return err_exit_status(ERR_DEADLOCK);
-    if (k.failed > 0) say_failed(&k);
-    if (k.refusals > 0 && none) return err_exit_status((enum err_kind)k.refusal);
-    return k.invalid ? err_exit_status(ERR_CHECK) : 0;
+    return job_end(&job, exit_status(ok, &k, none, &c, &e));
 }

@@ -19,31 +19,11 @@
 #include "base/progress.h"
 #include "loader/crash.h"
 #include "measure/run_heartbeat.h"
+#include "run/result_parts.h"
 #include "run/run.h"
 
-/* Poll this often, so that the progress of long runs moves although no run ends. */
-enum { MOST_WORKERS = 256, HEARTBEAT_MS = 200 };
-
-/* The arrays of a result, in the order in which they travel. */
-enum { PARTS = 6 };
-
-struct parts {
-    void **array[PARTS];
-    size_t bytes[PARTS]; /* 0: the array is not there */
-};
-
-/* Sizes follow from the counts in the result, so that both ends of the pipe know them. */
-static struct parts parts_of(struct run_result *r)
-{
-    size_t rows = r->stage ? (size_t)r->nrank * (size_t)r->nstage : 0;
-    return (struct parts){
-        {(void **)&r->stage, (void **)&r->finish_ps, (void **)&r->span, (void **)&r->link,
-         (void **)&r->said, (void **)&r->path},
-        {rows * sizeof *r->stage, (r->finish_ps ? (size_t)r->nrank : 0) * sizeof *r->finish_ps,
-         (size_t)r->nspan * sizeof *r->span, (size_t)r->nlink * sizeof *r->link,
-         (size_t)r->nsaid, (size_t)r->npath * sizeof *r->path},
-    };
-}
+/* Poll this often [us], so that the progress of long runs moves although no run ends; and to ask a dealer. */
+enum { MOST_WORKERS = 256, HEARTBEAT_US = 200000, LEAST_PAUSE_US = 100, MOST_PAUSE_US = 5000 };
 
 /* A pipe takes and gives what it can: both go on until all is through. False: the other end is
  * gone. */
@@ -80,12 +60,13 @@ struct answer {
     struct run_result result;
 };
 
+/* From the worker to its parent. */
 static bool send_answer(int fd, struct answer *a)
 {
     if (!write_all(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
-    struct parts p = parts_of(&a->result);
-    for (int i = 0; i < PARTS; i++)
+    struct result_parts p = result_parts(&a->result);
+    for (int i = 0; i < RESULT_PARTS; i++)
         if (!write_all(fd, *p.array[i], p.bytes[i])) return false;
     return true;
 }
@@ -95,8 +76,8 @@ static bool receive_answer(int fd, struct answer *a, struct arena *arena)
 {
     if (!read_all(fd, a, sizeof *a)) return false;
     if (!a->ok) return true;
-    struct parts p = parts_of(&a->result);
-    for (int i = 0; i < PARTS; i++) {
+    struct result_parts p = result_parts(&a->result);
+    for (int i = 0; i < RESULT_PARTS; i++) {
         *p.array[i] = p.bytes[i] ? arena_take(arena, p.bytes[i]) : NULL;
         if (!read_all(fd, *p.array[i], p.bytes[i])) return false;
     }
@@ -217,18 +198,21 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
     return true;
 }
 
-/* Hand the next run to a worker. When it is dead by now, that shows when its answer is read. */
+/* Hand run `index` to a worker, -1: none. When it is dead by now, that shows when its answer is read. */
+static void give_run(struct worker *w, int index)
+{
+    w->busy = index;
+    if (index >= 0) (void)write_all(w->orders, &w->busy, sizeof w->busy);
+}
+
+/* The next run in plan order that is to be made. */
 static void give_order(struct campaign *c, struct worker *w)
 {
     while (c->next < c->nspec && c->skip && c->skip[c->next]) c->next++;
-    w->busy = c->next < c->nspec ? c->next : -1;
-    if (w->busy < 0) return;
-    c->next++;
-    (void)write_all(w->orders, &w->busy, sizeof w->busy);
+    give_run(w, c->next < c->nspec ? c->next++ : -1);
 }
 
-/* What a run that could not be made leaves: its status, and why. */
-static struct run_result refused_result(const struct err *why)
+struct run_result run_refused(const struct err *why)
 {
     struct run_result r = {.status = RUN_FAILED, .residual = NAN, .measured_s = NAN, .residual_before = NAN,
                            .loop_rank = -1, .refusal = why->kind};
@@ -241,9 +225,21 @@ static struct run_result refused_result(const struct err *why)
  * other. */
 static bool hand_refused(struct campaign *c, int index, const struct err *why)
 {
-    struct run_result r = refused_result(why);
+    struct run_result r = run_refused(why);
     r.nrank = c->spec[index].nrank;
     return c->done(c->context, &c->spec[index], &r);
+}
+
+/* Hand over the result of run i, which is there, and give its memory back. */
+static bool hand_one(struct campaign *c, int i)
+{
+    struct answer *a = c->slot[i];
+    const bool ok = a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
+    arena_destroy(c->arena[i]);
+    c->arena[i] = NULL;
+    c->slot[i] = NULL;
+    c->ndone++;
+    return ok;
 }
 
 /* Hand over what is next in plan order, as far as it is there. */
@@ -251,19 +247,12 @@ static bool hand_over(struct campaign *c)
 {
     while (c->handed < c->nspec) {
         int i = c->handed;
-        if (c->skip && c->skip[i]) {
-            c->handed++;
-            continue;
-        }
         /* NULL: still running; results behind it wait. */
-        struct answer *a = c->slot[i];
-        if (!a) return true;
-        bool ok = a->ok ? c->done(c->context, &c->spec[i], &a->result) : hand_refused(c, i, &a->error);
-        arena_destroy(c->arena[i]);
-        c->arena[i] = NULL;
-        c->slot[i] = NULL;
+        const bool skipped = c->skip && c->skip[i];
+        if (!skipped && !c->slot[i]) return true;
         c->handed++;
-        c->ndone++;
+        if (skipped) continue;
+        const bool ok = hand_one(c, i);
         show_progress(c);
         if (!ok) return false;
     }
@@ -296,7 +285,7 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct answer *
     err_clear(&a->error);
     a->ok = w->crash && crash_text(w->crash, a->error.text, sizeof a->error.text);
     if (a->ok) {
-        a->result = refused_result(&a->error);
+        a->result = run_refused(&a->error);
         a->result.nrank = c->spec[a->index].nrank;
     } else if (WIFSIGNALED(status))
         err_set(&a->error, ERR_INTERNAL, "its worker process was killed by signal %d (%s)", WTERMSIG(status),
@@ -307,11 +296,10 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct answer *
     return start_worker(c, (int)(w - c->worker), e);
 }
 
-/* The answer of a worker that has one, or its death; then its next order, and what can be handed
- * over. */
+/* The answer of a worker that has one, or its death, into the slot of its run. The worker has no order then. */
 static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
 {
-    int index = w->busy;
+    const int index = w->busy;
     c->arena[index] = arena_create();
     c->slot[index] = TAKE(c->arena[index], 1, struct answer);
     if (!receive_answer(w->answers, c->slot[index], c->arena[index])) {
@@ -323,27 +311,73 @@ static bool take_answer(struct campaign *c, struct worker *w, struct err *e)
         if (!start_worker(c, (int)(w - c->worker), e)) return false;
     }
     CHECK(c->slot[index]->index == index);
-    give_order(c, w);
-    return hand_over(c);
+    w->busy = -1;
+    return true;
 }
 
-/* Until everything is handed over. poll skips workers without an order (fd -1). */
+/* Wait for workers with an order, `us` at most; poll skips the others (fd -1). */
+static bool wait_for_answers(struct campaign *c, struct pollfd *p, int64_t us, struct err *e)
+{
+    const struct timespec most = {us / 1000000, us % 1000000 * 1000};
+    for (int i = 0; i < c->nworker; i++)
+        p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
+    if (ppoll(p, (nfds_t)c->nworker, &most, NULL) >= 0) return true;
+    for (int i = 0; i < c->nworker; i++) p[i].revents = 0;
+    return errno == EINTR || err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
+}
+
+/* Until everything is handed over. */
 static bool serve(struct campaign *c, struct err *e)
 {
     for (int i = 0; i < c->nworker; i++) give_order(c, &c->worker[i]);
     while (c->handed < c->nspec) {
         struct pollfd p[MOST_WORKERS];
-        for (int i = 0; i < c->nworker; i++)
-            p[i] = (struct pollfd){.fd = c->worker[i].busy >= 0 ? c->worker[i].answers : -1, .events = POLLIN};
-        if (poll(p, (nfds_t)c->nworker, HEARTBEAT_MS) < 0) {
-            if (errno != EINTR) return err_set(e, ERR_INTERNAL, "poll: %s", strerror(errno));
-            continue;
-        }
+        if (!wait_for_answers(c, p, HEARTBEAT_US, e)) return false;
         show_progress(c);
-        for (int i = 0; i < c->nworker; i++)
-            if (p[i].fd >= 0 && p[i].revents && !take_answer(c, &c->worker[i], e)) return false;
+        for (int i = 0; i < c->nworker; i++) {
+            if (p[i].fd < 0 || !p[i].revents) continue;
+            if (!take_answer(c, &c->worker[i], e)) return false;
+            give_order(c, &c->worker[i]);
+            if (!hand_over(c)) return false;
+        }
     }
     return true;
+}
+
+/* Give runs of the dealer to idle workers. Returns how many are busy then; *active when one was given. */
+static int deal(struct campaign *c, const struct run_dealer *d, bool *more, bool *active)
+{
+    int busy = 0;
+    for (int i = 0; i < c->nworker; i++) {
+        if (c->worker[i].busy < 0 && *more) {
+            const int index = d->next(d->context);
+            *more = index != RUN_NO_MORE;
+            if (index >= 0) give_run(&c->worker[i], index), *active = true;
+        }
+        busy += c->worker[i].busy >= 0;
+    }
+    return busy;
+}
+
+/* Until the dealer has no more. It must be asked again and again, as its news come by another way than pipes: often
+ * while something happens, ever less often while nothing does. */
+static bool serve_stream(struct campaign *c, const struct run_dealer *d, struct err *e)
+{
+    int64_t pause = LEAST_PAUSE_US;
+    for (bool more = true;;) {
+        bool active = false;
+        if (!d->attend(d->context, &active, e)) return false;
+        if (deal(c, d, &more, &active) == 0 && !more) return true;
+        struct pollfd p[MOST_WORKERS];
+        pause = active ? LEAST_PAUSE_US : pause < MOST_PAUSE_US ? 2 * pause : MOST_PAUSE_US;
+        if (!wait_for_answers(c, p, pause, e)) return false;
+        for (int i = 0; i < c->nworker; i++) {
+            if (p[i].fd < 0 || !p[i].revents) continue;
+            const int index = c->worker[i].busy;
+            pause = LEAST_PAUSE_US;
+            if (!take_answer(c, &c->worker[i], e) || !hand_one(c, index)) return false;
+        }
+    }
 }
 
 /* After a failure workers are killed; otherwise they end by themselves when their pipes close.
@@ -384,7 +418,8 @@ static bool run_here(struct campaign *c)
     return ok;
 }
 
-static bool run_workers(struct campaign *c, int workers, struct err *e)
+/* On `workers` processes, in plan order, or as `dealer` (NULL: nobody) says. */
+static bool run_workers(struct campaign *c, int workers, const struct run_dealer *dealer, struct err *e)
 {
     c->slot = memory_zeroed((size_t)c->nspec, sizeof *c->slot);
     c->arena = memory_zeroed((size_t)c->nspec, sizeof *c->arena);
@@ -392,7 +427,8 @@ static bool run_workers(struct campaign *c, int workers, struct err *e)
     signal(SIGPIPE, SIG_IGN);
     bool ok = true;
     while (ok && c->nworker < workers) ok = start_worker(c, c->nworker, e);
-    ok = ok && hand_over(c) && serve(c, e);
+    if (dealer) ok = ok && serve_stream(c, dealer, e);
+    else ok = ok && hand_over(c) && serve(c, e);
     stop_workers(c, !ok);
     /* results that were never handed over */
     for (int i = 0; i < c->nspec; i++) arena_destroy(c->arena[i]);
@@ -428,8 +464,16 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
     if (!quiet) c.heartbeat = heartbeats_make();
     if (c.heartbeat && workers <= 1 && !apart) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
-    bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, e);
+    bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);
     progress_end(&c.progress);
     if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
     return ok;
+}
+
+bool run_stream(const struct run_spec *spec, const struct run_order *order, int nspec, int workers,
+                const struct run_dealer *dealer, struct err *e)
+{
+    struct campaign c = {
+        .spec = spec, .order = order, .nspec = nspec, .done = dealer->done, .context = dealer->context};
+    return run_workers(&c, workers < MOST_WORKERS ? workers : MOST_WORKERS, dealer, e);
 }

@@ -68,4 +68,22 @@ typedef bool run_done_fn(void *context, const struct run_spec *spec, const struc
 bool run_campaign(const struct run_spec *spec, const struct run_order *order, int nspec, const bool *skip, int workers,
                   bool quiet, run_done_fn *done, void *context, struct err *e);
 
+/* run_refused: what a run that could not be made leaves: its status, and why. */
+struct run_result run_refused(const struct err *why);
+
+/* Somebody who deals out runs, one at a time. */
+enum { RUN_LATER = -1, RUN_NO_MORE = -2 };
+struct run_dealer {
+    int (*next)(void *context); /* the number of the next run; RUN_LATER: none now; RUN_NO_MORE: none any more */
+    /* attend: called again and again while runs are made; *active when there was something to do. False with the error
+     * set stops all. */
+    bool (*attend)(void *context, bool *active, struct err *e);
+    run_done_fn *done; /* called when a result is there, in any order */
+    void *context;
+};
+
+/* run_stream: as run_campaign, of the runs that `dealer` names, each once and each in a worker process. */
+bool run_stream(const struct run_spec *spec, const struct run_order *order, int nspec, int workers,
+                const struct run_dealer *dealer, struct err *e);
+
 #endif

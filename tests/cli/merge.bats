@@ -1,22 +1,10 @@
 # merge.bats - a plan shared by several hosts: shards, single points, and their databases joined.
 load helper
+load campaigns
 
 scenario() {
     printf '%s\n' 'schema_version: 1' 'question: Many?' 'machine: [t3e-300, paragon]' 'model: {generator: serial-chain}' \
         'n: [4, 8, 16]' 'ranks: 4' 'level: [loggp, link]' 'kernel: dynamics' 'record: {spans: true}' >own.yaml
-}
-
-# rows DB: everything of every run that the host's clock and the order of insertion do not decide.
-rows() {
-    sql "$1" "SELECT config_hash, seed, rep, kernel, machine, n, P, status, digest, makespan_ps, messages, config_text FROM run
-        ORDER BY config_hash, rep"
-    for table in stage rank_stage baseline error_check span run_omission; do
-        columns=$(sql "$1" "SELECT group_concat('t.\"' || name || '\"', ', ') FROM pragma_table_info('$table')
-            WHERE name <> 'run_id'")
-        sql "$1" "SELECT '$table', r.config_hash, $columns FROM $table t JOIN run r ON r.id = t.run_id" | sort
-    done
-    sql "$1" "SELECT r.config_hash, s.key, s.value FROM run_setting JOIN run r ON r.id = run_id
-        JOIN setting s ON s.id = setting_id ORDER BY 1, 2"
 }
 
 @test "shards share a plan without overlap, and merged they are the undisturbed database, row by row" {

@@ -1,0 +1,147 @@
+/* campaign_mpi.c - see campaign_mpi.h.
+ *
+ * Every process reads the plan by itself; nothing of it travels but a digest. What depends on the
+ * database, which only the first process has, is sent: the levels of 'auto-tolerance'. */
+#include "app/campaign_mpi.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/check.h"
+#include "base/digest.h"
+#include "base/text.h"
+#include "run/campaign_hosts.h"
+#include "store/build.h"
+#include "study/level_choice.h"
+
+enum { TAG_LEVELS = 100 }; /* apart from those of run/campaign_hosts.c */
+
+/* A wrong option would be told once by each process. */
+static int silence(void)
+{
+    const int kept = dup(STDERR_FILENO), null = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (kept >= 0 && null >= 0) dup2(null, STDERR_FILENO);
+    if (null >= 0) close(null);
+    return kept;
+}
+
+bool job_open(struct job *j, const char *campaign, struct err *e)
+{
+    *j = (struct job){.kept = -1};
+    if (campaign == NULL) return true;
+    if (strcmp(campaign, "mpi") != 0)
+        return err_set(e, ERR_USAGE, "--campaign '%.40s': expected mpi", campaign);
+    if (!hosts_open(&j->h, e)) return false;
+    j->on = true;
+    if (j->h.rank > 0) j->kept = silence();
+    return true;
+}
+
+void job_heard(struct job *j, struct common *c)
+{
+    if (j->kept >= 0) {
+        dup2(j->kept, STDERR_FILENO);
+        close(j->kept);
+        j->kept = -1;
+    }
+    if (j->h.rank > 0) c->quiet = true;
+}
+
+static uint64_t mix_text(uint64_t h, const char *s)
+{
+    for (; *s != '\0'; s++) h = digest_mix(h, (unsigned char)*s);
+    return digest_mix(h, 0);
+}
+
+/* Of the build, whose results travel as bytes, and of the runs with their order. */
+static int64_t digest_of(const struct plan *p)
+{
+    const struct build b = store_build();
+    uint64_t h = mix_text(mix_text(mix_text(DIGEST_START, b.git), b.compiler), b.flags);
+    for (int i = 0; i < p->nrun; i++)
+        h = digest_mix(mix_text(h, p->run[i].config_hash), (uint64_t)p->run[i].rep);
+    return (int64_t)h;
+}
+
+/* Every process learns how all the others fare, so that all go on or none does. */
+bool job_agree(struct job *j, const struct plan *p, bool ok, struct err *e)
+{
+    if (!j->on) return ok;
+    const int64_t mine[2] = {ok, ok ? digest_of(p) : 0};
+    int64_t *all = calloc((size_t)j->h.size, sizeof mine);
+    CHECK(all != NULL);
+    if (!j->h.call->gather(mine, 2, all))
+        ok = err_set(e, ERR_INTERNAL, "%s cannot reach all processes", j->h.call->library);
+    /* All come to the same verdict. The first process tells its own error, or which other one
+     * has one. */
+    bool equal = true;
+    for (int i = 0; i < j->h.size; i++) {
+        const bool same = all[2 * i] != 0 && all[2 * i + 1] == all[1];
+        if (equal && !same && i > 0 && j->h.rank == 0)
+            ok = err_set(e, ERR_DATA,
+                         all[2 * i] == 0 ? "process %d of the job could not read the plan"
+                                         : "process %d of the job has another plan or another "
+                                           "build of this program",
+                         i);
+        equal = equal && same;
+    }
+    /* What went wrong on all is told once. */
+    if (j->h.rank > 0 && all[0] == 0) err_clear(e);
+    j->agreed = equal;
+    free(all);
+    return ok && equal;
+}
+
+/* The levels that the first process has settled, -1 where the plan's own holds. */
+static bool share_levels(const struct job *j, const struct plan *p, struct run_spec *run,
+                         struct err *e)
+{
+    int *level = calloc((size_t)p->nrun, sizeof *level);
+    const size_t bytes = (size_t)p->nrun * sizeof *level;
+    struct hosts_message m;
+    bool there, ok = true;
+    CHECK(level != NULL);
+    for (int i = 0; i < p->nrun; i++) {
+        const enum network_level l = run[i].machine.network.level;
+        level[i] = l == p->run[i].machine.network.level ? -1 : (int)l;
+    }
+    for (int i = 1; j->h.rank == 0 && i < j->h.size; i++)
+        ok = ok && j->h.call->send(i, TAG_LEVELS, level, bytes);
+    if (j->h.rank > 0)
+        ok = j->h.call->look(0, TAG_LEVELS, true, &there, &m) && m.bytes == bytes &&
+             j->h.call->receive(&m, level);
+    for (int i = 0; ok && j->h.rank > 0 && i < p->nrun; i++) {
+        if (level[i] < 0) continue;
+        struct level_choice unused;
+        struct level_error taken = {.error = 0};
+        const char *name = network_level_name((enum network_level)level[i]);
+        text_copy(taken.level, sizeof taken.level, name);
+        level_take(&run[i], &taken, &unused, p->arena);
+    }
+    free(level);
+    return ok || err_set(e, ERR_INTERNAL, "%s cannot reach all processes", j->h.call->library);
+}
+
+bool job_run(struct job *j, const struct plan *p, struct run_spec *run,
+             const struct run_order *order, const bool *skip, const struct common *c,
+             run_done_fn *done, void *context, struct err *e)
+{
+    j->started = true;
+    return share_levels(j, p, run, e) &&
+           run_campaign_hosts(&j->h, run, order, p->nrun, skip, c->jobs > 0 ? c->jobs : 1, c->quiet,
+                              done, context, &j->gone, e);
+}
+
+int job_end(struct job *j, int status)
+{
+    if (!j->on) return status;
+    /* Those that wait for the first process, or for one that has gone, would wait for ever. */
+    if (j->h.rank == 0 && (j->gone > 0 || (j->agreed && !j->started))) {
+        fflush(stdout);
+        j->h.call->abort(status);
+    }
+    j->h.call->end();
+    return status;
+}
