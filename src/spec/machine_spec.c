@@ -9,6 +9,7 @@
 
 #include "base/size.h"
 #include "comm/collective_rules.h"
+#include "spec/machine_idle.h"
 #include "spec/spec_fields.h"
 
 #define AT(member) .offset = offsetof(struct machine_spec, member)
@@ -33,179 +34,6 @@ static const char *const barriers[] = {"software", "hardware", NULL};
 static const char *const placements[] = {"linear", "snake", "gray", "random", "list", NULL};
 static const char *const spreads[] = {"block", "cyclic", NULL};
 
-/* Why a setting cannot act on this machine, as a clause; NULL when it acts. */
-static const char *idle_with_own_nodes(const struct run_spec *r)
-{
-    return topology_has(r->machine.topology.family, TOPOLOGY_OWN_NODES)
-               ? "topology.dims says how many nodes a router has"
-               : NULL;
-}
-
-static const char *idle_without_links(const struct run_spec *r)
-{
-    return topology_has(r->machine.topology.family, TOPOLOGY_NO_LINKS) ? "the topology has no links between routers"
-                                                                       : NULL;
-}
-
-static const char *idle_unless_ring(const struct run_spec *r)
-{
-    return topology_has(r->machine.topology.family, TOPOLOGY_RINGS) ? NULL
-                                                                    : "only a torus has two equally long ways round";
-}
-
-static const char *idle_unless_dragonfly(const struct run_spec *r)
-{
-    bool chooses = topology_has(r->machine.topology.family, TOPOLOGY_CHOOSES);
-    return chooses ? NULL : "only dragonflies and fat trees choose their routing";
-}
-
-static const char *idle_unless_hypercube(const struct run_spec *r)
-{
-    return topology_has(r->machine.topology.family, TOPOLOGY_CUBE) ? NULL : "only a hypercube has Xpress links";
-}
-
-static const char *idle_unless_graph(const struct run_spec *r)
-{
-    return topology_has(r->machine.topology.family, TOPOLOGY_LISTED)
-               ? NULL
-               : "only family 'graph' takes its links from the file";
-}
-
-static const char *idle_unless_tolerance(const struct run_spec *r)
-{
-    return r->machine.network.level == LEVEL_AUTO_TOLERANCE ? NULL : "network.level is not 'auto-tolerance'";
-}
-
-/* Packets, flits and buffers: what only the levels that know them can use. On the others a message
- * is one unit whose flits follow at the rate of the slowest resource. */
-static const char *idle_above_packets(const struct run_spec *r)
-{
-    enum network_level level = r->machine.network.level;
-    if (level == LEVEL_LOGGP) return "level 'loggp' moves whole messages";
-    return level == LEVEL_LINK ? "level 'link' moves whole messages" : NULL;
-}
-
-static const char *idle_unless_server(const struct run_spec *r)
-{
-    return r->machine.software.kernel_server ? NULL : "software.kernel.server is off";
-}
-
-static const char *idle_with_segments(const struct run_spec *r)
-{
-    return r->machine.software.nsegment > 0 ? "software.segments says it by size" : NULL;
-}
-
-/* Numbers that every segment gives itself: then the one for all sizes is never used. `number` is
- * the place of the number in a segment, -1 there means not given. */
-static const char *idle_if_given(const struct run_spec *r, size_t number)
-{
-    const struct software_spec *s = &r->machine.software;
-    for (int i = 0; i < s->nsegment; i++)
-        if (*(const double *)(const void *)((const char *)&s->segment[i] + number) < 0) return NULL;
-    return s->nsegment > 0 ? "every segment of software.segments gives its own" : NULL;
-}
-
-static const char *idle_send_overhead(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, send_overhead));
-}
-
-static const char *idle_send_copy(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, send_copy));
-}
-
-static const char *idle_recv_overhead(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, recv_overhead));
-}
-
-static const char *idle_recv_copy(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, recv_copy));
-}
-
-static const char *idle_gap(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, gap));
-}
-
-static const char *idle_gap_per_byte(const struct run_spec *r)
-{
-    return idle_if_given(r, offsetof(struct software_segment, gap_per_byte));
-}
-
-/* A handshake needs a limit, or a segment that shakes hands without saying how long. */
-static const char *idle_unless_eager_limit(const struct run_spec *r)
-{
-    if (r->machine.software.nsegment > 0) {
-        const struct software_segment *s = r->machine.software.segment;
-        bool used = false;
-        for (int i = 0; i < r->machine.software.nsegment; i++)
-            used = used || (s[i].protocol != PROTOCOL_EAGER && s[i].rendezvous_latency < 0);
-        return used ? NULL : "no segment of software.segments takes it";
-    }
-    return r->machine.software.eager_bytes >= 0 ? NULL : "software.eager.limit is unlimited: no message shakes hands";
-}
-
-static const char *idle_unless_short(const struct run_spec *r)
-{
-    if (r->machine.software.nsegment > 0) return idle_with_segments(r);
-    return r->machine.software.short_bytes > 0 ? NULL : "software.short.limit is 0: no message is short";
-}
-
-static const char *idle_unless_hardware_barrier(const struct run_spec *r)
-{
-    return r->machine.software.barrier == BARRIER_HARDWARE ? NULL : "software.barrier.kind is not 'hardware'";
-}
-
-static const char *idle_unless_shared(const struct run_spec *r)
-{
-    return r->machine.software.shared_bandwidth > 0 ? NULL : "software.shared.bandwidth is 0: no channel within a node";
-}
-
-static const char *idle_unless_several(const struct run_spec *r)
-{
-    return r->machine.topology.processors_per_node > 1 ? NULL : "a node has one processor";
-}
-
-static const char *idle_unless_shared_node(const struct run_spec *r)
-{
-    const char *why = idle_unless_several(r);
-    return why != NULL ? why : idle_unless_shared(r);
-}
-
-static const char *idle_unless_random(const struct run_spec *r)
-{
-    return r->machine.placement.kind == PLACEMENT_RANDOM ? NULL : "placement.kind is not 'random'";
-}
-
-static const char *idle_unless_list(const struct run_spec *r)
-{
-    return r->machine.placement.kind == PLACEMENT_LIST ? NULL : "placement.kind is not 'list'";
-}
-
-static const char *idle_at_loggp(const struct run_spec *r)
-{
-    return r->machine.network.level != LEVEL_LOGGP ? NULL : "network.level 'loggp' has no links that other jobs take";
-}
-
-static const char *idle_unless_background(const struct run_spec *r)
-{
-    return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
-}
-
-static const char *idle_in_programs(const struct run_spec *r)
-{
-    (void)r;
-    return "no program puts or gets; `mimdsim validate` does";
-}
-
-static const char *idle_without_collectives(const struct run_spec *r)
-{
-    return kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE) ? NULL : "this kernel calls no collective that it chooses";
-}
-
 static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
      .doc = "the name of its file"},
@@ -224,29 +52,29 @@ static const struct field fields[] = {
             "dragonfly: [terminals per router, routers per group, global links per router, groups]; others: [routers]"},
     {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH, AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
-     .idle = idle_without_links,
+     .idle = machine_idle_without_links,
      .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; dragonfly: local, global; "
             "hypercube: cube, Xpress), 0: network.link.bandwidth"},
     {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1, .max = 4096,
-     .fallback = "1", .idle = idle_with_own_nodes, .doc = "nodes on each router"},
+     .fallback = "1", .idle = machine_idle_with_own_nodes, .doc = "nodes on each router"},
     {.key = "topology.processors_per_node", .kind = FIELD_INT, AT(topology.processors_per_node), .min = 1,
      .max = 4096, .fallback = "1", .doc = "processors that share a node's port to the network"},
     {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
-     .idle = idle_unless_ring, .doc = "direction at half the ring: always up, or up only from even coordinates"},
+     .idle = machine_idle_unless_ring, .doc = "direction at half the ring: always up, or up only from even coordinates"},
     {.key = "topology.routing", .kind = FIELD_CHOICE, AT(topology.routing), .choice = routings,
-     .fallback = "minimal", .idle = idle_unless_dragonfly,
+     .fallback = "minimal", .idle = machine_idle_unless_dragonfly,
      .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
-     .idle = idle_unless_hypercube,
+     .idle = machine_idle_unless_hypercube,
      .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 dimensions on "
             "one to the opposite "
             "router"},
     /* Family graph: the file lists every cable. */
     {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
-     .max = 1 << 24, .fallback = "[]", .idle = idle_unless_graph, .doc = "graph: router pairs, each "
+     .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_graph, .doc = "graph: router pairs, each "
                                                                          "connected in both directions"},
     {.key = "topology.link_percent", .kind = FIELD_INT_LIST, AT(topology.link_percent), COUNT(topology.nlink_percent),
-     .min = 1, .max = 1000000, .fallback = "[]", .idle = idle_unless_graph,
+     .min = 1, .max = 1000000, .fallback = "[]", .idle = machine_idle_unless_graph,
      .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there and back of each"},
 
     /* What computing costs: counts by class times these (machine/node_cost.c). Rates are those
@@ -277,7 +105,7 @@ static const struct field fields[] = {
     {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels, .fallback = "link",
      .doc = "detail of the network model; 'auto-tolerance 2%': the cheapest level within 2%"},
     {.key = "network.tolerance", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(network.tolerance), .min = 0, .max = 1,
-     .fallback = "2 %", .idle = idle_unless_tolerance,
+     .fallback = "2 %", .idle = machine_idle_unless_tolerance,
      .doc = "level 'auto-tolerance': permitted relative error of the makespan"},
     {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.link_bandwidth),
      .min = 0, .max = 1e15, .doc = "payload rate of one link and direction, 0: unlimited (loggp and link only)"},
@@ -291,12 +119,12 @@ static const struct field fields[] = {
     {.key = "network.end_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.end_latency), .min = 0,
      .max = 1, .fallback = "0 s", .doc = "time in the network interfaces, entry and exit together"},
     {.key = "network.credit_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.credit_latency), .min = 0,
-     .max = 1, .fallback = "0 s", .idle = idle_above_packets, .doc = "time until a freed buffer is known upstream"},
+     .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets, .doc = "time until a freed buffer is known upstream"},
     {.key = "network.routing_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.routing_latency), .min = 0,
-     .max = 1, .fallback = "0 s", .idle = idle_above_packets,
+     .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets,
      .doc = "part of hop_latency: route of a head at the front of its buffer"},
     {.key = "network.vc_allocation_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.vc_allocation_latency),
-     .min = 0, .max = 1, .fallback = "0 s", .idle = idle_above_packets,
+     .min = 0, .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets,
      .doc = "part of hop_latency: a free virtual channel for a head"},
     /* Sizes on the wire: a packet is header and payload in whole flits. */
     {.key = "network.flit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.flit_bytes), .min = 1, .max = 1 << 20,
@@ -308,47 +136,47 @@ static const struct field fields[] = {
      .max = 1 << 20, .fallback = "0 B", .doc = "header added to each packet on the wire"},
     /* Buffers and arbitration of routers: levels packet, flit and auto. */
     {.key = "network.virtual_channels", .kind = FIELD_INT, AT(network.virtual_channels), .min = 1, .max = 64,
-     .fallback = "1", .idle = idle_above_packets, .doc = "virtual channels per link and direction, all "
+     .fallback = "1", .idle = machine_idle_above_packets, .doc = "virtual channels per link and direction, all "
                                                          "classes together"},
     {.key = "network.buffer", .kind = FIELD_INT, AT(network.buffer_flits), .min = 1, .max = 1 << 24, .fallback = "16",
-     .idle = idle_above_packets, .doc = "flits that a virtual channel can hold"},
+     .idle = machine_idle_above_packets, .doc = "flits that a virtual channel can hold"},
     {.key = "network.arbitration", .kind = FIELD_CHOICE, AT(network.arbitration), .choice = arbitrations,
-     .fallback = "round-robin", .idle = idle_above_packets, .doc = "arbitration between messages that wait "
+     .fallback = "round-robin", .idle = machine_idle_above_packets, .doc = "arbitration between messages that wait "
                                                                    "for the same link"},
 
     /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
      * with sizes that change the protocol. */
     {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.send_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_send_overhead, .doc = "processor time to send a message (LogGP's o)"},
+     .max = 10, .fallback = "0 s", .idle = machine_idle_send_overhead, .doc = "processor time to send a message (LogGP's o)"},
     {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.send_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .idle = idle_send_copy, .doc = "processor time per byte sent"},
+     .max = 1, .fallback = "0 s/B", .idle = machine_idle_send_copy, .doc = "processor time per byte sent"},
     {.key = "software.recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.recv_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_recv_overhead, .doc = "processor time to receive a message"},
+     .max = 10, .fallback = "0 s", .idle = machine_idle_recv_overhead, .doc = "processor time to receive a message"},
     {.key = "software.recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.recv_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .idle = idle_recv_copy, .doc = "processor time per byte received"},
+     .max = 1, .fallback = "0 s/B", .idle = machine_idle_recv_copy, .doc = "processor time per byte received"},
     {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0, .max = 10,
-     .fallback = "0 s", .idle = idle_gap, .doc = "least time between two messages of one node (LogGP's g)"},
+     .fallback = "0 s", .idle = machine_idle_gap, .doc = "least time between two messages of one node (LogGP's g)"},
     {.key = "software.gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.gap_per_byte),
      .min = 0, .max = 1, .fallback = "0 s/B",
-     .idle = idle_gap_per_byte, .doc = "time per byte of interface and protocol (LogGP's G); the slower of "
+     .idle = machine_idle_gap_per_byte, .doc = "time per byte of interface and protocol (LogGP's G); the slower of "
                                        "this and the wire counts"},
     /* The classic protocol: short, eager and rendezvous messages by two limits. */
     {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.short_bytes), .min = 0,
-     .max = 1 << 30, .fallback = "0 B", .idle = idle_with_segments, .doc = "messages up to this size are short"},
+     .max = 1 << 30, .fallback = "0 B", .idle = machine_idle_with_segments, .doc = "messages up to this size are short"},
     {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.short_saving), .min = 0,
-     .max = 1, .fallback = "0 s", .idle = idle_unless_short, .doc = "send overhead that a short message does not have"},
+     .max = 1, .fallback = "0 s", .idle = machine_idle_unless_short, .doc = "send overhead that a short message does not have"},
     {.key = "software.short.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.short_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .idle = idle_unless_short,
+     .max = 1, .fallback = "0 s/B", .idle = machine_idle_unless_short,
      .doc = "receiver's time per byte of a short message, in addition to software.recv.copy"},
     {.key = "software.eager.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.eager_bytes), .min = -1,
-     .max = 1e15, .fallback = "unlimited", .idle = idle_with_segments,
+     .max = 1e15, .fallback = "unlimited", .idle = machine_idle_with_segments,
      .doc = "longer messages use the rendezvous protocol (handshake first)"},
     {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.eager_copy), .min = 0,
      .max = 1, .fallback = "0 s/B",
-     .idle = idle_with_segments,
+     .idle = machine_idle_with_segments,
      .doc = "receiver's time per byte of an eager message that is not short, added to software.recv.copy"},
     {.key = "software.rendezvous.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.rendezvous_latency),
-     .min = 0, .max = 10, .fallback = "0 s", .idle = idle_unless_eager_limit,
+     .min = 0, .max = 10, .fallback = "0 s", .idle = machine_idle_unless_eager_limit,
      .doc = "software time added by the handshake"},
     {.key = "software.segments", .kind = FIELD_SEGMENTS, AT(software.segment), COUNT(software.nsegment),
      .capacity = SOFTWARE_MAX_SEGMENTS, .fallback = "[]",
@@ -358,50 +186,50 @@ static const struct field fields[] = {
     {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server), .fallback = "false",
      .doc = "both ends of every message pass one server of the whole machine (TCP loopback)"},
     {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_unless_server, .doc = "service time of this server per message end"},
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_server, .doc = "service time of this server per message end"},
     {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.kernel_per_byte),
-     .min = 0, .max = 1, .fallback = "0 s/B", .idle = idle_unless_server, .doc = "service time of this "
+     .min = 0, .max = 1, .fallback = "0 s/B", .idle = machine_idle_unless_server, .doc = "service time of this "
                                                                                  "server per byte"},
     {.key = "software.collectives", .kind = FIELD_TEXT, AT(software.collectives), .capacity = 512, .fallback = "",
-     .valid = collective_rules_valid, .idle = idle_without_collectives,
+     .valid = collective_rules_valid, .idle = machine_idle_without_collectives,
      .doc = "algorithms that the message software selects: 'allreduce ring from 64 KiB on 8 ranks; ...', the last that "
             "matches counts; else MPICH's choice (docs/collectives.md)"},
     /* Barriers, one-sided transfers, and the channel between processors of one node. */
     {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
      .fallback = "software", .doc = "barrier by messages or by hardware"},
     {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_unless_hardware_barrier, .doc = "hardware barrier: time "
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_hardware_barrier, .doc = "hardware barrier: time "
                                                                                 "from the last arrival to the release"},
     {.key = "software.put.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.put_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_in_programs,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_in_programs,
      .doc = "one-sided: time of a put in addition to the wire, 0: not available"},
     {.key = "software.get.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.get_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_in_programs,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_in_programs,
      .doc = "one-sided: time of a get in addition to request and reply on the wire, 0: not available"},
     {.key = "software.shared.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.shared_latency), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = idle_unless_shared_node, .doc = "latency of the channel within a node"},
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_shared_node, .doc = "latency of the channel within a node"},
     {.key = "software.shared.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(software.shared_bandwidth),
-     .min = 0, .max = 1e15, .fallback = "0 B/s", .idle = idle_unless_several,
+     .min = 0, .max = 1e15, .fallback = "0 B/s", .idle = machine_idle_unless_several,
      .doc = "rate of the channel within a node, 0: such messages take the software path of the network"},
 
     /* Which rank runs where. */
     {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements, .fallback = "linear",
      .doc = "order in which ranks fill the nodes"},
     {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads, .fallback = "block",
-     .idle = idle_unless_several, .doc = "ranks on the processors of a node: fill one node first, or one "
+     .idle = machine_idle_unless_several, .doc = "ranks on the processors of a node: fill one node first, or one "
                                          "rank per node"},
-    {.key = "placement.seed", .kind = FIELD_SEED, AT(placement.seed), .fallback = "1", .idle = idle_unless_random,
+    {.key = "placement.seed", .kind = FIELD_SEED, AT(placement.seed), .fallback = "1", .idle = machine_idle_unless_random,
      .doc = "seed of the random order"},
     {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist), .min = 0,
-     .max = 1 << 30, .fallback = "[]", .idle = idle_unless_list, .doc = "processor of each rank"},
+     .max = 1 << 30, .fallback = "[]", .idle = machine_idle_unless_list, .doc = "processor of each rank"},
 
     /* What other jobs and the operating system take; seeded by the run. */
     {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
      .fallback = "0 %", .doc = "relative standard deviation of each computing time"},
     {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
-     .max = 0.95, .fallback = "0 %", .idle = idle_at_loggp, .doc = "share of each link used by other jobs"},
+     .max = 0.95, .fallback = "0 %", .idle = machine_idle_at_loggp, .doc = "share of each link used by other jobs"},
     {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(noise.background_bytes), .min = 1,
-     .max = 1 << 30, .fallback = "1024 B", .idle = idle_unless_background, .doc = "message size of these jobs"},
+     .max = 1 << 30, .fallback = "1024 B", .idle = machine_idle_unless_background, .doc = "message size of these jobs"},
 };
 
 const struct field_table machine_table = {

@@ -1,0 +1,196 @@
+/* machine_idle.c - why a setting of a machine has no effect in a run: the clause that its row of
+ * the field table names. */
+#include "spec/machine_idle.h"
+
+#include <stddef.h>
+
+#include "spec/run_spec.h"
+
+const char *machine_idle_with_own_nodes(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_OWN_NODES)
+               ? "topology.dims says how many nodes a router has"
+               : NULL;
+}
+
+const char *machine_idle_without_links(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_NO_LINKS)
+               ? "the topology has no links between routers"
+               : NULL;
+}
+
+const char *machine_idle_unless_ring(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_RINGS)
+               ? NULL
+               : "only a torus has two equally long ways round";
+}
+
+const char *machine_idle_unless_dragonfly(const struct run_spec *r)
+{
+    bool chooses = topology_has(r->machine.topology.family, TOPOLOGY_CHOOSES);
+    return chooses ? NULL : "only dragonflies and fat trees choose their routing";
+}
+
+const char *machine_idle_unless_hypercube(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_CUBE)
+               ? NULL
+               : "only a hypercube has Xpress links";
+}
+
+const char *machine_idle_unless_graph(const struct run_spec *r)
+{
+    return topology_has(r->machine.topology.family, TOPOLOGY_LISTED)
+               ? NULL
+               : "only family 'graph' takes its links from the file";
+}
+
+const char *machine_idle_unless_tolerance(const struct run_spec *r)
+{
+    return r->machine.network.level == LEVEL_AUTO_TOLERANCE
+               ? NULL
+               : "network.level is not 'auto-tolerance'";
+}
+
+/* Packets, flits and buffers: what only the levels that know them can use. On the others a message
+ * is one unit whose flits follow at the rate of the slowest resource. */
+const char *machine_idle_above_packets(const struct run_spec *r)
+{
+    enum network_level level = r->machine.network.level;
+    if (level == LEVEL_LOGGP) return "level 'loggp' moves whole messages";
+    return level == LEVEL_LINK ? "level 'link' moves whole messages" : NULL;
+}
+
+const char *machine_idle_unless_server(const struct run_spec *r)
+{
+    return r->machine.software.kernel_server ? NULL : "software.kernel.server is off";
+}
+
+const char *machine_idle_with_segments(const struct run_spec *r)
+{
+    return r->machine.software.nsegment > 0 ? "software.segments says it by size" : NULL;
+}
+
+/* Numbers that every segment gives itself: then the one for all sizes is never used. `number` is
+ * the place of the number in a segment, -1 there means not given. */
+static const char *idle_if_given(const struct run_spec *r, size_t number)
+{
+    const struct software_spec *s = &r->machine.software;
+    for (int i = 0; i < s->nsegment; i++)
+        if (*(const double *)(const void *)((const char *)&s->segment[i] + number) < 0) return NULL;
+    return s->nsegment > 0 ? "every segment of software.segments gives its own" : NULL;
+}
+
+const char *machine_idle_send_overhead(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, send_overhead));
+}
+
+const char *machine_idle_send_copy(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, send_copy));
+}
+
+const char *machine_idle_recv_overhead(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, recv_overhead));
+}
+
+const char *machine_idle_recv_copy(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, recv_copy));
+}
+
+const char *machine_idle_gap(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, gap));
+}
+
+const char *machine_idle_gap_per_byte(const struct run_spec *r)
+{
+    return idle_if_given(r, offsetof(struct software_segment, gap_per_byte));
+}
+
+/* A handshake needs a limit, or a segment that shakes hands without saying how long. */
+const char *machine_idle_unless_eager_limit(const struct run_spec *r)
+{
+    if (r->machine.software.nsegment > 0) {
+        const struct software_segment *s = r->machine.software.segment;
+        bool used = false;
+        for (int i = 0; i < r->machine.software.nsegment; i++)
+            used = used || (s[i].protocol != PROTOCOL_EAGER && s[i].rendezvous_latency < 0);
+        return used ? NULL : "no segment of software.segments takes it";
+    }
+    return r->machine.software.eager_bytes >= 0
+               ? NULL
+               : "software.eager.limit is unlimited: no message shakes hands";
+}
+
+const char *machine_idle_unless_short(const struct run_spec *r)
+{
+    if (r->machine.software.nsegment > 0) return machine_idle_with_segments(r);
+    return r->machine.software.short_bytes > 0 ? NULL
+                                               : "software.short.limit is 0: no message is short";
+}
+
+const char *machine_idle_unless_hardware_barrier(const struct run_spec *r)
+{
+    return r->machine.software.barrier == BARRIER_HARDWARE
+               ? NULL
+               : "software.barrier.kind is not 'hardware'";
+}
+
+static const char *idle_unless_shared(const struct run_spec *r)
+{
+    return r->machine.software.shared_bandwidth > 0
+               ? NULL
+               : "software.shared.bandwidth is 0: no channel within a node";
+}
+
+const char *machine_idle_unless_several(const struct run_spec *r)
+{
+    return r->machine.topology.processors_per_node > 1 ? NULL : "a node has one processor";
+}
+
+const char *machine_idle_unless_shared_node(const struct run_spec *r)
+{
+    const char *why = machine_idle_unless_several(r);
+    return why != NULL ? why : idle_unless_shared(r);
+}
+
+const char *machine_idle_unless_random(const struct run_spec *r)
+{
+    return r->machine.placement.kind == PLACEMENT_RANDOM ? NULL : "placement.kind is not 'random'";
+}
+
+const char *machine_idle_unless_list(const struct run_spec *r)
+{
+    return r->machine.placement.kind == PLACEMENT_LIST ? NULL : "placement.kind is not 'list'";
+}
+
+const char *machine_idle_at_loggp(const struct run_spec *r)
+{
+    return r->machine.network.level != LEVEL_LOGGP
+               ? NULL
+               : "network.level 'loggp' has no links that other jobs take";
+}
+
+const char *machine_idle_unless_background(const struct run_spec *r)
+{
+    return r->machine.noise.background_load > 0 ? NULL : "noise.background.load is 0";
+}
+
+const char *machine_idle_in_programs(const struct run_spec *r)
+{
+    (void)r;
+    return "no program puts or gets; `mimdsim validate` does";
+}
+
+const char *machine_idle_without_collectives(const struct run_spec *r)
+{
+    return kernel_spec_has(&r->kernel, PROGRAM_COLLECTIVE)
+               ? NULL
+               : "this kernel calls no collective that it chooses";
+}

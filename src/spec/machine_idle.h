@@ -1,0 +1,39 @@
+/* machine_idle.h - settings of a machine that have no effect in a given run.
+ *
+ * Every function below answers for the fields of machine_spec.c that name it: a clause that says
+ * why the setting cannot act in run r ("only a hypercube has Xpress links"), a constant text, or
+ * NULL when it acts. */
+#ifndef SPEC_MACHINE_IDLE_H
+#define SPEC_MACHINE_IDLE_H
+
+struct run_spec;
+
+const char *machine_idle_with_own_nodes(const struct run_spec *r);
+const char *machine_idle_without_links(const struct run_spec *r);
+const char *machine_idle_unless_ring(const struct run_spec *r);
+const char *machine_idle_unless_dragonfly(const struct run_spec *r);
+const char *machine_idle_unless_hypercube(const struct run_spec *r);
+const char *machine_idle_unless_graph(const struct run_spec *r);
+const char *machine_idle_unless_tolerance(const struct run_spec *r);
+const char *machine_idle_above_packets(const struct run_spec *r);
+const char *machine_idle_unless_server(const struct run_spec *r);
+const char *machine_idle_with_segments(const struct run_spec *r);
+const char *machine_idle_send_overhead(const struct run_spec *r);
+const char *machine_idle_send_copy(const struct run_spec *r);
+const char *machine_idle_recv_overhead(const struct run_spec *r);
+const char *machine_idle_recv_copy(const struct run_spec *r);
+const char *machine_idle_gap(const struct run_spec *r);
+const char *machine_idle_gap_per_byte(const struct run_spec *r);
+const char *machine_idle_unless_eager_limit(const struct run_spec *r);
+const char *machine_idle_unless_short(const struct run_spec *r);
+const char *machine_idle_unless_hardware_barrier(const struct run_spec *r);
+const char *machine_idle_unless_several(const struct run_spec *r);
+const char *machine_idle_unless_shared_node(const struct run_spec *r);
+const char *machine_idle_unless_random(const struct run_spec *r);
+const char *machine_idle_unless_list(const struct run_spec *r);
+const char *machine_idle_at_loggp(const struct run_spec *r);
+const char *machine_idle_unless_background(const struct run_spec *r);
+const char *machine_idle_in_programs(const struct run_spec *r);
+const char *machine_idle_without_collectives(const struct run_spec *r);
+
+#endif
