@@ -9,6 +9,7 @@
 
 #include "app/flag.h"
 #include "base/json.h"
+#include "measure/column.h"
 #include "plan/file_kind.h"
 #include "study/audit.h"
 #include "study/model_file.h"
@@ -31,38 +32,59 @@ static const char doc[] =
     "(default 1), and compares every stored number that does not depend on this computer, bit by "
     "bit. Each contradiction is printed with its run and rule; the exit status is then 1.";
 
-/* The contradictions that were found, as an array; at most AUDIT_KEPT of them. */
-static void print_findings(struct json *j, const struct audit_report *r)
+/* A contradiction in JSON. */
+#define FINDING(member) .offset = offsetof(struct audit_finding, member)
+static const struct column finding_column[] = {
+    {"rule", COLUMN_STRING, FINDING(rule), .doc = "that the rows break"},
+    {"run", COLUMN_INT64, FINDING(run), .doc = "its row in table run, 0: none"},
+    {"text", COLUMN_STRING, FINDING(text), .doc = "what contradicts what"},
+};
+static const struct column_table finding_columns = COLUMNS(finding_column);
+
+/* A database that could be read: the keys that common_error_json has for any file, and what was
+ * found. */
+struct audited {
+    const char *file, *kind, *text;
+    int exit_status, line;
+    const struct audit_report *report;
+};
+
+/* The contradictions that were found; at most AUDIT_KEPT of them. */
+static void json_findings(const struct column *c, const void *row, struct json *j)
 {
-    json_key(j, "findings");
-    json_array(j);
-    for (int i = 0; i < r->nfinding && i < AUDIT_KEPT; i++) {
-        json_object(j);
-        json_key_text(j, "rule", r->finding[i].rule);
-        json_key_int(j, "run", r->finding[i].run);
-        json_key_text(j, "text", r->finding[i].text);
-        json_end(j);
-    }
-    json_end(j);
+    (void)c;
+    const struct audit_report *r = ((const struct audited *)row)->report;
+    const int n = r->nfinding < AUDIT_KEPT ? (int)r->nfinding : AUDIT_KEPT;
+    columns_json_list(&finding_columns, r->finding, n, sizeof *r->finding, j);
 }
 
-/* The entry of a database that could be read: the keys that common_error_json has for any file,
- * and what was found. Keys are in the order of the alphabet. */
+#define AUDITED(member) .offset = offsetof(struct audited, member)
+#define REPORT(member)                                                                             \
+    .part = PART(struct audited, report), .offset = offsetof(struct audit_report, member)
+static const struct column audited_column[] = {
+    {"contradictions", COLUMN_INT64, REPORT(nfinding), .doc = "how many were found"},
+    {"exit_status", COLUMN_INT, AUDITED(exit_status), .doc = "of this file"},
+    {"file", COLUMN_STRING, AUDITED(file), .doc = "as it was named"},
+    {"findings", COLUMN_STRING, .json = json_findings, .doc = "the first contradictions"},
+    {"kind", COLUMN_STRING, AUDITED(kind), .doc = "of the error"},
+    {"line", COLUMN_INT, AUDITED(line), .doc = "of the error in the file, 0: none"},
+    {"made_again", COLUMN_INT, REPORT(nagain), .doc = "runs that were made again"},
+    {"not_made_again", COLUMN_INT, REPORT(nleft), .doc = "chosen runs that could not be"},
+    {"runs", COLUMN_INT64, REPORT(nrun), .doc = "in the database"},
+    {"text", COLUMN_STRING, AUDITED(text), .doc = "of the error"},
+};
+static const struct column_table audited_columns = COLUMNS(audited_column);
+
 static void print_database(struct json *j, const char *file, const struct err *e,
                            const struct audit_report *r)
 {
-    json_object(j);
-    json_key_int(j, "contradictions", r->nfinding);
-    json_key_int(j, "exit_status", err_exit_status(e->kind));
-    json_key_text(j, "file", file);
-    print_findings(j, r);
-    json_key_text(j, "kind", err_word(e->kind));
-    json_key_int(j, "line", e->line);
-    json_key_int(j, "made_again", r->nagain);
-    json_key_int(j, "not_made_again", r->nleft);
-    json_key_int(j, "runs", r->nrun);
-    json_key_text(j, "text", e->kind == ERR_NONE ? "" : e->text);
-    json_end(j);
+    const struct audited row = {.file = file,
+                                .kind = err_word(e->kind),
+                                .text = e->kind == ERR_NONE ? "" : e->text,
+                                .exit_status = err_exit_status(e->kind),
+                                .line = e->line,
+                                .report = r};
+    columns_json(&audited_columns, &row, j);
 }
 
 /* Steps of the message software that go down: a message that is faster than one a byte smaller.
@@ -90,8 +112,8 @@ static void tell_steps_down(const char *file)
         if (at < below)
             fprintf(stderr,
                     "%s: a message of %.0f B takes %.4g us, one of %.0f B only %.4g us: is this "
-                            "intended?\n", file,
-                    size - 1, below * 1e6, size, at * 1e6);
+                    "intended?\n",
+                    file, size - 1, below * 1e6, size, at * 1e6);
     }
     text_free(&path);
     arena_destroy(a);
