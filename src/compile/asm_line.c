@@ -4,23 +4,27 @@
 #include <ctype.h>
 #include <string.h>
 
+/* Names are compared whole. */
 bool span_is(struct span a, const char *s)
 {
     return (int)strlen(s) == a.n && memcmp(a.s, s, (size_t)a.n) == 0;
 }
 
+/* Prefixes of names: the sections and registers come in families. */
 bool span_starts(struct span a, const char *s)
 {
     const int n = (int)strlen(s);
     return n <= a.n && memcmp(a.s, s, (size_t)n) == 0;
 }
 
+/* memmem, as a span does not end in a zero. */
 int span_find(struct span a, const char *s)
 {
     const char *at = a.n > 0 ? memmem(a.s, (size_t)a.n, s, strlen(s)) : NULL;
     return at != NULL ? (int)(at - a.s) : -1;
 }
 
+/* What lies between the blanks at both ends. */
 static struct span trimmed(const char *s, const char *end)
 {
     while (s < end && isspace((unsigned char)*s)) s++;
@@ -60,6 +64,8 @@ static const char *skip_blank(const char *s, const char *end)
     return s;
 }
 
+/* Prefixes of x86-64 that assemblers take as words of their own (Intel SDM 2A, 2.1.1, and GNU
+ * as's names for those without a mnemonic). */
 static bool is_prefix(struct span w)
 {
     static const char *const prefix[] = {
@@ -70,6 +76,8 @@ static bool is_prefix(struct span w)
     return false;
 }
 
+/* One statement: a label, or a word with its operands, behind blanks and comments. What follows
+ * is left for the next call, as several statements may share a line. */
 struct asm_statement asm_next(const char **at, const char *end)
 {
     const char *s = skip_blank(*at, end);
@@ -104,6 +112,7 @@ struct asm_statement asm_next(const char **at, const char *end)
     return found;
 }
 
+/* Commas inside brackets belong to an address: 8(%rax,%rcx,4) is one operand. */
 struct span asm_operand(struct span operands, int i)
 {
     const char *s = operands.s, *end = operands.s + operands.n, *begin = s;

@@ -51,6 +51,7 @@ struct filter {
 
 /* --- sections --- */
 
+/* Quoted or not, so within the first two characters. */
 static bool is_debug_section(struct span key)
 {
     return span_find(key, ".debug_") >= 0 && span_find(key, ".debug_") < 2;
@@ -65,6 +66,7 @@ static bool is_code_section(struct span key)
            span_is(name, ".fini");
 }
 
+/* A file has few sections, so a list will do. */
 static struct section *section_named(struct filter *f, struct span key)
 {
     for (struct section *s = f->sections; s != NULL; s = s->next)
@@ -89,6 +91,7 @@ static void write_entries(struct filter *f)
     f->table.length = 0;
 }
 
+/* The block's entry in the table: where its counter's operand lies, and its counts. */
 static void close_block(struct filter *f)
 {
     const struct block_counts *c = &f->block.counts;
@@ -99,6 +102,8 @@ static void close_block(struct filter *f)
     f->block = (struct block){0};
 }
 
+/* The next instruction begins another block; reached tells whether control may come there from
+ * above. */
 static void leave_block(struct filter *f, bool reached)
 {
     close_block(f);
@@ -136,6 +141,8 @@ static bool change_section(struct filter *f, const struct asm_statement *s)
 
 /* --- the second pass --- */
 
+/* leaq keeps the flags, which the code around may still need; its 32-bit operand, 0 here, is
+ * written when the image is loaded and the machine is known. */
 static void begin_block(struct filter *f)
 {
     f->block.number = ++f->blocks;
@@ -146,6 +153,7 @@ static void begin_block(struct filter *f)
     text_add(f->out, "{disp32} leaq 0(%%r15), %%r15\n.Lmimdsim%d:\n", f->block.number);
 }
 
+/* Sums by class. */
 static void add_counts(struct block_counts *sum, const struct block_counts *c)
 {
     sum->instruction += c->instruction;
@@ -165,6 +173,7 @@ static bool is_in_sequence(const struct asm_statement *s)
            span_find(s->operands, "@tlsdesc") >= 0 || span_find(s->operands, "@tlscall") >= 0;
 }
 
+/* Code that nobody wrote in assembly has no line of its own; then the function must do. */
 static bool refuse_r15(struct filter *f)
 {
     static const char why[] =
@@ -200,6 +209,8 @@ static bool take_instruction(struct filter *f, const struct asm_statement *s)
     return true;
 }
 
+/* A label that something refers to may be jumped to: a block begins there. Others are ignored,
+ * so that the debugging information changes no count. */
 static void take_label(struct filter *f, struct span name)
 {
     const bool local = span_starts(name, ".L");
@@ -338,6 +349,7 @@ static void take_line_marker(struct filter *f, struct span line)
     f->file = (struct span){open + 1, (int)(close - open - 1)};
 }
 
+/* The second pass: every line is copied, with counters where blocks begin. */
 static bool write_text(struct filter *f, const struct text *in)
 {
     const char *stop = in->s + in->length;
@@ -388,6 +400,8 @@ static void add_quoted(struct text *out, struct span s)
     }
 }
 
+/* The note tells the loader's and the linker's checks that the object is counted, by which rules
+ * (BLOCK_TABLE_ABI), and from what it was made. Format: gABI, "Note Section". */
 void block_note(const struct block_source *source, const char *compiler, int n, struct text *out)
 {
     text_add(out, "\t.section " BLOCK_NOTE_SECTION ",\"a\",@note\n\t.balign 4\n");
@@ -400,6 +414,7 @@ void block_note(const struct block_source *source, const char *compiler, int n, 
     text_add(out, "\"\n.Lmimdsim_n1:\n\t.balign 4\n");
 }
 
+/* Text that has the note was filtered before, as when a make rule assembles what -S wrote. */
 bool block_filter(const struct text *in, const struct block_source *source, struct text *out,
                   struct err *e)
 {

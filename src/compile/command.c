@@ -42,6 +42,7 @@ static const char *const questions[] = {"-E",
                                         "--print-*",
                                         NULL};
 
+/* Endings by which gcc knows languages (its manual, "Overall Options"). */
 static const char *const assembly_endings[] = {"s", "S", "sx", NULL};
 static const char *const source_endings[] = {
     "c",   "i",   "ii",  "cc",  "cp",  "cxx", "cpp", "CPP", "c++", "C",   "f",   "for", "ftn", "F",
@@ -49,6 +50,7 @@ static const char *const source_endings[] = {
 static const char *const header_endings[] = {"h",   "H",   "hh",  "hp",  "hxx",
                                              "hpp", "HPP", "h++", "tcc", NULL};
 
+/* A word of the list that ends in '*' stands for all words that begin so. */
 static bool among(const char *word, const char *const *list)
 {
     for (; *list != NULL; list++) {
@@ -59,18 +61,21 @@ static bool among(const char *word, const char *const *list)
     return false;
 }
 
+/* Behind the last dot of the file's name; a dot in the name of a folder is none. */
 static const char *ending_of(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash != NULL ? slash : path, '.');
     return dot != NULL ? dot + 1 : "";
 }
 
+/* The language that -x names decides, whatever the file is called. */
 static bool is_assembly(const char *path, const char *language)
 {
     if (language != NULL) return strncmp(language, "assembler", 9) == 0;
     return among(ending_of(path), assembly_endings);
 }
 
+/* Options that cannot work here are refused with the reason, and not passed on to fail later. */
 static bool refuse(const char *word, struct err *e)
 {
     for (int i = 0; refused[i][0] != NULL; i++) {
@@ -93,6 +98,9 @@ struct reading {
     bool question, header;
 };
 
+/* What gcc would do with the file: compile it, or hand it to the linker. The word keeps its
+ * place on the link line, where the object's path replaces it, as the order of libraries matters
+ * there. */
 static void take_file(struct reading *r, const char *path)
 {
     struct command *c = r->c;
@@ -129,6 +137,8 @@ static bool take_stage(struct reading *r, const char *word, const char *value)
     return true;
 }
 
+/* The options of make's dependency files. They go to the compiler alone, as the names in them
+ * are made from the final output and not from the assembly in between. */
 static bool take_dependency(struct command *c, const char *word, const char *value)
 {
     if (strcmp(word, "-MD") == 0 || strcmp(word, "-MMD") == 0) c->writes_dependencies = true;
@@ -155,6 +165,8 @@ static bool take_linker_option(struct reading *r, const char *word, const char *
     return true;
 }
 
+/* Any other option is for every step that may know it: the compiler and the linker's gcc; what
+ * is marked for the assembler goes there alone. */
 static void take_option(struct reading *r, const char *word, const char *value)
 {
     struct command *c = r->c;
@@ -174,6 +186,7 @@ static void take_option(struct reading *r, const char *word, const char *value)
         text_add(&r->flags, "%s%s", r->flags.length > 0 ? " " : "", word);
 }
 
+/* A lone "-" is the standard input, which is a file. */
 static bool take_word(struct reading *r, const char *word, const char *value, struct err *e)
 {
     if (word[0] != '-' || word[1] == '\0') take_file(r, word);
@@ -185,6 +198,7 @@ static bool take_word(struct reading *r, const char *word, const char *value, st
     return true;
 }
 
+/* Reads the line as gcc does, left to right, and then decides what kind of line it was. */
 bool command_read(struct command *c, int n, const char *const *word, struct arena *a, struct err *e)
 {
     struct words all = {.arena = a};
@@ -197,10 +211,14 @@ bool command_read(struct command *c, int n, const char *const *word, struct aren
         fine = take_word(&r, all.word[i], takes_value ? all.word[i + 1] : NULL, e);
         i += takes_value;
     }
+    /* The flags are told in the note of each object, so that one compiled otherwise can be
+     * recognised. */
     c->flags = arena_text(a, r.flags.s != NULL ? r.flags.s : "");
     text_free(&r.flags);
     if (!fine) return false;
+    /* Questions, precompiled headers and lines without any file are gcc's own affair. */
     if (r.question || r.header || (c->nsource == 0 && !r.linker_input)) c->stage = COMMAND_PASS;
+    /* -c and -S make one output a source; -o names one only. */
     const bool single = c->stage == COMMAND_ASSEMBLY || c->stage == COMMAND_OBJECT;
     if (single && c->nsource == 0) c->stage = COMMAND_PASS; /* gcc says what is missing */
     if (single && c->output != NULL && c->nsource > 1)
@@ -209,6 +227,7 @@ bool command_read(struct command *c, int n, const char *const *word, struct aren
     return true;
 }
 
+/* As gcc does: in the working folder, with the source's name. */
 const char *command_default_output(const char *source, const char *ending, struct arena *a)
 {
     const char *slash = strrchr(source, '/'), *name = slash != NULL ? slash + 1 : source;
@@ -219,6 +238,8 @@ const char *command_default_output(const char *source, const char *ending, struc
     return output;
 }
 
+/* gcc would name the target and the file after what it writes, which is assembly on a pipe; so
+ * both are named here unless the user did. */
 void command_dependency_words(const struct command *c, int i, const char *object, struct words *w)
 {
     const char *source = c->source[i].path, *base = command_default_output(source, "d", w->arena),

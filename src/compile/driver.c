@@ -37,14 +37,14 @@ static const char *const forced[] = {"-ffixed-r15",
                                      "-fPIC",
                                      "-fno-semantic-interposition",
                                      "-fno-lto",
-                                     "-fno-ipa-ra", /* entries use what bodies leave alone */
+                                     "-fno-ipa-ra",
                                      "-masm=att",
                                      "-mstringop-strategy=libcall",
                                      "-fstack-clash-protection",
-                                     "-fasynchronous-unwind-tables",
-                                     "-fno-ipa-ra"};
+                                     "-fasynchronous-unwind-tables"};
 enum { FORCED = sizeof forced / sizeof forced[0] };
 
+/* A command line that begins with the compiler's own words. */
 static struct words new_words(struct driver *d)
 {
     struct words w = {.arena = d->arena};
@@ -52,6 +52,7 @@ static struct words new_words(struct driver *d)
     return w;
 }
 
+/* Three texts as one, in the driver's arena. */
 static const char *joined(struct driver *d, const char *a, const char *b, const char *c)
 {
     const size_t n = strlen(a) + strlen(b) + strlen(c) + 1;
@@ -121,6 +122,7 @@ static int read_assembly(struct driver *d, const struct command_source *s, int i
     return run(d, &w, NULL, assembly);
 }
 
+/* Assembly with the counters of its blocks. */
 static int filter(struct driver *d, const struct command_source *s, const struct text *in,
                   struct text *out)
 {
@@ -133,6 +135,7 @@ static int filter(struct driver *d, const struct command_source *s, const struct
     return FAILED;
 }
 
+/* For -S: to the file, or to standard output for "-". */
 static int write_text(struct driver *d, const char *path, const struct text *t)
 {
     const bool standard = strcmp(path, "-") == 0;
@@ -143,6 +146,7 @@ static int write_text(struct driver *d, const char *path, const struct text *t)
     return fine ? 0 : FAILED;
 }
 
+/* The counted assembly becomes an object without touching the disk in between. */
 static int assemble(struct driver *d, const struct text *assembly, const char *object)
 {
     struct words w = new_words(d);
@@ -171,6 +175,7 @@ static int compile(struct driver *d, int i, const char *output)
     return status;
 }
 
+/* With -c or -S: each source has an output of its own. */
 static int compile_all(struct driver *d)
 {
     const struct command *c = &d->command;
@@ -199,6 +204,7 @@ static int open_folder(struct driver *d)
     return FAILED;
 }
 
+/* Objects are numbered; the one behind the last source is the start code. */
 static void close_folder(struct driver *d, int objects)
 {
     char path[sizeof d->folder + 64];
@@ -243,7 +249,6 @@ static int add_image_words(struct driver *d, bool kernel, struct words *w)
     const char *start = joined(d, d->folder, number, ""), *library = d->places->library;
     struct text text = {0};
     start_text(&text, d->places->program, kernel);
-    struct words compiler = new_words(d);
     const int status = assemble(d, &text, start);
     text_free(&text);
     if (status != 0) return status;
@@ -254,7 +259,6 @@ static int add_image_words(struct driver *d, bool kernel, struct words *w)
     words_add(w, "-Wl,--whole-archive");
     words_add(w, joined(d, library, "/libmimdsim-guest.a", ""));
     words_add(w, "-Wl,--no-whole-archive");
-    (void)compiler;
     return 0;
 }
 
@@ -266,6 +270,8 @@ static int check_trace(struct driver *d, const struct text *trace, const char *o
     return FAILED;
 }
 
+/* A program becomes a shared image that the simulator loads once for each rank. The linker's
+ * trace, asked for twice so that it names members of archives, tells which objects it took. */
 static int link_image(struct driver *d)
 {
     const struct command *c = &d->command;
@@ -291,6 +297,7 @@ static int link_image(struct driver *d)
     return linked;
 }
 
+/* The folder goes whatever happens; the user's objects stay where they are. */
 static int compile_and_link(struct driver *d)
 {
     int status = open_folder(d);
@@ -336,6 +343,7 @@ static int pass_on(struct driver *d, int n, const char *const *word)
     return FAILED;
 }
 
+/* What the line asks for, by its stage; gcc's own status comes back where gcc failed. */
 int driver_run(enum driver_language language, int n, const char *const *word,
                const struct driver_places *places, struct err *e)
 {

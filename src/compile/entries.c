@@ -38,6 +38,8 @@ static struct span whole_function(struct span name)
     return cold > 0 ? (struct span){name.s, cold} : name;
 }
 
+/* By DWARF's number of a register or by its name; only the stack and the frame pointer are
+ * followed. */
 static struct frame frame_of(struct span reg, long offset)
 {
     const bool stack = span_is(reg, "7") || span_is(reg, "%rsp"),
@@ -45,6 +47,9 @@ static struct frame frame_of(struct span reg, long offset)
     return (struct frame){stack ? 's' : base ? 'b' : '?', offset};
 }
 
+/* The unwind directives say at each place where the frame of the caller begins (DWARF 5, 6.4;
+ * GNU as, "CFI directives"). Where they name another register nothing is known, and the function
+ * counts as one with arguments on the stack. */
 static void take_unwinding(struct entries *t, const struct asm_statement *s)
 {
     const struct span first = asm_operand(s->operands, 0), second = asm_operand(s->operands, 1);
@@ -77,6 +82,8 @@ static bool reaches_arguments(struct span operands, struct frame f)
     return begin < at && strtol(operands.s + begin, NULL, 10) >= f.offset;
 }
 
+/* Jumps, too: a tail call is a jump to a function, and its operand names it without taking its
+ * address. */
 static bool is_call(struct span mnemonic)
 {
     return span_starts(mnemonic, "call") || (mnemonic.n > 0 && mnemonic.s[0] == 'j');
@@ -95,6 +102,7 @@ static void put_names(struct label_set *set, struct span operands)
     }
 }
 
+/* What declares functions, and data that hold the addresses of some. */
 static void take_directive(struct entries *t, const struct asm_statement *s)
 {
     const struct span name = asm_operand(s->operands, 0);
@@ -110,6 +118,7 @@ static void take_directive(struct entries *t, const struct asm_statement *s)
         put_names(t->taken, s->operands);
 }
 
+/* Names in instructions that are no calls are addresses that the code takes. */
 static void take_statement(struct entries *t, const struct asm_statement *s)
 {
     if (s->kind == ASM_LABEL && !span_starts(s->word, ".L")) {
@@ -125,6 +134,8 @@ static void take_statement(struct entries *t, const struct asm_statement *s)
     }
 }
 
+/* A pass of its own before the filter's: a function may be named before and behind its
+ * definition. */
 struct entries *entries_find(const struct text *in, struct arena *a)
 {
     struct entries *t = TAKE(a, 1, struct entries);
@@ -141,6 +152,9 @@ struct entries *entries_find(const struct text *in, struct arena *a)
     return t;
 }
 
+/* Functions that somebody outside of this file may call get an entry: those with public names,
+ * and those whose address is taken. It needs unwind information, and no arguments on the stack,
+ * which the entry's frame would move. */
 bool entries_guarded(const struct entries *t, struct span name)
 {
     const bool known = label_set_has(t->global, name) || label_set_has(t->weak, name) ||
@@ -150,6 +164,7 @@ bool entries_guarded(const struct entries *t, struct span name)
            span_find(name, ".cold") < 0;
 }
 
+/* Calls from this file may go to the body, unless another definition of a weak function may win. */
 bool entries_direct(const struct entries *t, struct span name)
 {
     return entries_guarded(t, name) &&
@@ -184,6 +199,8 @@ static void write_landing_pad(int n, struct text *out)
              n, n, n, n, n);
 }
 
+/* The entry: saves the caller's register 15, calls the body with a count of 0, adds what was
+ * counted to the image's sum, and gives the register back. */
 static void write_code(const struct entries *t, struct span name, int n, struct text *out)
 {
     text_add(out, "%.*s:\n\t.cfi_startproc\n", name.n, name.s);
@@ -205,6 +222,7 @@ static void write_code(const struct entries *t, struct span name, int n, struct 
     text_add(out, "\t.cfi_endproc\n\t.size %.*s, .-%.*s\n", name.n, name.s, name.n, name.s);
 }
 
+/* The body takes over the function's old text under a name of its own, hidden from other images. */
 void entries_write(struct entries *t, struct span name, struct text *out)
 {
     const int n = name.n;
@@ -222,6 +240,8 @@ void entries_write(struct entries *t, struct span name, struct text *out)
     write_code(t, name, ++t->written, out);
 }
 
+/* Entries of C++ refer to its personality routine; a file that never catches has no reference to
+ * it. */
 void entries_end(const struct entries *t, struct text *out)
 {
     static const char reference[] = "DW.ref.__gxx_personality_v0";

@@ -9,6 +9,7 @@
 
 enum { SCALAR_LANE = 8 }; /* [B]: a vector instruction counts once for each */
 
+/* The mnemonic is one of these words, exactly. */
 static bool one_of(struct span a, const char *const *word)
 {
     for (; *word != NULL; word++)
@@ -18,6 +19,7 @@ static bool one_of(struct span a, const char *const *word)
 
 static struct span without_last(struct span a, int n) { return (struct span){a.s, a.n - n}; }
 static struct span without_first(struct span a, int n) { return (struct span){a.s + n, a.n - n}; }
+/* Suffixes tell the type of the operands. */
 static bool span_ends(struct span a, const char *s)
 {
     const int n = (int)strlen(s);
@@ -82,6 +84,7 @@ static void count_function(struct span name, struct block_counts *c)
     }
 }
 
+/* Where control goes behind the instruction: it decides where blocks end. */
 static enum flow flow_of(struct span m, struct span operands, struct block_counts *c)
 {
     static const char *const away[] = {"jmp", "jmpq", "ret", "retq", "ud2", "hlt", "iretq", NULL};
@@ -109,6 +112,8 @@ static int float_lanes(struct span m, int width, struct span *stem)
     return span_ends(m, "pd") ? width / 8 : 0;
 }
 
+/* One operation a lane; a fused multiplication and addition is two, a dot product of n lanes 2n
+ * - 1. */
 static void count_float(struct span m, int width, struct block_counts *c)
 {
     static const char *const plain[] = {"add",    "sub",  "mul",  "min", "max",
@@ -150,6 +155,7 @@ static void count_x87_and_integer(struct span m, struct block_counts *c)
 
 /* --- memory --- */
 
+/* Neither a register nor a constant nor the target of a jump. */
 static bool is_memory(struct span operand)
 {
     return operand.n > 0 && operand.s[0] != '%' && operand.s[0] != '$' && operand.s[0] != '*';
@@ -184,6 +190,7 @@ static int vector_access(struct span m, int width)
     return span_ends(m, "ss") ? 4 : 8;
 }
 
+/* Sizes of the x87's loads and stores: l 8, t 10, s 4 bytes; of whole numbers s 2, none 4. */
 static int x87_access(struct span m)
 {
     const bool whole = span_starts(m, "fi");
@@ -222,6 +229,8 @@ static bool reads_what_it_writes(struct span m)
     return true;
 }
 
+/* One operand lies in memory at most. Instructions that only compute or announce an address move
+ * nothing. */
 static void count_memory(struct span m, struct span operands, int width, bool frame,
                          struct block_counts *c)
 {
@@ -239,6 +248,8 @@ static void count_memory(struct span m, struct span operands, int width, bool fr
     c->bytes = (uint16_t)bytes;
 }
 
+/* Work by class of one instruction. Wide vector registers count as one instruction a lane of 8
+ * bytes, so that the count does not depend on how wide the vectors of this computer are. */
 enum flow instruction_read(struct span m, struct span operands, bool frame,
                            struct block_counts *counts)
 {
@@ -260,10 +271,12 @@ enum flow instruction_read(struct span m, struct span operands, bool frame,
     return flow;
 }
 
+/* From here on %rbp points to the stack frame, and what lies there is no data of the program. */
 bool instruction_is_frame_set(struct span m, struct span operands)
 {
     return (span_is(m, "movq") || span_is(m, "mov")) && span_is(asm_operand(operands, 0), "%rsp") &&
            span_is(asm_operand(operands, 1), "%rbp");
 }
 
+/* Every name of the register contains this one, r15d and r15b, too. */
 bool instruction_uses_r15(struct span operands) { return span_find(operands, "%r15") >= 0; }

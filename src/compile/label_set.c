@@ -13,6 +13,7 @@ struct label_set {
 
 enum { FIRST_SIZE = 1024 };
 
+/* Slots of length 0 are free: TAKE gives zeros. */
 struct label_set *label_set_make(struct arena *a)
 {
     struct label_set *set = TAKE(a, 1, struct label_set);
@@ -60,6 +61,8 @@ bool label_set_has(const struct label_set *set, struct span name)
     return name.n > 0 && find(set, name)->n > 0;
 }
 
+/* Every name that begins with .L, wherever it stands in the operands: differences such as
+ * .L4-.L2 in tables of jumps name two. */
 void label_set_put_local(struct label_set *set, struct span operands)
 {
     const char *s = operands.s, *end = s + operands.n;

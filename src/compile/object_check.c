@@ -17,11 +17,13 @@ struct bytes {
     size_t n;
 };
 
+/* NULL when the piece does not lie in the file as a whole. */
 static const void *at(struct bytes b, uint64_t offset, uint64_t size)
 {
     return offset <= b.n && size <= b.n - offset ? b.s + offset : NULL;
 }
 
+/* The name in a table of names, which must end within it. */
 static const char *name_at(struct bytes names, uint32_t offset)
 {
     return offset < names.n && memchr(names.s + offset, 0, names.n - offset) != NULL
@@ -29,12 +31,14 @@ static const char *name_at(struct bytes names, uint32_t offset)
                : "";
 }
 
+/* Sections such as .bss have a size but nothing in the file. */
 static struct bytes section_bytes(struct bytes file, const Elf64_Shdr *s)
 {
     const char *begin = s->sh_type == SHT_NOBITS ? NULL : at(file, s->sh_offset, s->sh_size);
     return (struct bytes){begin, begin != NULL ? s->sh_size : 0};
 }
 
+/* Whether the table has the symbol that a kernel in one file declares. */
 static bool defines_program(struct bytes file, const Elf64_Shdr *section, int n,
                             const Elf64_Shdr *table)
 {
@@ -51,6 +55,8 @@ static bool defines_program(struct bytes file, const Elf64_Shdr *section, int n,
     return false;
 }
 
+/* The header is looked at first, then each section once: code, our note, the declaration of a
+ * kernel. */
 struct object_facts object_facts(const void *content, size_t n)
 {
     struct object_facts facts = {0};
@@ -73,6 +79,7 @@ struct object_facts object_facts(const void *content, size_t n)
     facts.is_object = true;
     for (int i = 0; i < count; i++) {
         const Elf64_Shdr *s = &section[i];
+        /* An object may hold data only; then there is nothing to count. */
         if (s->sh_type == SHT_PROGBITS && (s->sh_flags & SHF_EXECINSTR) && s->sh_size > 0)
             facts.has_code = true;
         if (strcmp(name_at(names, s->sh_name), BLOCK_NOTE_SECTION) == 0) facts.counted = true;
@@ -83,6 +90,7 @@ struct object_facts object_facts(const void *content, size_t n)
     return facts;
 }
 
+/* What cannot be read has no facts; the linker complains about it by itself. */
 struct object_facts object_facts_of_file(const char *path)
 {
     struct text file = {0};
@@ -131,6 +139,9 @@ static bool member_is_fine(struct bytes archive, const char *name)
 
 /* --- what the linker used --- */
 
+/* The compiler's and the system's own libraries need no count: their functions are priced by
+ * name (elementary_list.h) or not at all. realpath, as /lib is a link to /usr/lib on many
+ * systems. */
 static bool is_system(const char *path)
 {
     static const char *const folder[] = {"/usr/lib/", "/lib/", "/usr/lib64/", "/lib64/",
@@ -145,6 +156,7 @@ static bool is_system(const char *path)
     return system;
 }
 
+/* By the member's name in its archive, or the object's. */
 static bool refuse(const char *name, const char *in, struct err *e)
 {
     return err_set(e, ERR_DATA,
@@ -177,6 +189,7 @@ static bool check_line(char *line, struct err *e)
     return fine;
 }
 
+/* The trace has a line for each file that the linker opened, "(archive)member" for members. */
 bool object_check_trace(const struct text *trace, struct err *e)
 {
     for (char *line = trace->s; line != NULL && *line != '\0';) {

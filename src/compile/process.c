@@ -12,6 +12,7 @@
 
 extern char **environ;
 
+/* A compiler that is missing is the commonest case and says how to name another. */
 static bool cannot_start(const char *program, int error, struct err *e)
 {
     if (error == ENOENT)
@@ -28,6 +29,8 @@ struct pipes {
     int to[2], from[2];
 };
 
+/* The child's descriptors and signals are set by posix_spawn, so that nothing runs between fork
+ * and exec. */
 static int spawn(const char *const *word, const struct pipes *p, pid_t *child)
 {
     posix_spawn_file_actions_t actions;
@@ -50,6 +53,7 @@ static int spawn(const char *const *word, const struct pipes *p, pid_t *child)
     return error;
 }
 
+/* Descriptors are closed once, whoever comes first. */
 static void close_one(int *fd)
 {
     if (*fd >= 0) close(*fd);
@@ -79,6 +83,8 @@ static void exchange(struct pipes *p, const struct text *in, struct text *out)
     }
 }
 
+/* The child's output is read while its input is written. Its status is the shell's: 128 and the
+ * signal's number when a signal ended it. */
 bool process_run(const char *const *word, const struct text *in, struct text *out, int *status,
                  struct err *e)
 {
@@ -95,6 +101,7 @@ bool process_run(const char *const *word, const struct text *in, struct text *ou
     sigaction(SIGINT, &ignore, &interrupt_was);
     close_one(&p.to[0]);
     close_one(&p.from[1]);
+    /* The pipe to the child must not block, or both would wait once it is full. */
     if (error == 0) {
         if (feeds) fcntl(p.to[1], F_SETFL, O_NONBLOCK);
         exchange(&p, in, out);
@@ -109,6 +116,7 @@ bool process_run(const char *const *word, const struct text *in, struct text *ou
     return error == 0 || cannot_start(word[0], error, e);
 }
 
+/* For questions: gcc answers in this process's place, with its own status. */
 bool process_replace(const char *const *word, struct err *e)
 {
     execvp(word[0], (char *const *)word);

@@ -6,8 +6,10 @@
 
 #include "base/text.h"
 
+/* Files of options that name files of options. */
 enum { DEEPEST = 10 };
 
+/* The list ends in NULL as execvp wants it, so there is always a place for that. */
 void words_add(struct words *w, const char *word)
 {
     if (w->n + 1 >= w->capacity) {
@@ -21,6 +23,7 @@ void words_add(struct words *w, const char *word)
     w->word[w->n] = NULL;
 }
 
+/* The words are borrowed, not copied. */
 void words_add_all(struct words *w, int n, const char *const *word)
 {
     for (int i = 0; i < n; i++) words_add(w, word[i]);
@@ -44,11 +47,14 @@ static const char *next_part(const char **s, struct arena *a)
     return kept;
 }
 
+/* As a shell would split it: gcc's rule for files of options and for variables such as CC. */
 void words_add_parts(struct words *w, const char *text)
 {
     for (const char *part; (part = next_part(&text, w->arena)) != NULL;) words_add(w, part);
 }
 
+/* A word "@file" becomes the words in the file; one that cannot be read stays as it is, as gcc
+ * does it. */
 static bool expand(struct words *w, int n, const char *const *word, int depth, struct err *e)
 {
     for (int i = 0; i < n; i++) {
@@ -62,6 +68,7 @@ static bool expand(struct words *w, int n, const char *const *word, int depth, s
         struct words inside = {.arena = w->arena};
         words_add_parts(&inside, file.s != NULL ? file.s : "");
         text_free(&file);
+        /* A file that names itself would never end. */
         if (depth == DEEPEST)
             return err_set(e, ERR_USAGE, "'%s' names itself, or more than %d files in files",
                            word[i], DEEPEST);

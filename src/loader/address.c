@@ -4,6 +4,7 @@
 #include "loader/crash.h"
 #include "loader/template.h"
 
+/* The copies of all ranks look alike, so the text does not depend on the rank. */
 bool loader_address_text(const struct loader_template *t, const void *address, char *buffer,
                          int size)
 {
@@ -14,12 +15,15 @@ bool loader_address_text(const struct loader_template *t, const void *address, c
     return true;
 }
 
+/* Copies lie one stride apart: the quotient is the rank, the rest is the place in its copy.
+ * Within that the file is the one whose pages hold the place; none does between two files. */
 bool loader_find_address(const struct loader_template *t, const void *address, int *rank,
                          const char **file, uint64_t *at)
 {
     if (!t->memory_of_ranks) return false;
     const uint64_t offset = (uint64_t)((const char *)address - t->memory_of_ranks),
                    place = offset % t->stride;
+    /* Addresses below the copies have wrapped, and are larger than all of them. */
     if (offset >= t->stride * (uint64_t)t->nrank) return false;
     for (int i = 0; i < t->nfile; i++) {
         const struct loader_file *f = &t->file[i];
@@ -70,6 +74,7 @@ bool loader_place_text(const struct loader_instance *i, const void *place, const
         if (!loader_is_return(i, word[k]) ||
             !loader_find_address(i->t, (const char *)word[k] - 1, NULL, &file, &at))
             continue;
+        /* A stack of calls inside a library may be deep; the search for a line has to end. */
         tries++;
         if (!place_text(file, at, other, (int)sizeof other)) continue;
         snprintf(buffer, (size_t)size, "%s", other);

@@ -6,6 +6,8 @@
 
 #include "base/picoseconds.h"
 
+/* Counts of the block times the costs of the node, as for every other work
+ * (machine/node_cost.h); `factor` is what a calibration of the user found. */
 int64_t block_cost_ps(const struct node_cost *c, const struct block_counts *counts, double factor)
 {
     const struct work w = {.flop = counts->flop,
@@ -32,6 +34,8 @@ static unsigned char *immediate(const struct block_table *t, size_t i, block_at_
     return code + BLOCK_ADD_OPCODE_BYTES;
 }
 
+/* Every entry is checked before its word is written: a table that does not fit would change
+ * code. */
 bool block_costs_patch(const struct block_table *table, block_at_fn *at, const void *image,
                        const struct node_cost *c, double factor, struct err *e)
 {

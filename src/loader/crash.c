@@ -38,6 +38,8 @@ struct guard {
     stack_t stack_before;
 };
 
+/* The handler's data, by where the system keeps its stack; NULL where no guard has been set up,
+ * or somebody else has put another stack there. */
 static struct guard *guard_of_process(void)
 {
     stack_t s;
@@ -65,6 +67,8 @@ static const struct loader_instance *running_instance(const struct loader_templa
     return best;
 }
 
+/* One more place of the program, as a file and an address in it. The path is copied, as the
+ * parent reads the record when this process's memory has gone. */
 static bool add_frame(struct crash_record *r, const struct loader_template *t, uint64_t pc)
 {
     const char *file;
@@ -114,6 +118,7 @@ static bool is_stack_overflow(const siginfo_t *info, const struct loader_instanc
     return !loader_find_address(i->t, info->si_addr, NULL, &file, &in_file);
 }
 
+/* Which rank ran, where in its program, and at which simulated time. */
 static void note_rank(struct crash_record *r, const struct loader_template *t,
                       const siginfo_t *info, const ucontext_t *u, int *kind)
 {
@@ -134,6 +139,8 @@ static void note_rank(struct crash_record *r, const struct loader_template *t,
 #endif
 }
 
+/* First the plain facts, then what needs memory of the program to be read: if that faults, the
+ * facts are kept. */
 static void handle(int number, siginfo_t *info, void *context)
 {
     struct guard *g = guard_of_process();
@@ -155,6 +162,7 @@ static void handle(int number, siginfo_t *info, void *context)
     _exit(CRASH_STATUS);
 }
 
+/* Everything that the handler will need is made here, where memory may be asked for. */
 bool crash_guard_begin(struct crash_record *record, struct err *e)
 {
     struct guard *g =
@@ -179,6 +187,7 @@ bool crash_guard_begin(struct crash_record *record, struct err *e)
     return true;
 }
 
+/* The process's own handlers and signal stack come back. */
 void crash_guard_end(void)
 {
     struct guard *g = guard_of_process();
@@ -191,6 +200,7 @@ void crash_guard_end(void)
     munmap(g, GUARD_BYTES);
 }
 
+/* Between runs nobody is watched: a fault is the simulator's own then. */
 void crash_watch(const struct loader_template *t)
 {
     struct guard *g = guard_of_process();

@@ -7,6 +7,7 @@
 
 #include "loader/crash.h"
 
+/* Shared memory: the process that crashes writes, its parent reads after it has gone. */
 struct crash_record *crash_record_create(void)
 {
     void *p = mmap(NULL, sizeof(struct crash_record), PROT_READ | PROT_WRITE,
@@ -14,8 +15,10 @@ struct crash_record *crash_record_create(void)
     return p == MAP_FAILED ? NULL : p;
 }
 
+/* The record is used again for the worker's next run. */
 void crash_record_clear(struct crash_record *r) { atomic_store(&r->kind, CRASH_NONE); }
 
+/* The caller's, after the last worker has ended. */
 void crash_record_destroy(struct crash_record *r)
 {
     if (r) munmap(r, sizeof *r);
@@ -78,6 +81,8 @@ static void place_of(const struct crash_record *r, char *buffer, size_t size)
     if (first[0]) snprintf(buffer, size, " in %s", first);
 }
 
+/* Who, where, what and when, in one sentence. Lines are looked up here and not in the handler,
+ * which may call almost nothing. */
 bool crash_text(const struct crash_record *r, char *buffer, int size)
 {
     char what[256], where[512] = "", when[64] = "";

@@ -4,11 +4,14 @@
 
 #include "loader/elf_dynamic.h"
 
+/* All complaints about the content of a file begin alike and name it. */
 bool elf_bad(const struct elf_file *f, struct err *e, const char *what)
 {
     return err_set_at(e, ERR_DATA, f->path, 0, "not a usable program: %s", what);
 }
 
+/* The bytes in the file that are loaded at an address; NULL unless one segment has them all,
+ * aligned as the caller reads them. */
 const void *elf_file_at(const struct elf_file *f, uint64_t address, uint64_t size, size_t align)
 {
     for (int i = 0; i < f->nsegment; i++) {

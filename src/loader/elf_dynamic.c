@@ -14,6 +14,8 @@ struct dynamic {
 /* Relative relocations as bits (gABI, 2022), newer than some systems' elf.h. */
 enum { TAG_RELRSZ = 35, TAG_RELR = 36, TAG_RELRENT = 37 };
 
+/* One entry of the section. Tags above DT_NUM belong to the system's extensions, of which few
+ * matter. */
 static void take_value(struct elf_file *f, struct dynamic *d, const Elf64_Dyn *y)
 {
     if (y->d_tag == DT_NEEDED) {
@@ -61,6 +63,8 @@ static const char *text_at(const struct elf_file *f, uint64_t offset)
     return offset < f->strings_size ? f->strings + offset : NULL;
 }
 
+/* Names first: entries of DT_NEEDED are offsets into their table, which may come later in the
+ * section. */
 static bool read_strings(struct elf_file *f, const struct dynamic *d, struct err *e)
 {
     f->strings_size = d->value[DT_STRSZ];
@@ -100,8 +104,11 @@ static size_t count_by_gnu_hash(const struct elf_file *f, uint64_t address)
     }
 }
 
+/* The number of symbols stands in the old hash table; files with only GNU's must be counted. All
+ * names are looked at once here, so that nobody else has to. */
 static bool read_symbols(struct elf_file *f, const struct dynamic *d, struct err *e)
 {
+    /* Compilers write one of the two tables, or both. */
     if (d->gnu_hash) f->nsymbol = count_by_gnu_hash(f, d->gnu_hash);
     else if (d->value[DT_HASH]) {
         const uint32_t *h = elf_file_at(f, d->value[DT_HASH], 8, 4);
@@ -113,6 +120,7 @@ static bool read_symbols(struct elf_file *f, const struct dynamic *d, struct err
     for (size_t i = 0; i < f->nsymbol; i++)
         if (!text_at(f, f->symbol[i].st_name))
             return elf_bad(f, e, "the name of a symbol lies outside the file");
+    /* One number a symbol, where the file has versions at all. */
     if (d->versym) {
         f->version = elf_file_at(f, d->versym, f->nsymbol * sizeof *f->version, 2);
         if (!f->version) return elf_bad(f, e, "its table of versions lies outside the file");
@@ -145,6 +153,8 @@ static bool read_versions(struct elf_file *f, const struct dynamic *d, struct er
     return true;
 }
 
+/* The version's name of symbol i, so that the host's function of that version is taken; bit 15
+ * only tells that it is hidden. */
 const char *elf_file_version(const struct elf_file *f, size_t i)
 {
     if (!f->version || f->verneed.n == 0) return NULL;
@@ -188,6 +198,7 @@ static bool read_relocations(struct elf_file *f, const struct dynamic *d, struct
     return true;
 }
 
+/* Constructors and destructors: one function of old, and arrays. */
 static bool read_functions(struct elf_file *f, const struct dynamic *d, struct err *e)
 {
     f->init = d->value[DT_INIT];
@@ -202,6 +213,7 @@ static bool read_functions(struct elf_file *f, const struct dynamic *d, struct e
     return true;
 }
 
+/* Values first, as they stand in any order; then each table that they name, checked as a whole. */
 bool elf_dynamic_read(struct elf_file *f, const Elf64_Phdr *dynamic, struct err *e)
 {
     struct dynamic d = {0};

@@ -60,6 +60,8 @@ static const char *machine_name(int machine)
     }
 }
 
+/* What is said of a file that is no program of ours names the next step: most are ordinary
+ * executables or objects for another processor. */
 static bool check_header(struct elf_file *f, struct err *e)
 {
     const Elf64_Ehdr *h = (const Elf64_Ehdr *)f->bytes;
@@ -114,6 +116,8 @@ static bool check_segment(const struct elf_file *f, const Elf64_Phdr *p, struct 
     return true;
 }
 
+/* What a program header asks for. Those of unknown types may be passed over (gABI 5, "Program
+ * Header"). */
 static bool take_header(struct elf_file *f, const Elf64_Phdr *p, const Elf64_Phdr **dynamic,
                         struct err *e)
 {
@@ -155,6 +159,7 @@ static bool check_tls(const struct elf_file *f, struct err *e)
     return true;
 }
 
+/* The dynamic section last, as it is found by addresses in the segments. */
 static bool check_segments(struct elf_file *f, struct err *e)
 {
     const Elf64_Phdr *dynamic = NULL;
@@ -165,6 +170,8 @@ static bool check_segments(struct elf_file *f, struct err *e)
     return check_tls(f, e) && elf_dynamic_read(f, dynamic, e);
 }
 
+/* The whole file is in memory afterwards, and closed: it may be replaced by the next compilation
+ * while the run goes on. */
 bool elf_file_read(struct elf_file *f, const char *path, struct err *e)
 {
     *f = (struct elf_file){.path = memory_text(path)};
@@ -173,6 +180,7 @@ bool elf_file_read(struct elf_file *f, const char *path, struct err *e)
     return false;
 }
 
+/* What other structs point to in the file goes with it. */
 void elf_file_free(struct elf_file *f)
 {
     free(f->bytes);

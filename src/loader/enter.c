@@ -64,6 +64,8 @@ _Noreturn void loader_leave(struct loader_frame *frame, int64_t value)
 }
 #endif
 
+/* A call into the program. Calls nest when the program calls the simulator and that calls back;
+ * the outermost one is where exit() leads to. */
 struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
                                       const int64_t argument[6])
 {
@@ -90,6 +92,7 @@ struct loader_outcome loader_call_six(struct loader_instance *i, void *function,
         .exited = i->exited, .status = i->exited ? i->status : 0, .value = value};
 }
 
+/* Four arguments are enough for all but MPI's attribute functions. */
 struct loader_outcome loader_call(struct loader_instance *i, void *function,
                                   const int64_t argument[4])
 {
@@ -129,6 +132,7 @@ static bool call_at(struct loader_instance *i, uint64_t function, const int64_t 
     return !o->exited;
 }
 
+/* Entries of the arrays of constructors and destructors were relocated: they are addresses. */
 static uint64_t array_entry(const struct loader_instance *i, const struct loader_file *f,
                             uint64_t array, size_t k)
 {
@@ -143,6 +147,8 @@ __attribute__((noinline, noclone)) void loader_debug_stop(int rank, const char *
     __asm__ volatile("" : : "r"(rank), "r"(file), "r"(base) : "memory");
 }
 
+/* What the system's loader does before main: relocations that need code, then constructors,
+ * those of libraries first (gABI 5, "Initialization and Termination Functions"). */
 struct loader_outcome loader_start(struct loader_instance *i, int argc, char **argv)
 {
     const int64_t argument[4] = {argc, (int64_t)(intptr_t)argv, (int64_t)(intptr_t)environ, 0};
@@ -164,6 +170,7 @@ struct loader_outcome loader_start(struct loader_instance *i, int argc, char **a
     return o;
 }
 
+/* What happens after main or exit; an exit in a destructor ends it. */
 void loader_finish(struct loader_instance *i)
 {
     const int64_t none[4] = {0};
@@ -181,6 +188,7 @@ void loader_finish(struct loader_instance *i)
     }
 }
 
+/* As return from main: the program's own exit runs what atexit was given. */
 struct loader_outcome loader_exit(struct loader_instance *i, int status)
 {
     void *leave = loader_symbol(i, "mimdsim_exit");
@@ -188,6 +196,7 @@ struct loader_outcome loader_exit(struct loader_instance *i, int status)
     return loader_call(i, leave, (const int64_t[4]){status});
 }
 
+/* Constructors, main, destructors; the status is the one a shell would see. */
 int loader_main(struct loader_instance *i, int argc, char **argv)
 {
     struct loader_outcome o = loader_start(i, argc, argv);

@@ -8,6 +8,7 @@
 #include "loader/elf_dynamic.h"
 #include "loader/template.h"
 
+/* The beginning of the page, and of the next one unless x begins one. */
 static uint64_t page_down(uint64_t x) { return x & ~(uint64_t)(LOADER_PAGE - 1); }
 static uint64_t page_up(uint64_t x) { return page_down(x + LOADER_PAGE - 1); }
 
@@ -60,10 +61,14 @@ static bool take_memory(struct loader_template *t, struct err *e)
     return true;
 }
 
+/* The files lie one behind the other, data of one before text of the next, and thread-locals
+ * behind all of them. The stride from rank to rank is whole pages. */
 bool image_make(struct loader_template *t, struct err *e)
 {
     uint64_t at = 0;
+    /* The number of files is small and their order is that of search. */
     for (int i = 0; i < t->nfile; i++) at = lay_out(&t->file[i], at);
+    /* Bytes that files fill; what only has a size (.bss) needs no place in the memory file. */
     t->size = 0;
     for (int i = 0; i < t->nfile; i++)
         if (t->file[i].end > t->size) t->size = t->file[i].end;
@@ -79,6 +84,7 @@ bool image_make(struct loader_template *t, struct err *e)
     return true;
 }
 
+/* Copies that are mapped stay; they hold the memory file by themselves. */
 void image_give_back(struct loader_template *t)
 {
     if (t->bytes) munmap(t->bytes, t->size);
@@ -87,11 +93,13 @@ void image_give_back(struct loader_template *t)
     t->memory = -1;
 }
 
+/* Relocations may write data only; text is shared by all ranks. */
 bool image_writable(const struct loader_file *f, uint64_t place, uint64_t size)
 {
     return place >= f->data && place < f->end && size <= f->end - place;
 }
 
+/* Whether an address of the file is executed: callers and resolvers must be. */
 bool image_code(const struct elf_file *f, uint64_t address)
 {
     for (int i = 0; i < f->nsegment; i++) {

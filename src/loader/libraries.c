@@ -24,6 +24,7 @@ static const char system_folders[] =
     "/lib/x86_64-linux-gnu:/usr/lib/x86_64-linux-gnu:/lib64:/usr/lib64:/usr/local/lib:"
     "/lib:/usr/lib";
 
+/* Compared whole, with the number of the interface: another libc.so would be another library. */
 bool library_of_host(const char *name)
 {
     for (size_t i = 0; i < sizeof of_the_host / sizeof *of_the_host; i++)
@@ -50,6 +51,8 @@ static bool in_folders(const char *folders, const char *origin, const char *name
     return false;
 }
 
+/* The order of the system's loader: run path, LD_LIBRARY_PATH, the system's folders (ld.so(8)).
+ * A name with a slash is a path. */
 static bool find_library(const struct elf_file *by, const char *name, char *out, size_t size)
 {
     if (strchr(name, '/')) {
@@ -74,6 +77,7 @@ static int file_named(const struct loader_template *t, const char *name)
     return -1;
 }
 
+/* A library that is missing is told with all the places that were looked at. */
 static bool read_library(struct loader_template *t, const struct elf_file *by, const char *name,
                          struct err *e)
 {
@@ -103,6 +107,7 @@ static void put_in_order(struct loader_template *t, int i, bool *seen, int *n)
     t->order[(*n)++] = i;
 }
 
+/* The program and all that it needs, each file once. */
 bool files_read(struct loader_template *t, const char *path, struct err *e)
 {
     if (!elf_file_read(&t->file[0].elf, path, e)) return false;
@@ -115,6 +120,7 @@ bool files_read(struct loader_template *t, const char *path, struct err *e)
             if (!read_library(t, f, f->needed[k], e)) return false;
         }
     }
+    /* The program itself comes last. */
     bool seen[LOADER_FILES] = {false};
     int n = 0;
     put_in_order(t, 0, seen, &n);

@@ -24,6 +24,8 @@ static bool check_made_by_us(struct loader_template *t, struct err *e)
     return true;
 }
 
+/* The working directory is kept, as programs may write below it only. Each step checks what the
+ * next one relies on. */
 struct loader_template *loader_open(const char *path, struct err *e)
 {
 #ifndef __x86_64__
@@ -41,6 +43,7 @@ struct loader_template *loader_open(const char *path, struct err *e)
     return NULL;
 }
 
+/* In the reverse order; each part may be missing, after an error. */
 void loader_close(struct loader_template *t)
 {
     if (!t) return;
@@ -62,16 +65,19 @@ static void *bytes_at(const struct loader_template *t, const struct loader_file 
     return t->bytes + f->place + address;
 }
 
+/* An address as it stands in the program's own file, the first one. */
 void *loader_template_at(const struct loader_template *t, uint64_t address, size_t size)
 {
     return bytes_at(t, &t->file[0], address, size);
 }
 
+/* The reverse of loader_template_at. */
 uint64_t loader_template_address(const struct loader_template *t, const void *at)
 {
     return (uint64_t)((const char *)at - t->bytes) - t->file[0].place;
 }
 
+/* Of the program alone: a library may have a symbol of the same name. */
 void *loader_template_symbol(const struct loader_template *t, const char *name, size_t *size)
 {
     const struct found s = symbols_defined(t, name);
@@ -80,6 +86,7 @@ void *loader_template_symbol(const struct loader_template *t, const char *name, 
     return bytes_at(t, s.file, s.symbol->st_value, s.symbol->st_size);
 }
 
+/* Of the program alone, as loader_template_symbol. */
 void *loader_template_section(const struct loader_template *t, const char *name, size_t *size)
 {
     uint64_t address, bytes;
@@ -90,12 +97,15 @@ void *loader_template_section(const struct loader_template *t, const char *name,
 
 struct mimdsim_host *loader_host(struct loader_instance *i) { return &i->host; }
 
+/* In a rank's copy, so libraries count, too: the order is that of the system's loader. */
 void *loader_symbol(const struct loader_instance *i, const char *name)
 {
     const struct found s = symbols_defined(i->t, name);
     return s.file ? i->base + s.file->place + s.symbol->st_value : NULL;
 }
 
+/* The lines that a rank touches first when it is switched in: its text, its data, the host's
+ * table. */
 void loader_prefetch(const struct loader_instance *i)
 {
     __builtin_prefetch(i->text);

@@ -60,10 +60,12 @@ bool place_text(const char *file, uint64_t address, char *buffer, int size)
         if (!first[0] && function[0] != '?') snprintf(first, sizeof first, "%.200s", function);
         found = is_own_line(line);
     }
+    /* addr2line has ended by now, or ends at the closed pipe. */
     if (in) {
         fclose(in);
         waitpid(pid, NULL, 0);
     }
+    /* Without a line there is still the function's name; without that the file's. */
     const unsigned long long at = address;
     if (found) snprintf(buffer, (size_t)size, "%.200s (%s)", function, name_of(line));
     else if (first[0]) snprintf(buffer, (size_t)size, "%s (%s+0x%llx)", first, name_of(file), at);

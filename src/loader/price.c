@@ -17,6 +17,7 @@ static void *at_place(const void *template, uint64_t place, size_t size)
     return NULL;
 }
 
+/* Libraries that `mimdsim cc` made have tables of their own; others have none, and cost nothing. */
 bool loader_price_blocks(struct loader_template *t, const struct node_cost *c, double factor,
                          struct err *e)
 {
@@ -26,6 +27,7 @@ bool loader_price_blocks(struct loader_template *t, const struct node_cost *c, d
         if (!elf_file_section(&f->elf, BLOCK_TABLE_SECTION, &address, &bytes)) continue;
         const uint64_t place = f->place + address;
         const void *entry = at_place(t, place, bytes);
+        /* Sections may lie in the file and yet outside of what is loaded. */
         if (entry == NULL)
             return err_set(e, ERR_DATA, "the table of basic blocks lies outside of the file");
         const struct block_table table = {entry, bytes / sizeof(struct block_entry), place};

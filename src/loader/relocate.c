@@ -19,6 +19,7 @@ struct missing {
     int n;
 };
 
+/* A place that holds an address of the program: each copy adds its own base there. */
 static void add_relative(struct loader_template *t, uint64_t place)
 {
     if (t->nrelative == t->relative_capacity) {
@@ -28,6 +29,8 @@ static void add_relative(struct loader_template *t, uint64_t place)
     t->relative[t->nrelative++] = place;
 }
 
+/* A place whose value a function of the program tells (STT_GNU_IFUNC); it is called in each
+ * copy. */
 static void add_indirect(struct loader_template *t, uint64_t place, uint64_t resolver)
 {
     if (t->nindirect == t->indirect_capacity) {
@@ -37,11 +40,13 @@ static void add_indirect(struct loader_template *t, uint64_t place, uint64_t res
     t->indirect[t->nindirect++] = (struct indirect){place, resolver};
 }
 
+/* Places need not be aligned. */
 static void put(struct loader_template *t, uint64_t place, uint64_t value)
 {
     memcpy(t->bytes + place, &value, sizeof value);
 }
 
+/* Once each, as far as the message has room. */
 static void note_missing(struct missing *m, const char *name)
 {
     size_t used = strlen(m->text);
@@ -89,6 +94,7 @@ static bool put_tls(struct loader_template *t, struct loader_file *f, uint64_t p
     return true;
 }
 
+/* Relocations that only ordinary executables or special options make, with the way out. */
 static bool refuse(const struct loader_file *f, unsigned type, struct err *e)
 {
     switch (type) {
@@ -110,9 +116,11 @@ static bool refuse(const struct loader_file *f, unsigned type, struct err *e)
     }
 }
 
+/* A damaged file must not write outside its data, so place and symbol are checked first. */
 static bool relocate(struct loader_template *t, struct loader_file *f, const Elf64_Rela *r,
                      struct missing *m, struct err *e)
 {
+    /* The formulas of psABI 4.4 stand at the cases. */
     const unsigned type = ELF64_R_TYPE(r->r_info);
     const size_t symbol = ELF64_R_SYM(r->r_info);
     const uint64_t place = f->place + r->r_offset, addend = (uint64_t)r->r_addend;
@@ -175,12 +183,14 @@ static bool relocate_packed(struct loader_template *t, struct loader_file *f, st
     return true;
 }
 
+/* Ascending addresses. */
 static int by_place(const void *a, const void *b)
 {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return (x > y) - (x < y);
 }
 
+/* All files are gone through before a missing symbol stops: one message names them all. */
 bool relocate_all(struct loader_template *t, struct err *e)
 {
     for (int i = 0; i < t->nfile; i++) {

@@ -22,6 +22,7 @@
  * byte written. */
 static const uint64_t SMALL_STRIDE = UINT64_C(8) << 20;
 
+/* 65530 is the kernel's default (Documentation/admin-guide/sysctl/vm.rst). */
 static int64_t most_maps(void)
 {
     long limit = 65530;
@@ -70,6 +71,8 @@ static bool map_groups(const struct loader_template *t, struct err *e)
     return true;
 }
 
+/* Address space for all ranks at once, so that an address tells its rank by a division. Nothing
+ * is committed before it is written. */
 bool loader_reserve(struct loader_template *t, int nrank, const struct loader_hooks *hooks,
                     struct err *e)
 {
@@ -109,6 +112,7 @@ static bool take_bytes(const struct loader_template *t, char *base)
     return true;
 }
 
+/* A rank's copy: bytes, addresses, thread-locals, and the pointer by which it finds its host. */
 struct loader_instance *loader_instantiate(struct loader_template *t, int rank, void *context,
                                            struct err *e)
 {
@@ -151,6 +155,7 @@ struct loader_instance *loader_instantiate(struct loader_template *t, int rank, 
     return i;
 }
 
+/* Text is shared by all ranks, the rest is each rank's own. */
 int64_t loader_bytes(const struct loader_template *t)
 {
     int64_t bytes = (int64_t)t->stride;

@@ -25,18 +25,21 @@ static const struct loader_hooks *hooks_of(const struct mimdsim_host *host)
         ->hooks;
 }
 
+/* Simulated time; a test without hooks stands still at 0. */
 static int64_t now_ps(struct mimdsim_host *host)
 {
     const struct loader_hooks *h = hooks_of(host);
     return h->now_ps ? h->now_ps(host->context) : 0;
 }
 
+/* Computing time that the program's counter has added up. */
 static void elapse_ps(struct mimdsim_host *host, int64_t ps)
 {
     const struct loader_hooks *h = hooks_of(host);
     if (h->elapse_ps) h->elapse_ps(host->context, ps);
 }
 
+/* Time that passes without computing, as in nanosleep. */
 static void sleep_ps(struct mimdsim_host *host, int64_t ps)
 {
     const struct loader_hooks *h = hooks_of(host);
@@ -52,6 +55,7 @@ static void output(struct mimdsim_host *host, int stream, const char *data, size
     else if (fwrite(data, 1, n, stream == 2 ? stderr : stdout) != n) return;
 }
 
+/* Destructors, and what atexit was given, from within the program. */
 static void finish(struct mimdsim_host *host) { loader_finish(instance_of(host)); }
 
 /* The frames between are dropped, also those of the simulator when it has called back into the
@@ -81,6 +85,7 @@ static void fail(struct mimdsim_host *host, const void *place, const char *text)
     leave(host, 1);
 }
 
+/* Program headers of file n in this rank's copy: C++ finds its unwind tables by them. */
 static int module(struct mimdsim_host *host, int n, uintptr_t *base, const void **headers,
                   int *count)
 {
@@ -93,12 +98,14 @@ static int module(struct mimdsim_host *host, int n, uintptr_t *base, const void 
     return 1;
 }
 
+/* Work that the author states himself (mimdsim_compute). */
 static void compute(struct mimdsim_host *host, double flops, double bytes)
 {
     const struct loader_hooks *h = hooks_of(host);
     if (h->compute) h->compute(host->context, flops, bytes);
 }
 
+/* The functions' table is one for all ranks; the host struct of each rank points to it. */
 void runtime_fill(struct mimdsim_runtime *r)
 {
     *r = (struct mimdsim_runtime){.size = sizeof *r,

@@ -30,6 +30,7 @@ static uint32_t hash_name(const char *name)
     return h;
 }
 
+/* The slot of the name, or the free one where it belongs; the table is at most half full. */
 static struct symbol_slot *slot_of(const struct loader_template *t, const char *name)
 {
     size_t i = hash_name(name) & (t->nslot - 1);
@@ -54,6 +55,7 @@ static bool is_offered(const struct elf_file *f, size_t i)
     return !f->version || !(f->version[i] & 0x8000);
 }
 
+/* dlopen's handle is kept to be closed with the template. */
 static bool open_one(struct loader_template *t, const char *name, struct err *e)
 {
     void *handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
@@ -82,6 +84,7 @@ static bool open_host(struct loader_template *t, struct err *e)
     return true;
 }
 
+/* One table of everything that the program and its libraries offer, in the order of search. */
 bool symbols_make(struct loader_template *t, struct err *e)
 {
     if (!open_host(t, e)) return false;
@@ -101,6 +104,7 @@ bool symbols_make(struct loader_template *t, struct err *e)
     return true;
 }
 
+/* The handles keep the host's libraries in memory; the table borrows its names from the files. */
 void symbols_give_back(struct loader_template *t)
 {
     free(t->symbol);
@@ -108,6 +112,7 @@ void symbols_give_back(struct loader_template *t)
     while (t->nhost > 0) dlclose(t->host[--t->nhost]);
 }
 
+/* Among the program and its libraries only. */
 struct found symbols_defined(const struct loader_template *t, const char *name)
 {
     const struct symbol_slot *s = slot_of(t, name);
@@ -134,6 +139,8 @@ static bool is_allocator(const char *name)
     return false;
 }
 
+/* The version that the file was linked against comes first, as the system's loader does it:
+ * memcpy has two on x86-64. */
 static void *host_symbol(const struct loader_template *t, const char *name, const char *version)
 {
     void *at = NULL;
@@ -148,6 +155,8 @@ static void *host_symbol(const struct loader_template *t, const char *name, cons
     return at;
 }
 
+/* Local and protected symbols mean the file's own; others the first in the order of search; last
+ * the host's. A weak symbol that nobody defines is address 0. */
 bool symbols_find(const struct loader_template *t, const struct loader_file *f, size_t i,
                   struct found *out)
 {

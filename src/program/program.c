@@ -6,14 +6,17 @@
 #include "base/check.h"
 #include "base/text.h"
 
+/* Room for an output that the run needs; at least one number, so that it is never NULL. */
 void program_want(struct program_run *r, int output, int64_t n, struct arena *a)
 {
     CHECK(output >= 0 && output < PROGRAM_OUTPUTS);
     r->output[output] = (struct comm_output){TAKE(a, n > 0 ? n : 1, double), n};
 }
 
+/* Zeros until a rank publishes its part. */
 double *program_output(const struct program_run *r, int output) { return r->output[output].x; }
 
+/* What the order of the run puts back is computed, and so it is not listed. */
 void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why)
 {
     if (l->keep & keep) return;
@@ -24,6 +27,7 @@ void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *
     text_copy(o->why, sizeof o->why, why);
 }
 
+/* Every comparison is kept; the first one that fails says what is wrong with the run. */
 void program_check_add(struct run_result *out, const char *quantity, const char *reference, double relative,
                        double tolerance)
 {
@@ -40,6 +44,7 @@ void program_check_add(struct run_result *out, const char *quantity, const char 
     out->status = RUN_INVALID;
 }
 
+/* A serial code's operations at the price of the machine's processor. */
 void program_baseline_add(struct run_result *out, const struct work_price *price, const char *name,
                           const struct work *w)
 {
@@ -50,11 +55,14 @@ void program_baseline_add(struct run_result *out, const struct work_price *price
     b->work = *w;
 }
 
+/* The denominator of the speedup: the fastest of those from `first` on, the first one among
+ * equals. */
 void program_fastest_add(struct run_result *out, int first)
 {
     int best = first;
     for (int i = first; i < out->nbaseline; i++)
         if (out->baseline[i].time_ps < out->baseline[best].time_ps) best = i;
+    /* No serial code at all: nothing to divide by. */
     if (best == out->nbaseline) return;
     struct baseline fastest = out->baseline[best];
     text_copy(fastest.name, sizeof fastest.name, "fastest serial");

@@ -1,13 +1,13 @@
 /* machine_idle.h - settings of a machine that have no effect in a given run.
  *
- * Every function below answers for the fields of machine_spec.c that name it: a clause that says
- * why the setting cannot act in run r ("only a hypercube has Xpress links"), a constant text, or
- * NULL when it acts. */
+ * The table of fields (machine_spec.c) names for each setting the function that answers for it. */
 #ifndef SPEC_MACHINE_IDLE_H
 #define SPEC_MACHINE_IDLE_H
 
 struct run_spec;
 
+/* machine_idle_*: why the settings that name the function cannot act in run r, as a clause ("only a
+ * hypercube has Xpress links"), a constant text; NULL when they act. */
 const char *machine_idle_with_own_nodes(const struct run_spec *r);
 const char *machine_idle_without_links(const struct run_spec *r);
 const char *machine_idle_unless_ring(const struct run_spec *r);

@@ -38,7 +38,8 @@ static const struct field fields[] = {
     {.key = "name", .kind = FIELD_TEXT, AT(name), .capacity = 64, .fallback = "",
      .doc = "the name of its file"},
     {.key = "label", .kind = FIELD_TEXT, AT(label), .capacity = 96, .fallback = "", .label = true,
-     .doc = "what it is called in tables and figures (in its file also `name`); default: the name of its file"},
+     .doc = "what it is called in tables and figures (in its file also `name`); default: the name "
+            "of its file"},
     {.key = "title", .kind = FIELD_TEXT, AT(title), .capacity = 128, .fallback = "", .label = true,
      .doc = "one line of description"},
 
@@ -47,248 +48,296 @@ static const struct field fields[] = {
      .doc = "how routers are connected"},
     {.key = "topology.dims", .kind = FIELD_INTS, AT(topology.dims), COUNT(topology.ndim),
      .capacity = MACHINE_MAX_DIMS, .min = 1, .max = 1 << 24,
-     .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; fat-tree: [arity, "
+     .doc = "torus, mesh: radix of each dimension, fastest first; hypercube: [log2 routers]; "
+            "fat-tree: [arity, "
             "levels]; "
-            "dragonfly: [terminals per router, routers per group, global links per router, groups]; others: [routers]"},
-    {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH, AT(topology.dim_bandwidth),
+            "dragonfly: [terminals per router, routers per group, global links per router, "
+            "groups]; others: [routers]"},
+    {.key = "topology.dim_bandwidth", .kind = FIELD_REALS, .unit = UNIT_BANDWIDTH,
+     AT(topology.dim_bandwidth),
      .capacity = MACHINE_MAX_DIMS, .at_least = 1, .min = 0, .max = 1e15, .fallback = "0 B/s",
      .idle = machine_idle_without_links,
-     .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; dragonfly: local, global; "
+     .doc = "link rate of each dimension (fat-tree: between switch levels, from the lowest; "
+            "dragonfly: local, global; "
             "hypercube: cube, Xpress), 0: network.link.bandwidth"},
-    {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1, .max = 4096,
+    {.key = "topology.nodes_per_router", .kind = FIELD_INT, AT(topology.nodes_per_router), .min = 1,
+     .max = 4096,
      .fallback = "1", .idle = machine_idle_with_own_nodes, .doc = "nodes on each router"},
-    {.key = "topology.processors_per_node", .kind = FIELD_INT, AT(topology.processors_per_node), .min = 1,
+    {.key = "topology.processors_per_node", .kind = FIELD_INT, AT(topology.processors_per_node),
+     .min = 1,
      .max = 4096, .fallback = "1", .doc = "processors that share a node's port to the network"},
-    {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties, .fallback = "positive",
-     .idle = machine_idle_unless_ring, .doc = "direction at half the ring: always up, or up only from even coordinates"},
+    {.key = "topology.tie", .kind = FIELD_CHOICE, AT(topology.tie), .choice = ties,
+     .fallback = "positive",
+     .idle = machine_idle_unless_ring,
+     .doc = "direction at half the ring: always up, or up only from even coordinates"},
     {.key = "topology.routing", .kind = FIELD_CHOICE, AT(topology.routing), .choice = routings,
      .fallback = "minimal", .idle = machine_idle_unless_dragonfly,
      .doc = "valiant: dragonfly through a random group, fat tree up through random ports"},
     {.key = "topology.xpress", .kind = FIELD_BOOL, AT(topology.xpress), .fallback = "false",
      .idle = machine_idle_unless_hypercube,
-     .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 dimensions on "
+     .doc = "additional links on spare ports (Origin2000): one parallel to each link, from 3 "
+            "dimensions on "
             "one to the opposite "
             "router"},
     /* Family graph: the file lists every cable. */
-    {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink), .min = 0,
-     .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_graph, .doc = "graph: router pairs, each "
-                                                                         "connected in both directions"},
-    {.key = "topology.link_percent", .kind = FIELD_INT_LIST, AT(topology.link_percent), COUNT(topology.nlink_percent),
+    {.key = "topology.links", .kind = FIELD_PAIR_LIST, AT(topology.link), COUNT(topology.nlink),
+     .min = 0,
+     .max = 1 << 24, .fallback = "[]", .idle = machine_idle_unless_graph,
+     .doc = "graph: router pairs, each "
+                                                                         "connected in both "
+                                                                         "directions"},
+    {.key = "topology.link_percent", .kind = FIELD_INT_LIST,
+     AT(topology.link_percent), COUNT(topology.nlink_percent),
      .min = 1, .max = 1000000, .fallback = "[]", .idle = machine_idle_unless_graph,
-     .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there and back of each"},
+     .doc = "graph: rate of each link in % of network.link.bandwidth; twice as many entries: there "
+            "and back of each"},
 
     /* What computing costs: counts by class times these (machine/node_cost.c). Rates are those
      * measured with small dense code, far below a processor's peak. */
-    {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate), .min = 1, .max = 1e18,
+    {.key = "node.flop_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.flop_rate),
+     .min = 1, .max = 1e18,
      .doc = "rate of additions and multiplications in small dense double-precision code"},
-    {.key = "node.serial_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.serial_rate), .min = 0,
+    {.key = "node.serial_rate", .kind = FIELD_REAL, .unit = UNIT_FLOP_RATE, AT(node.serial_rate),
+     .min = 0,
      .max = 1e18, .fallback = "0 flop/s",
      .doc = "the same for the serial codes, the baselines of the speedup; 0: node.flop_rate"},
-    {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1, .max = 1e13,
+    {.key = "node.clock", .kind = FIELD_REAL, .unit = UNIT_FREQUENCY, AT(node.clock), .min = 1,
+     .max = 1e13,
      .doc = "processor clock, for the cycle counts below"},
-    {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0, .max = 1e6,
+    {.key = "node.div", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.div_cycles), .min = 0,
+     .max = 1e6,
      .fallback = "0 cycles", .doc = "time of one division"},
-    {.key = "node.sqrt", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.sqrt_cycles), .min = 0, .max = 1e6,
+    {.key = "node.sqrt", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.sqrt_cycles), .min = 0,
+     .max = 1e6,
      .fallback = "0 cycles", .doc = "time of one square root"},
-    {.key = "node.trig", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.trig_cycles), .min = 0, .max = 1e6,
+    {.key = "node.trig", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.trig_cycles), .min = 0,
+     .max = 1e6,
      .fallback = "0 cycles", .doc = "time of one sine or cosine"},
-    {.key = "node.instruction", .kind = FIELD_REAL, .unit = UNIT_CYCLES, AT(node.instruction_cycles), .min = 0,
+    {.key = "node.instruction", .kind = FIELD_REAL, .unit = UNIT_CYCLES,
+     AT(node.instruction_cycles), .min = 0,
      .max = 1e6, .fallback = "0 cycles",
-     .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where node.flop_rate tells "
+     .doc = "time of one instruction of programs made by mimdsim cc; 0: one cycle, or less where "
+            "node.flop_rate tells "
             "that several are issued at once"},
-    {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0, .max = 1,
+    {.key = "node.call", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(node.call_time), .min = 0,
+     .max = 1,
      .fallback = "0 s", .doc = "overhead of one call of a small operator"},
-    {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(node.copy_bandwidth), .min = 0,
-     .max = 1e15, .fallback = "0 B/s", .doc = "rate of memory copies by the program (packing), 0: free"},
+    {.key = "node.copy.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     AT(node.copy_bandwidth), .min = 0,
+     .max = 1e15, .fallback = "0 B/s",
+     .doc = "rate of memory copies by the program (packing), 0: free"},
 
     /* The wire (docs/network.md 1). Zero load: T = R hop_latency + (S - 1) flits + end_latency. */
-    {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels, .fallback = "link",
+    {.key = "network.level", .kind = FIELD_CHOICE, AT(network.level), .choice = levels,
+     .fallback = "link",
      .doc = "detail of the network model; 'auto-tolerance 2%': the cheapest level within 2%"},
-    {.key = "network.tolerance", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(network.tolerance), .min = 0, .max = 1,
+    {.key = "network.tolerance", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(network.tolerance),
+     .min = 0, .max = 1,
      .fallback = "2 %", .idle = machine_idle_unless_tolerance,
      .doc = "level 'auto-tolerance': permitted relative error of the makespan"},
-    {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.link_bandwidth),
-     .min = 0, .max = 1e15, .doc = "payload rate of one link and direction, 0: unlimited (loggp and link only)"},
+    {.key = "network.link.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     AT(network.link_bandwidth),
+     .min = 0, .max = 1e15,
+     .doc = "payload rate of one link and direction, 0: unlimited (loggp and link only)"},
     {.key = "network.injection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
      AT(network.injection_bandwidth), .min = 0, .max = 1e15, .fallback = "0 B/s",
      .doc = "rate from node into network, 0: that of a link"},
-    {.key = "network.ejection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(network.ejection_bandwidth),
-     .min = 0, .max = 1e15, .fallback = "0 B/s", .doc = "rate from network into node, 0: that of a link"},
-    {.key = "network.hop_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.hop_latency), .min = 0,
-     .max = 1, .fallback = "0 s", .doc = "time of the head of a message per router: router and wire"},
-    {.key = "network.end_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.end_latency), .min = 0,
+    {.key = "network.ejection.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     AT(network.ejection_bandwidth),
+     .min = 0, .max = 1e15, .fallback = "0 B/s",
+     .doc = "rate from network into node, 0: that of a link"},
+    {.key = "network.hop_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.hop_latency),
+     .min = 0,
+     .max = 1, .fallback = "0 s",
+     .doc = "time of the head of a message per router: router and wire"},
+    {.key = "network.end_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.end_latency),
+     .min = 0,
      .max = 1, .fallback = "0 s", .doc = "time in the network interfaces, entry and exit together"},
-    {.key = "network.credit_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.credit_latency), .min = 0,
-     .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets, .doc = "time until a freed buffer is known upstream"},
-    {.key = "network.routing_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.routing_latency), .min = 0,
+    {.key = "network.credit_latency", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(network.credit_latency), .min = 0,
+     .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets,
+     .doc = "time until a freed buffer is known upstream"},
+    {.key = "network.routing_latency", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(network.routing_latency), .min = 0,
      .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets,
      .doc = "part of hop_latency: route of a head at the front of its buffer"},
-    {.key = "network.vc_allocation_latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(network.vc_allocation_latency),
+    {.key = "network.vc_allocation_latency", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(network.vc_allocation_latency),
      .min = 0, .max = 1, .fallback = "0 s", .idle = machine_idle_above_packets,
      .doc = "part of hop_latency: a free virtual channel for a head"},
     /* Sizes on the wire: a packet is header and payload in whole flits. */
-    {.key = "network.flit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.flit_bytes), .min = 1, .max = 1 << 20,
+    {.key = "network.flit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.flit_bytes),
+     .min = 1, .max = 1 << 20,
      .fallback = "8 B", .doc = "unit of flow control; sizes on the wire are whole flits"},
-    {.key = "network.packet", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.packet_bytes), .min = 0,
+    {.key = "network.packet", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.packet_bytes),
+     .min = 0,
      .max = 1 << 30, .fallback = "0 B",
      .doc = "largest payload of a packet, 0 B: a message is one packet"},
-    {.key = "network.header", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.header_bytes), .min = 0,
+    {.key = "network.header", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(network.header_bytes),
+     .min = 0,
      .max = 1 << 20, .fallback = "0 B", .doc = "header added to each packet on the wire"},
     /* Buffers and arbitration of routers: levels packet, flit and auto. */
-    {.key = "network.virtual_channels", .kind = FIELD_INT, AT(network.virtual_channels), .min = 1, .max = 64,
-     .fallback = "1", .idle = machine_idle_above_packets, .doc = "virtual channels per link and direction, all "
+    {.key = "network.virtual_channels", .kind = FIELD_INT, AT(network.virtual_channels), .min = 1,
+     .max = 64,
+     .fallback = "1", .idle = machine_idle_above_packets,
+     .doc = "virtual channels per link and direction, all "
                                                          "classes together"},
-    {.key = "network.buffer", .kind = FIELD_INT, AT(network.buffer_flits), .min = 1, .max = 1 << 24, .fallback = "16",
+    {.key = "network.buffer", .kind = FIELD_INT, AT(network.buffer_flits), .min = 1, .max = 1 << 24,
+     .fallback = "16",
      .idle = machine_idle_above_packets, .doc = "flits that a virtual channel can hold"},
-    {.key = "network.arbitration", .kind = FIELD_CHOICE, AT(network.arbitration), .choice = arbitrations,
-     .fallback = "round-robin", .idle = machine_idle_above_packets, .doc = "arbitration between messages that wait "
+    {.key = "network.arbitration", .kind = FIELD_CHOICE, AT(network.arbitration),
+     .choice = arbitrations,
+     .fallback = "round-robin", .idle = machine_idle_above_packets,
+     .doc = "arbitration between messages that wait "
                                                                    "for the same link"},
 
     /* What processors and interfaces do for a message: LogGP's o, g and G (Alexandrov et al. 1995),
      * with sizes that change the protocol. */
-    {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.send_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_send_overhead, .doc = "processor time to send a message (LogGP's o)"},
-    {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.send_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .idle = machine_idle_send_copy, .doc = "processor time per byte sent"},
-    {.key = "software.recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.recv_overhead), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_recv_overhead, .doc = "processor time to receive a message"},
-    {.key = "software.recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.recv_copy), .min = 0,
-     .max = 1, .fallback = "0 s/B", .idle = machine_idle_recv_copy, .doc = "processor time per byte received"},
-    {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0, .max = 10,
-     .fallback = "0 s", .idle = machine_idle_gap, .doc = "least time between two messages of one node (LogGP's g)"},
-    {.key = "software.gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.gap_per_byte),
+    {.key = "software.send.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.send_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_send_overhead,
+     .doc = "processor time to send a message (LogGP's o)"},
+    {.key = "software.send.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.send_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B", .idle = machine_idle_send_copy,
+     .doc = "processor time per byte sent"},
+    {.key = "software.recv.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.recv_overhead), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_recv_overhead,
+     .doc = "processor time to receive a message"},
+    {.key = "software.recv.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.recv_copy), .min = 0,
+     .max = 1, .fallback = "0 s/B", .idle = machine_idle_recv_copy,
+     .doc = "processor time per byte received"},
+    {.key = "software.gap", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.gap), .min = 0,
+     .max = 10,
+     .fallback = "0 s", .idle = machine_idle_gap,
+     .doc = "least time between two messages of one node (LogGP's g)"},
+    {.key = "software.gap_per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.gap_per_byte),
      .min = 0, .max = 1, .fallback = "0 s/B",
-     .idle = machine_idle_gap_per_byte, .doc = "time per byte of interface and protocol (LogGP's G); the slower of "
+     .idle = machine_idle_gap_per_byte,
+     .doc = "time per byte of interface and protocol (LogGP's G); the slower of "
                                        "this and the wire counts"},
     /* The classic protocol: short, eager and rendezvous messages by two limits. */
-    {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.short_bytes), .min = 0,
-     .max = 1 << 30, .fallback = "0 B", .idle = machine_idle_with_segments, .doc = "messages up to this size are short"},
-    {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.short_saving), .min = 0,
-     .max = 1, .fallback = "0 s", .idle = machine_idle_unless_short, .doc = "send overhead that a short message does not have"},
-    {.key = "software.short.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.short_copy), .min = 0,
+    {.key = "software.short.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES,
+     AT(software.short_bytes), .min = 0,
+     .max = 1 << 30, .fallback = "0 B", .idle = machine_idle_with_segments,
+     .doc = "messages up to this size are short"},
+    {.key = "software.short.saving", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.short_saving), .min = 0,
+     .max = 1, .fallback = "0 s", .idle = machine_idle_unless_short,
+     .doc = "send overhead that a short message does not have"},
+    {.key = "software.short.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.short_copy), .min = 0,
      .max = 1, .fallback = "0 s/B", .idle = machine_idle_unless_short,
      .doc = "receiver's time per byte of a short message, in addition to software.recv.copy"},
-    {.key = "software.eager.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(software.eager_bytes), .min = -1,
+    {.key = "software.eager.limit", .kind = FIELD_INT64, .unit = UNIT_BYTES,
+     AT(software.eager_bytes), .min = -1,
      .max = 1e15, .fallback = "unlimited", .idle = machine_idle_with_segments,
      .doc = "longer messages use the rendezvous protocol (handshake first)"},
-    {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.eager_copy), .min = 0,
+    {.key = "software.eager.copy", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.eager_copy), .min = 0,
      .max = 1, .fallback = "0 s/B",
      .idle = machine_idle_with_segments,
-     .doc = "receiver's time per byte of an eager message that is not short, added to software.recv.copy"},
-    {.key = "software.rendezvous.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.rendezvous_latency),
+     .doc = "receiver's time per byte of an eager message that is not short, added to "
+            "software.recv.copy"},
+    {.key = "software.rendezvous.latency", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.rendezvous_latency),
      .min = 0, .max = 10, .fallback = "0 s", .idle = machine_idle_unless_eager_limit,
      .doc = "software time added by the handshake"},
-    {.key = "software.segments", .kind = FIELD_SEGMENTS, AT(software.segment), COUNT(software.nsegment),
+    {.key = "software.segments", .kind = FIELD_SEGMENTS,
+     AT(software.segment), COUNT(software.nsegment),
      .capacity = SOFTWARE_MAX_SEGMENTS, .fallback = "[]",
-     .doc = "message software by size, in place of short and eager: each segment {from: 8 KiB, ...} may give "
-            "send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, gap_per_byte, protocol (eager, "
+     .doc = "message software by size, in place of short and eager: each segment {from: 8 KiB, "
+            "...} may give "
+            "send.overhead, send.copy, recv.overhead, recv.copy, latency, gap, gap_per_byte, "
+            "protocol (eager, "
             "rendezvous, synchronous) and rendezvous.latency; what it does not give is software's"},
-    {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server), .fallback = "false",
+    {.key = "software.kernel.server", .kind = FIELD_BOOL, AT(software.kernel_server),
+     .fallback = "false",
      .doc = "both ends of every message pass one server of the whole machine (TCP loopback)"},
-    {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_server, .doc = "service time of this server per message end"},
-    {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE, AT(software.kernel_per_byte),
-     .min = 0, .max = 1, .fallback = "0 s/B", .idle = machine_idle_unless_server, .doc = "service time of this "
+    {.key = "software.kernel.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.kernel_time),
+     .min = 0,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_server,
+     .doc = "service time of this server per message end"},
+    {.key = "software.kernel.per_byte", .kind = FIELD_REAL, .unit = UNIT_TIME_PER_BYTE,
+     AT(software.kernel_per_byte),
+     .min = 0, .max = 1, .fallback = "0 s/B", .idle = machine_idle_unless_server,
+     .doc = "service time of this "
                                                                                  "server per byte"},
-    {.key = "software.collectives", .kind = FIELD_TEXT, AT(software.collectives), .capacity = 512, .fallback = "",
+    {.key = "software.collectives", .kind = FIELD_TEXT, AT(software.collectives), .capacity = 512,
+     .fallback = "",
      .valid = collective_rules_valid, .idle = machine_idle_without_collectives,
-     .doc = "algorithms that the message software selects: 'allreduce ring from 64 KiB on 8 ranks; ...', the last that "
+     .doc = "algorithms that the message software selects: 'allreduce ring from 64 KiB on 8 ranks; "
+            "...', the last that "
             "matches counts; else MPICH's choice (docs/collectives.md)"},
     /* Barriers, one-sided transfers, and the channel between processors of one node. */
     {.key = "software.barrier.kind", .kind = FIELD_CHOICE, AT(software.barrier), .choice = barriers,
      .fallback = "software", .doc = "barrier by messages or by hardware"},
-    {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.barrier_time), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_hardware_barrier, .doc = "hardware barrier: time "
-                                                                                "from the last arrival to the release"},
-    {.key = "software.put.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.put_overhead), .min = 0,
+    {.key = "software.barrier.time", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.barrier_time), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_hardware_barrier,
+     .doc = "hardware barrier: time "
+                                                                                "from the last "
+                                                                                "arrival to the "
+                                                                                "release"},
+    {.key = "software.put.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.put_overhead), .min = 0,
      .max = 10, .fallback = "0 s", .idle = machine_idle_in_programs,
      .doc = "one-sided: time of a put in addition to the wire, 0: not available"},
-    {.key = "software.get.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.get_overhead), .min = 0,
+    {.key = "software.get.overhead", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.get_overhead), .min = 0,
      .max = 10, .fallback = "0 s", .idle = machine_idle_in_programs,
-     .doc = "one-sided: time of a get in addition to request and reply on the wire, 0: not available"},
-    {.key = "software.shared.latency", .kind = FIELD_REAL, .unit = UNIT_TIME, AT(software.shared_latency), .min = 0,
-     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_shared_node, .doc = "latency of the channel within a node"},
-    {.key = "software.shared.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH, AT(software.shared_bandwidth),
+     .doc = "one-sided: time of a get in addition to request and reply on the wire, 0: not "
+            "available"},
+    {.key = "software.shared.latency", .kind = FIELD_REAL, .unit = UNIT_TIME,
+     AT(software.shared_latency), .min = 0,
+     .max = 10, .fallback = "0 s", .idle = machine_idle_unless_shared_node,
+     .doc = "latency of the channel within a node"},
+    {.key = "software.shared.bandwidth", .kind = FIELD_REAL, .unit = UNIT_BANDWIDTH,
+     AT(software.shared_bandwidth),
      .min = 0, .max = 1e15, .fallback = "0 B/s", .idle = machine_idle_unless_several,
-     .doc = "rate of the channel within a node, 0: such messages take the software path of the network"},
+     .doc = "rate of the channel within a node, 0: such messages take the software path of the "
+            "network"},
 
     /* Which rank runs where. */
-    {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements, .fallback = "linear",
+    {.key = "placement.kind", .kind = FIELD_CHOICE, AT(placement.kind), .choice = placements,
+     .fallback = "linear",
      .doc = "order in which ranks fill the nodes"},
-    {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads, .fallback = "block",
-     .idle = machine_idle_unless_several, .doc = "ranks on the processors of a node: fill one node first, or one "
+    {.key = "placement.spread", .kind = FIELD_CHOICE, AT(placement.spread), .choice = spreads,
+     .fallback = "block",
+     .idle = machine_idle_unless_several,
+     .doc = "ranks on the processors of a node: fill one node first, or one "
                                          "rank per node"},
-    {.key = "placement.seed", .kind = FIELD_SEED, AT(placement.seed), .fallback = "1", .idle = machine_idle_unless_random,
+    {.key = "placement.seed", .kind = FIELD_SEED, AT(placement.seed), .fallback = "1",
+     .idle = machine_idle_unless_random,
      .doc = "seed of the random order"},
-    {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist), .min = 0,
-     .max = 1 << 30, .fallback = "[]", .idle = machine_idle_unless_list, .doc = "processor of each rank"},
+    {.key = "placement.list", .kind = FIELD_INT_LIST, AT(placement.list), COUNT(placement.nlist),
+     .min = 0,
+     .max = 1 << 30, .fallback = "[]", .idle = machine_idle_unless_list,
+     .doc = "processor of each rank"},
 
     /* What other jobs and the operating system take; seeded by the run. */
-    {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv), .min = 0, .max = 10,
+    {.key = "noise.compute", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.compute_cv),
+     .min = 0, .max = 10,
      .fallback = "0 %", .doc = "relative standard deviation of each computing time"},
-    {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT, AT(noise.background_load), .min = 0,
-     .max = 0.95, .fallback = "0 %", .idle = machine_idle_at_loggp, .doc = "share of each link used by other jobs"},
-    {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES, AT(noise.background_bytes), .min = 1,
-     .max = 1 << 30, .fallback = "1024 B", .idle = machine_idle_unless_background, .doc = "message size of these jobs"},
+    {.key = "noise.background.load", .kind = FIELD_REAL, .unit = UNIT_PERCENT,
+     AT(noise.background_load), .min = 0,
+     .max = 0.95, .fallback = "0 %", .idle = machine_idle_at_loggp,
+     .doc = "share of each link used by other jobs"},
+    {.key = "noise.background.message", .kind = FIELD_INT64, .unit = UNIT_BYTES,
+     AT(noise.background_bytes), .min = 1,
+     .max = 1 << 30, .fallback = "1024 B", .idle = machine_idle_unless_background,
+     .doc = "message size of these jobs"},
 };
 
 const struct field_table machine_table = {
     .prefix = "machine", .doc = "the machine: nodes, network, message software, placement, noise",
     .offset = offsetof(struct run_spec, machine),
-    .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields), .field = fields,
+    .size = sizeof(struct machine_spec), .nfield = (int)(sizeof fields / sizeof *fields),
+    .field = fields,
 };
-
-/* Product of the first n dimensions; INT64_MAX where it is larger, so that no caller meets a number
- * that has wrapped. */
-static int64_t product(const int *dims, int n)
-{
-    int64_t p = 1;
-    for (int i = 0; i < n; i++) p = size_count(p, dims[i]);
-    return p;
-}
-
-/* Stops when it cannot grow any more: base 0 or 1, or saturated. */
-static int64_t power(int64_t base, int exponent)
-{
-    int64_t p = 1;
-    for (int i = 0; i < exponent && base > 1 && p < INT64_MAX; i++) p = size_count(p, base);
-    return p;
-}
-
-/* Each family's own formula, from its line of the list. */
-static int64_t router_count(const struct topology_spec *t)
-{
-    switch (t->family) {
-#define X(constant, word, stem, ndim, routers, traits) \
-    case constant: return routers;
-        TOPOLOGY_LIST(X)
-#undef X
-    }
-    return 0;
-}
-
-/* Traits answer what other rooms would else ask by comparing families. */
-bool topology_has(enum topology_family f, enum topology_trait trait)
-{
-    static const unsigned has[] = {
-#define X(constant, word, stem, ndim, routers, traits) [constant] = traits,
-        TOPOLOGY_LIST(X)
-#undef X
-    };
-    return (has[f] & trait) != 0;
-}
-
-int topology_family_dims(enum topology_family f)
-{
-    static const int count[] = {
-#define X(constant, word, stem, ndim, routers, traits) [constant] = ndim,
-        TOPOLOGY_LIST(X)
-#undef X
-    };
-    return count[f];
-}
-
-const char *topology_family_name(enum topology_family f) { return families[f]; }
 
 const char *network_level_name(enum network_level level) { return levels[level]; }
 
@@ -311,15 +360,8 @@ void network_levels_by_name(enum network_level level[LEVELS])
 {
     for (int i = 0; i < LEVELS; i++) { /* each into its place among those before it */
         int at = i;
-        for (; at > 0 && strcmp(levels[level[at - 1]], levels[i]) > 0; at--) level[at] = level[at - 1];
+        for (; at > 0 && strcmp(levels[level[at - 1]], levels[i]) > 0; at--)
+            level[at] = level[at - 1];
         level[at] = (enum network_level)i;
     }
-}
-
-/* Saturates at INT64_MAX: a mistyped dimension is refused by its size, not wrapped. */
-int64_t machine_spec_processors(const struct machine_spec *m)
-{
-    const struct topology_spec *t = &m->topology;
-    bool own_nodes = topology_has(t->family, TOPOLOGY_OWN_NODES);
-    return size_count(size_count(router_count(t), own_nodes ? 1 : t->nodes_per_router), t->processors_per_node);
 }

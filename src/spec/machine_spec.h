@@ -1,7 +1,8 @@
-/* machine_spec.h - everything that is known of a machine: nodes, network, message software, placement, noise.
+/* machine_spec.h - everything that is known of a machine: nodes, network, message software,
+ * placement, noise.
  *
- * Plain data in SI units, filled by room plan from machines/NAME.yaml and `--set`; its field table is in
- * machine_spec.c. Semantics of the network numbers: room net, docs/network.md. */
+ * Plain data in SI units, filled by room plan from machines/NAME.yaml and `--set`; its field table
+ * is in machine_spec.c. Semantics of the network numbers: room net, docs/network.md. */
 #ifndef SPEC_MACHINE_SPEC_H
 #define SPEC_MACHINE_SPEC_H
 
@@ -30,10 +31,11 @@ enum dragonfly_routing { ROUTE_MINIMAL, ROUTE_VALIANT }; /* fat tree: d-mod-k, u
 
 struct topology_spec {
     enum topology_family family;
-    int ndim;                       /* torus, mesh: number of dimensions; hypercube: 1, dims[0] = log2(routers) */
-    int dims[MACHINE_MAX_DIMS];     /* radix of each dimension, dimension 0 fastest; fat tree: {arity, levels};
-                                       dragonfly: {terminals/router, routers/group, global links/router, groups};
-                                       crossbar, bus, full mesh, graph: {routers} */
+    int ndim; /* torus, mesh: number of dimensions; hypercube: 1, dims[0] = log2(routers) */
+    int dims[MACHINE_MAX_DIMS]; /* radix of each dimension, dimension 0 fastest; fat tree: {arity,
+                                   levels}; dragonfly: {terminals/router, routers/group, global
+                                   links/router, groups}; crossbar, bus, full mesh, graph: {routers}
+                                 */
     double dim_bandwidth[MACHINE_MAX_DIMS]; /* link rate of each dimension [B/s], 0: the link's */
     int nodes_per_router;           /* >= 1 */
     int processors_per_node;        /* >= 1 */
@@ -41,20 +43,22 @@ struct topology_spec {
     enum dragonfly_routing routing;
     bool xpress;                    /* Origin: further links on the routers' spare ports */
     int nlink;                      /* graph: number of undirected links, 0 otherwise */
-    int (*link)[2];                 /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
+    int (*link)[2]; /* graph: (nlink x 2) router pairs, borrowed from the arena of the plan */
     int nlink_percent;              /* graph: 0, nlink or 2 nlink */
-    int *link_percent;              /* graph: rate of each link, or there and back of each, in % of the link's */
+    int *link_percent; /* graph: rate of each link, or there and back of each, in % of the link's */
 };
 
 /* What computing costs on one processor. A rate holds for small dense double-precision code. */
 struct node_spec {
     double flop_rate;      /* additions and multiplications [flop/s] */
-    double serial_rate;    /* the same of the serial codes that speedups are held against [flop/s], 0: flop_rate */
+    double serial_rate; /* the same of the serial codes that speedups are held against [flop/s], 0:
+                           flop_rate */
     double clock;          /* [Hz], for the cycle counts below */
     double div_cycles;     /* one division [cycles] */
     double sqrt_cycles;    /* one square root [cycles] */
     double trig_cycles;    /* one sine or cosine [cycles] */
-    double instruction_cycles; /* one instruction of a program compiled by `mimdsim cc` [cycles], 0: node_cost.c */
+    double instruction_cycles; /* one instruction of a program compiled by `mimdsim cc` [cycles], 0:
+                                  node_cost.c */
     double call_time;      /* overhead of one small operator call [s] */
     double copy_bandwidth; /* memory copies [B/s] */
 };
@@ -63,7 +67,8 @@ enum network_level {
 #define X(constant, word, stem, cost, fineness) constant,
     LEVEL_LIST(X)
 #undef X
-    LEVEL_AUTO_TOLERANCE /* the cheapest whose measured error is within `tolerance`; replaced by it before a run */
+        LEVEL_AUTO_TOLERANCE /* the cheapest whose measured error is within `tolerance`; replaced by
+                                it before a run */
 };
 
 enum { LEVELS = LEVEL_AUTO_TOLERANCE }; /* levels that a network can be simulated at */
@@ -81,8 +86,10 @@ struct network_spec {
     double hop_latency;         /* router and wire, head of a message, per resource [s] (tau) */
     double end_latency;         /* network interface, entry and exit together [s] */
     double credit_latency;      /* a freed buffer to the sender upstream [s] (c) */
-    double routing_latency;     /* part of hop_latency: the route of a head at the front of its buffer [s] */
-    double vc_allocation_latency; /* part of hop_latency: a virtual channel for it, once one is free [s] */
+    double routing_latency; /* part of hop_latency: the route of a head at the front of its buffer
+                               [s] */
+    double vc_allocation_latency; /* part of hop_latency: a virtual channel for it, once one is free
+                                     [s] */
     int64_t flit_bytes;         /* [B] */
     int64_t packet_bytes;       /* largest payload of a packet [B]; 0: a message is one packet */
     int64_t header_bytes;       /* added to each packet on the wire [B] */
@@ -112,7 +119,7 @@ struct noise_spec {
 
 struct machine_spec {
     char name[64];            /* the file's stem */
-    char label[96];           /* for people: what it is called in tables and figures, "": its name */
+    char label[96]; /* for people: what it is called in tables and figures, "": its name */
     char title[128];          /* for people: one line of description */
     struct topology_spec topology;
     struct node_spec node;
@@ -122,21 +129,22 @@ struct machine_spec {
     struct noise_spec noise;
 };
 
-/* topology_has: whether a family has a trait (topology_list.h). topology_family_dims: how many numbers topology.dims
- * takes, 0: any. topology_family_name: its word in files. */
+/* topology_has: whether a family has a trait (topology_list.h). topology_family_dims: how many
+ * numbers topology.dims takes, 0: any. topology_family_name: its word in files. */
 bool topology_has(enum topology_family f, enum topology_trait trait);
 int topology_family_dims(enum topology_family f);
 const char *topology_family_name(enum topology_family f);
 
-/* network_level_name: the word in files, of any level. network_levels_by_cost, _by_fineness, _by_name: all levels, the
- * cheapest first, the finest first, in the order of their words. */
+/* network_level_name: the word in files, of any level. network_levels_by_cost, _by_fineness,
+ * _by_name: all levels, the cheapest first, the finest first, in the order of their words. */
 const char *network_level_name(enum network_level level);
 void network_levels_by_cost(enum network_level level[LEVELS]);
 void network_levels_by_fineness(enum network_level level[LEVELS]);
 void network_levels_by_name(enum network_level level[LEVELS]);
 
-/* machine_spec_processors: how many ranks the machine can hold: routers x nodes_per_router x processors_per_node. A fat
- * tree has arity^levels nodes and a dragonfly terminals x routers x groups, whatever nodes_per_router says. */
+/* machine_spec_processors: how many ranks the machine can hold: routers x nodes_per_router x
+ * processors_per_node. A fat tree has arity^levels nodes and a dragonfly terminals x routers x
+ * groups, whatever nodes_per_router says. */
 int64_t machine_spec_processors(const struct machine_spec *m);
 
 #endif
