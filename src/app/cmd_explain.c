@@ -121,6 +121,22 @@ static void print_run(const struct run_spec *s, const struct run_estimate *r)
     text_free(&form);
 }
 
+/* Which runs go on several host threads, and why others do not; reasons are constant texts, so that equal ones are one
+ * pointer or a few. */
+static void print_threads(const struct plan *p, const struct run_estimate *r)
+{
+    int several = 0;
+    for (int i = 0; i < p->nrun; i++) several += r[i].threads > 1;
+    if (several > 0) printf("on several threads: %d of %d runs\n", several, p->nrun);
+    for (int i = 0; i < p->nrun; i++) {
+        int same = 0;
+        bool told = false;
+        for (int k = 0; r[i].alone && k < p->nrun; k++)
+            if (r[k].alone && strcmp(r[k].alone, r[i].alone) == 0) same++, told = told || k < i;
+        if (r[i].alone && !told) printf("on one thread: %d of %d runs: %s\n", same, p->nrun, r[i].alone);
+    }
+}
+
 /* For people: the table, what is not decided yet, units, cost, then omissions and idle settings. */
 static void print_text(const struct plan *p, const struct run_estimate *r)
 {
@@ -147,6 +163,7 @@ static void print_text(const struct plan *p, const struct run_estimate *r)
     else
         printf("\nestimated: %.2f s of one processor, %.0f MB at most\n", t.host_s,
                t.host_bytes / 1e6);
+    print_threads(p, r);
     struct kinds *k = kinds_of(p, r);
     for (int i = 0; i < k->n; i++) {
         /* Whether the omission can change a result at all comes first. "left out (exact, in 3 of 12
@@ -218,6 +235,7 @@ static const struct column planned_column[] = {
     {"flops", COLUMN_REAL, ESTIMATE(flops), .doc = "estimated"},
     {"host_bytes", COLUMN_REAL, ESTIMATE(host_bytes), .doc = "memory on this computer, estimated"},
     {"host_s", COLUMN_REAL, ESTIMATE(host_s), .doc = "time on this computer, estimated"},
+    {"host_threads", COLUMN_INT, ESTIMATE(threads), .doc = "that run its ranks on this computer, with --threads auto"},
     {"kernel", COLUMN_CHARS, SPEC(kernel.name), .doc = "the parallel program"},
     {"level", COLUMN_STRING, .value = read_level, .more = "machine.network.level", .doc = "of the network"},
     {"machine", COLUMN_CHARS, SPEC(machine.name), .doc = "its name"},

@@ -36,6 +36,9 @@ static const char doc[] =
     "failed when it takes more processor time than this (default 600 s).\n\n"
     "--campaign mpi: the processes that mpirun has started share the plan, and the first one stores "
     "the results: mpirun -n 8 mimdsim run fig6 --campaign mpi. Each makes --jobs runs at a time (default 1).\n\n"
+    "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level loggp, every message "
+    "eager, one processor a node; docs/parallel.md), several run its ranks at once, with the same results to the bit. "
+    "auto, the default: as many as help, on the processors that --jobs leaves.\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -46,10 +49,11 @@ struct keep {
     struct err *error;
     const struct run_spec *run; /* (the plan's number) the runs that are made, and how each is executed */
     struct run_order *order; /* in step with `run` */
-    int invalid, deadlock, redundant, refined; /* runs that ended so */
+    int invalid, deadlock, redundant, refined, alone; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
     double limit;          /* of people's own programs [s], 0: as usual */
+    int threads;           /* of each run, as in run_order */
     bool quiet, keep_all;
 };
 
@@ -69,6 +73,9 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
+    if (r->alone[0] && k->alone++ == 0 && !k->quiet)
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: on one thread: %s\n", spec->kernel.name, spec->model.nbody,
+                spec->nrank, r->alone);
     if (run_result_refined(r) && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
                 "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the residual was %.2g\n",
@@ -121,7 +128,7 @@ static struct run_spec *orders_usual(const struct plan *p, struct keep *k, struc
     memcpy(run, p->run, (size_t)p->nrun * sizeof *run);
     k->run = settled->run = run;
     k->order = TAKE(p->arena, p->nrun, struct run_order);
-    const struct run_order usual = {.keep = k->keep_all ? KEEP_ALL : 0, .host_limit = k->limit};
+    const struct run_order usual = {.keep = k->keep_all ? KEEP_ALL : 0, .host_limit = k->limit, .threads = k->threads};
     for (int i = 0; i < p->nrun; i++) k->order[i] = usual;
     return run;
 }
@@ -200,13 +207,16 @@ int cmd_run(int argc, char **argv)
     double limit;
     struct err e;
     err_clear(&e);
-    const bool limited = take_seconds(&argc, argv, "--limit", &limit, &e);
+    int threads;
+    const bool limited = take_seconds(&argc, argv, "--limit", &limit, &e) && take_threads(&argc, argv, &threads, &e);
     bool ok = job_open(&job, campaign, &e) && limited;
+    /* The processes of a job share the processors already. */
+    if (job.on && threads == RUN_THREADS_AUTO) threads = 1;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
     job_heard(&job, &c);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit, .keep_all = keep_all};
+    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit, .keep_all = keep_all, .threads = threads};
     ok = ok && shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
          check_point(part.point, &p, &e);
     ok = job_agree(&job, &p, ok, &e);

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "spec/run_spec.h"
+
 /* argv keeps its NULL at the end. */
 static void drop(int *argc, char **argv, int at, int n)
 {
@@ -57,4 +59,17 @@ bool take_seconds(int *argc, char **argv, const char *name, double *seconds, str
     *seconds = strtod(text, &end);
     if (end != text && *end == '\0' && isfinite(*seconds) && *seconds > 0) return true;
     return err_set(e, ERR_USAGE, "%s: '%.40s' is not a number of seconds above 0", name, text);
+}
+
+bool take_threads(int *argc, char **argv, int *threads, struct err *e)
+{
+    const char *text = take_value(argc, argv, "--threads");
+    char *end;
+    *threads = RUN_THREADS_AUTO;
+    if (text == NULL || strcmp(text, "auto") == 0) return true;
+    const long n = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || n < 1 || n > 1024)
+        return err_set(e, ERR_USAGE, "--threads: '%.40s' is neither 'auto' nor a number from 1 to 1024", text);
+    *threads = (int)n;
+    return true;
 }

@@ -17,4 +17,7 @@ const char *take_value(int *argc, char **argv, const char *name);
  * ERR_USAGE. */
 bool take_seconds(int *argc, char **argv, const char *name, double *seconds, struct err *e);
 
+/* take_threads: --threads N|auto as run_order.threads; auto when it is not there. False with ERR_USAGE. */
+bool take_threads(int *argc, char **argv, int *threads, struct err *e);
+
 #endif

@@ -9,11 +9,6 @@
 
 #include "base/err.h"
 
-struct check_note {
-    void (*describe)(void *context, char *buffer, int size);
-    void *context;
-};
-
 /* The only writable datum outside a run: without it, base would have to know the clock in order to
  * print it. */
 static _Thread_local struct check_note check_note;
@@ -22,6 +17,8 @@ void check_note_set(void (*describe)(void *context, char *buffer, int size), voi
 {
     check_note = (struct check_note){describe, context};
 }
+
+struct check_note check_note_get(void) { return check_note; }
 
 void check_memory(size_t bytes)
 {

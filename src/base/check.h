@@ -16,6 +16,15 @@ _Noreturn void check_failed(const char *file, int line, const char *cond);
  * mistake, and end the process with the status of ERR_INTERNAL; never returns. */
 _Noreturn void check_memory(size_t bytes);
 
+/* What check_failed says of the run in progress. */
+struct check_note {
+    void (*describe)(void *context, char *buffer, int size);
+    void *context;
+};
+
+/* check_note_get: this thread's note, for another thread that works for the same run. */
+struct check_note check_note_get(void);
+
 /* check_note_set: register a function that describes the run in progress (time, rank, seed) for check_failed.
  *
  *   describe  called with `context` and a buffer of `size` bytes to fill; NULL removes the note

@@ -99,6 +99,8 @@ struct run_result {
     int64_t events;            /* dispatched by the simulator */
     int64_t ties;              /* events that shared their time with the one before */
     int64_t switches;          /* of fibers */
+    int threads;               /* of the host that ran the ranks */
+    char alone[96];            /* why it was one, although more were asked for; "": not so */
     uint64_t digest;           /* of all matched messages and clocks: same input, same digest */
 
     int exit_status;           /* of a person's own program: the first of a rank that is not 0 */

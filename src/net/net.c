@@ -166,6 +166,15 @@ void net_set_in_order(struct net *n, bool in_order)
     n->port_private = in_order && n->topology->spec->processors_per_node == 1;
 }
 
+struct net *net_share(const struct net *n, void *context, struct arena *a)
+{
+    CHECK(n->type == &net_loggp && n->port_private && !n->path);
+    struct net *share = TAKE(a, 1, struct net);
+    *share = *n;
+    share->context = context;
+    return share;
+}
+
 void net_send(struct net *n, struct net_message *m)
 {
     n->in_flight++;

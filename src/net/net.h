@@ -71,6 +71,11 @@ void net_send(struct net *n, struct net_message *m);
  */
 void net_set_in_order(struct net *n, bool in_order);
 
+/* net_share: the same network for one of several host threads that run ranks at once: it delivers with `context`, and
+ * each node's messages are sent through one share alone. For level loggp in order, without a path log; memory from
+ * `a`. */
+struct net *net_share(const struct net *n, void *context, struct arena *a);
+
 /* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL: do not. Call it
  * before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);

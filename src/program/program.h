@@ -31,7 +31,6 @@ enum { PROGRAM_OUTPUTS = 12 };
 struct rank_program {
     int nstage;
     const char *const *stage_name; /* (nstage) */
-
     /* workspace_bytes: private memory of rank `rank`; given zeroed to run, aligned to 16. */
     size_t (*workspace_bytes)(const void *job, int rank);
     /* largest_message: no message of this job is larger [B]; -1: not known. NULL: not known. */
@@ -50,6 +49,7 @@ struct program_run {
     struct run_spec spec;        /* the settings in force, a copy: `again` may change those of the program, so it may
                                     be another run than the one that its config_hash names */
     struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere */
+    int threads, cores; /* of the host, as in run_order */
     struct program_cache *cache; /* what runs share; NULL: nothing */
     struct arena *arena;         /* memory of open: lives as long as this struct */
 
@@ -132,8 +132,8 @@ struct program_type {
 void program_want(struct program_run *r, int output, int64_t n, struct arena *a);
 double *program_output(const struct program_run *r, int output);
 
-/* leave_out_add: one more thing that is left out, unless `keep` of the run puts it back. bound: largest relative change
- * of a result, 0: exact. Texts are copied. */
+/* leave_out_add: one more thing left out, unless `keep` of the run puts it back. bound: largest relative change of a
+ * result, 0: exact. Texts are copied. */
 void leave_out_add(struct left_out *l, unsigned keep, double bound, const char *what, const char *why);
 
 /* program_check_add: one number that was compared with a reference, into out->error. A relative error above the

@@ -97,6 +97,7 @@ struct campaign {
     /* next: not yet given to a worker; handed: all before it have been handed over; ndone of
      * ntodo: progress. */
     int nspec, next, handed, nworker, ndone, ntodo;
+    int cores; /* processors for each run */
     const bool *skip; /* (nspec) not to be made; NULL: none */
     struct worker worker[MOST_WORKERS];
     struct answer **slot; /* (nspec) results waiting for their turn */
@@ -134,12 +135,14 @@ static void show_progress(void *context)
     progress_show(&c->progress, c->ndone);
 }
 
-/* The order of run `index`, with a place to tell how far it is. */
-static struct run_order with_heartbeat(const struct run_order *order, int index, struct run_heartbeat *heartbeat)
+/* The order of run `index`, with its part of the processors and a place to tell how far it is. */
+static struct run_order own_order(const struct run_order *order, int index, int cores,
+                                  struct run_heartbeat *heartbeat)
 {
     struct run_order own = {0};
     if (order) own = order[index];
     own.heartbeat = heartbeat;
+    own.cores = cores;
     if (heartbeat) atomic_store_explicit(&heartbeat->events, 0, memory_order_relaxed);
     return own;
 }
@@ -159,7 +162,7 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
     while (read_all(orders, &index, sizeof index)) {
         struct arena *arena = arena_create();
         struct answer a = {.index = index};
-        const struct run_order own = with_heartbeat(c->order, index, heartbeat);
+        const struct run_order own = own_order(c->order, index, c->cores, heartbeat);
         a.ok = run_sharing(&c->spec[index], &own, cache, arena, &a.result, &a.error);
         if (!send_answer(answers, &a)) break;
         arena_destroy(arena);
@@ -405,7 +408,7 @@ static bool run_here(struct campaign *c)
         if (c->skip && c->skip[i]) continue;
         struct arena *arena = arena_create();
         struct run_result result;
-        const struct run_order own = with_heartbeat(c->order, i, c->heartbeat);
+        const struct run_order own = own_order(c->order, i, c->cores, c->heartbeat);
         struct err why;
         err_clear(&why);
         if (run_sharing(&c->spec[i], &own, cache, arena, &result, &why)) ok = c->done(c->context, &c->spec[i], &result);
@@ -459,9 +462,12 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
     if (c.ntodo == 0) return true;
     c.progress = progress_make("runs", c.ntodo, quiet);
     /* No more workers than runs; the limits are those of the arrays. */
-    if (workers <= 0) workers = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    const int online = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (workers <= 0) workers = online;
     if (workers > c.ntodo) workers = c.ntodo;
     if (workers > MOST_WORKERS) workers = MOST_WORKERS;
+    /* Runs side by side share the processors. */
+    c.cores = online > workers ? online / workers : 1;
     if (!quiet) c.heartbeat = heartbeats_make();
     if (c.heartbeat && workers <= 1 && !apart) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
     bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);

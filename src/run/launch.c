@@ -1,7 +1,15 @@
 /* launch.c - workspaces for all ranks, and the function that hands each its own; see launch.h. */
 #include "run/launch.h"
 
+#include <sched.h>
+#include <string.h>
+
+#include "base/text.h"
 #include "vp/world.h"
+
+/* Fewer ranks on each thread than this, and messages between threads cost more than a thread saves
+ * (bench/bench_threads). */
+enum { LEAST_RANKS = 512 };
 
 /* What all ranks share, and each rank's own memory. */
 struct launch {
@@ -31,18 +39,63 @@ int64_t launch_largest_message(const struct program_run *r)
     return r->rank->largest_message ? r->rank->largest_message(r->job) : -1;
 }
 
+/* The program as the room of virtual processors knows it: functions and promises, no names. */
+static struct world_load load_of(const struct program_run *r, int64_t largest)
+{
+    return (struct world_load){.nrank = r->spec.nrank,
+                               .program = program,
+                               .nstage = r->rank->nstage,
+                               .stage_name = r->rank->stage_name,
+                               .largest_message = largest,
+                               .output = r->output,
+                               .noutput = PROGRAM_OUTPUTS,
+                               .heartbeat = r->heartbeat,
+                               .stack_bytes = r->rank->stack_bytes,
+                               .timed = r->rank->timed,
+                               .foreign = r->rank->foreign,
+                               .no_synchronous = r->rank->no_synchronous,
+                               .leftovers = r->rank->leftovers};
+}
+
+const char *launch_alone(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
+                         int64_t largest)
+{
+    const struct world_load load = load_of(r, largest);
+    return world_alone(m, &load, record);
+}
+
+int launch_threads(int asked, int cores, int nrank)
+{
+    if (asked != RUN_THREADS_AUTO) return asked > 0 ? asked : 1;
+    /* Those that this process may use: a batch system, or taskset, leaves fewer than there are. */
+    cpu_set_t set;
+    const int mine = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+    int threads = cores > 0 && cores < mine ? cores : mine;
+    if (nrank / LEAST_RANKS < threads) threads = nrank / LEAST_RANKS;
+    return threads > 0 ? threads : 1;
+}
+
 bool launch_run(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
                 uint64_t seed, int64_t largest, struct arena *scratch, struct arena *a, struct run_result *out,
                 struct err *e)
 {
+    const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     struct launch l = {r->rank, r->job, make_workspaces(r, scratch)};
-    /* The program as the room of virtual processors knows it: functions and promises, no names. */
-    const struct world_load load = {.nrank = r->spec.nrank, .program = program, .context = &l,
-                                    .nstage = r->rank->nstage, .stage_name = r->rank->stage_name,
-                                    .largest_message = largest, .output = r->output, .noutput = PROGRAM_OUTPUTS,
-                                    .heartbeat = r->heartbeat, .stack_bytes = r->rank->stack_bytes,
-                                    .timed = r->rank->timed, .foreign = r->rank->foreign,
-                                    .no_synchronous = r->rank->no_synchronous,
-                                    .leftovers = r->rank->leftovers};
+    struct world_load load = load_of(r, largest);
+    load.context = &l;
+    const char *alone = world_alone(m, &load, record);
+    load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
+    out->threads = load.threads;
+    if (alone && r->threads > 1) text_copy(out->alone, sizeof out->alone, alone);
+    if (!world_run(m, &load, record, seed, a, out, e)) return false;
+    if (out->status != RUN_FAILED || load.threads <= 1) return true;
+    /* Of several ranks that fail, one is told: the first on one thread. Which one is first on several depends on the
+     * host, so such a run is made again on one. */
+    arena_release(a, results);
+    arena_release(scratch, work);
+    memset(out, 0, sizeof *out);
+    out->threads = 1;
+    l.workspace = make_workspaces(r, scratch);
+    load.threads = 1;
     return world_run(m, &load, record, seed, a, out, e);
 }

@@ -14,6 +14,13 @@
 /* launch_largest_message: what the program promises of its messages [B], -1: nothing. After open. */
 int64_t launch_largest_message(const struct program_run *r);
 
+/* launch_alone: why such a run takes one host thread whatever was asked for, NULL: it may take several (world_alone).
+ * After open. launch_threads: how many it takes otherwise, of those `asked` for on `cores`
+ * processors (run_order). */
+const char *launch_alone(const struct program_run *r, const struct machine_spec *m, const struct record_spec *record,
+                         int64_t largest);
+int launch_threads(int asked, int cores, int nrank);
+
 /* launch_run: run the ranks of `r`, which has been prepared, to the end on virtual processors of machine `m`.
  *
  *   record, seed  in   see world_run

@@ -69,6 +69,7 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
     /* How a run is executed is no part of its identity: an order changes this copy of the
      * settings only. */
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
+    if (order) r->threads = order->threads, r->cores = order->cores;
     if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
         return err_set(e, ERR_CONFIG, "program '%s' is not at hand: only a scenario says where it is",
@@ -238,6 +239,10 @@ bool run_explain(const struct run_spec *spec, struct run_estimate *out, struct e
         out->bytes = k.bytes;
         out->flops = k.flops;
         out->nomission = omission_listing(&r, out->omission);
+        const struct machine_spec machine = omission_machine(spec);
+        const struct record_spec record = omission_record(spec);
+        out->alone = launch_alone(&r, &machine, &record, omission_largest_message(&r));
+        out->threads = out->alone ? 1 : launch_threads(RUN_THREADS_AUTO, 0, spec->nrank);
         out->nunused = r.type->unused ? r.type->unused(&r, out->unused) : 0;
         /* Measured with bench/bench_messages: host seconds per message and per flop, bytes beside a rank's own. */
         const double per_message = spec->machine.network.level == LEVEL_LOGGP ? 0.4e-6 : 1.5e-6;

@@ -47,6 +47,8 @@ struct run_estimate {
     double messages, bytes, flops;
     double host_s;     /* estimated wall time */
     double host_bytes; /* estimated memory */
+    int threads;       /* of the host, on all of its processors */
+    const char *alone; /* why one, whatever is asked for; NULL: several may run it (world_alone) */
     int nomission;     /* what the run leaves out */
     struct omission omission[RUN_MAX_OMISSIONS];
     int nunused;       /* settings that the model's file makes idle: "key: reason" */

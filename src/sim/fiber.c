@@ -20,6 +20,10 @@
 #include <sanitizer/common_interface_defs.h>
 #endif
 
+#ifdef THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 #ifdef HAVE_FCONTEXT
 /* The C interface of Boost.Context's assembly, which its own headers declare for C++ only. */
 struct transfer {
@@ -41,6 +45,7 @@ struct fiber {
     fiber_fn *fn;
     void *argument;
     char *stack; /* lowest byte; the guard or spare page lies below */
+    int64_t switches; /* by whichever thread: each fiber counts its own */
     bool finished;
 #ifdef HAVE_FCONTEXT
     void *context; /* of the fiber while it is left */
@@ -53,6 +58,9 @@ struct fiber {
     const void *outside_stack;
     size_t outside_size;
 #endif
+#ifdef THREAD_SANITIZER
+    void *tsan_fiber, *tsan_outside;
+#endif
 };
 
 struct fiber_pool {
@@ -61,7 +69,6 @@ struct fiber_pool {
     size_t stride;       /* stack and guard page */
     size_t stack_bytes, page;
     int n, nguard;
-    int64_t switches;
 };
 
 /* The limit on mappings per process; 65530 is the default of Linux. */
@@ -102,6 +109,21 @@ static void sanitizer_fresh(void *memory, size_t bytes)
 {
     __asan_unpoison_memory_region(memory, bytes);
 }
+#elif defined THREAD_SANITIZER
+/* The thread sanitizer keeps the calls of each fiber apart, and must hear of each switch before it. */
+static void sanitizer_enter(struct fiber *f)
+{
+    if (!f->tsan_fiber) f->tsan_fiber = __tsan_create_fiber(0);
+    f->tsan_outside = __tsan_get_current_fiber();
+    __tsan_switch_to_fiber(f->tsan_fiber, 0);
+}
+static void sanitizer_entered(struct fiber *f) { (void)f; }
+static void sanitizer_leave(struct fiber *f) { __tsan_switch_to_fiber(f->tsan_outside, 0); }
+static void sanitizer_left(struct fiber *f)
+{
+    if (f->finished) __tsan_destroy_fiber(f->tsan_fiber);
+}
+static void sanitizer_fresh(void *memory, size_t bytes) { (void)memory, (void)bytes; }
 #else
 static inline void sanitizer_enter(struct fiber *f) { (void)f; }
 static inline void sanitizer_entered(struct fiber *f) { (void)f; }
@@ -239,7 +261,7 @@ struct fiber *fiber_start(struct fiber_pool *p, int i, fiber_fn *fn, void *argum
 bool fiber_enter(struct fiber *f)
 {
     CHECK(!f->finished);
-    f->pool->switches++;
+    f->switches++;
     sanitizer_enter(f);
     switch_in(f);
     sanitizer_left(f);
@@ -286,4 +308,9 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
     return (int64_t)(deepest * p->page);
 }
 
-int64_t fiber_pool_switches(const struct fiber_pool *p) { return p->switches; }
+int64_t fiber_pool_switches(const struct fiber_pool *p)
+{
+    int64_t n = 0;
+    for (int i = 0; i < p->n; i++) n += p->fiber[i].switches;
+    return n;
+}

@@ -38,6 +38,9 @@ struct level_choice {
 
 struct run_heartbeat;
 
+/* run_order.threads: as many host threads as help, on `cores` processors. */
+enum { RUN_THREADS_AUTO = -1 };
+
 /* How a run is executed, beside what it is: nothing of it is a setting or part of the identity, and none of it changes
  * a result. All zero: as usual. */
 struct run_order {
@@ -46,6 +49,8 @@ struct run_order {
     enum program_output output;      /* of people's own programs: their lines */
     double host_limit;               /* of people's own programs: processor time of a run [s]; 0: PROGRAM_HOST_LIMIT */
     struct level_choice level_choice;
+    int threads;                     /* host threads of the one run, RUN_THREADS_AUTO, or 0: one */
+    int cores;                       /* processors that it may use; 0: all that there are */
 };
 
 struct run_spec {

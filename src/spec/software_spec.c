@@ -88,3 +88,10 @@ int64_t software_eager_most(const struct software_spec *s)
         if (list[i].protocol != PROTOCOL_EAGER) return list[i].from - 1;
     return INT64_MAX;
 }
+
+/* The promise of the largest message decides before the run whether any can need a hand-shake. */
+bool software_all_eager(const struct software_spec *s, int64_t largest)
+{
+    const int64_t most = software_eager_most(s);
+    return most == INT64_MAX || (largest >= 0 && largest <= most);
+}

@@ -73,4 +73,7 @@ const struct software_segment *software_segment_of(const struct software_segment
 /* software_eager_most: the size up to which every message is sent at once [B]: -1: none is; INT64_MAX: all are. */
 int64_t software_eager_most(const struct software_spec *s);
 
+/* software_all_eager: whether all messages are when none is larger than `largest` [B]; -1: any size. */
+bool software_all_eager(const struct software_spec *s, int64_t largest);
+
 #endif

@@ -3,14 +3,14 @@
 
 #include "vp/vp.h"
 
-/* A ring of P places is enough, as each rank is woken at most once before it goes on.
+/* A ring of as many places as ranks is enough, as each rank is woken at most once before it goes on.
  * First come, first served: the order in which the host runs ranks is fixed, and so are
  * digests. */
 void vp_wake(struct world *w, struct vp *v)
 {
     int at = w->ready_head + w->ready_count++;
-    CHECK(w->ready_count <= w->nrank);
-    w->ready[at >= w->nrank ? at - w->nrank : at] = v->comm.rank;
+    CHECK(w->ready_count <= w->nown);
+    w->ready[at >= w->nown ? at - w->nown : at] = v->comm.rank;
 }
 
 /* The state is kept for reports of deadlocks: whoever blocks is found with what it waits

@@ -6,9 +6,9 @@
 void vp_launch(struct world *w, struct message *m, const struct vp *from, const struct vp *to)
 {
     m->net.src = from->node;
-    m->net.dst = to->node;
+    m->net.dst = w->placement.node[to - w->vp]; /* the other rank's state may lie cold, or be another thread's */
     m->net.processor = from->processor;
-    if (!w->shared_channel || from->node != to->node) {
+    if (!w->shared_channel || m->net.src != m->net.dst) {
         net_send(w->net, &m->net);
         return;
     }

@@ -60,11 +60,32 @@ static inline uint64_t message_key(const struct message *m)
     return (uint64_t)(m->net.id >> 32 & 0xffffff) << 24 | (uint64_t)(m->net.id & 0xffffff);
 }
 
-/* --- mailbox.c --- */
+/* message_source: the rank that sent m, which its number tells without a look at the sender. */
+static inline int message_source(const struct message *m) { return (int)(m->net.id >> 32); }
+
+/* --- pool.c --- */
+
+struct message_depot;
+
+/* Messages that nobody uses. Each host thread has a pool of its own; `depot` joins those of a run with several. */
+struct message_pool {
+    struct arena *arena; /* where new ones come from; borrowed */
+    struct message *free[MESSAGE_CLASSES];
+    struct message_depot *depot; /* borrowed; NULL: one thread. The rest is for several: */
+    struct message *full[MESSAGE_CLASSES]; /* one more list, of a fixed length, or NULL */
+    int count[MESSAGE_CLASSES];            /* length of `free` */
+};
 
 /* message_take: a message with room for `bytes` bytes, all zero but for its size; message_give: back to the pool. */
-struct message *message_take(struct world *w, int64_t bytes);
-void message_give(struct world *w, struct message *m);
+struct message *message_take(struct message_pool *p, int64_t bytes);
+void message_give(struct message_pool *p, struct message *m);
+
+/* message_depot_create, message_depot_destroy: where threads that receive more than they send leave messages for the
+ * others. The caller owns it; destroy accepts NULL. */
+struct message_depot *message_depot_create(void);
+void message_depot_destroy(struct message_depot *d);
+
+/* --- mailbox.c --- */
 
 /* message_fits: whether the receive r may take m. */
 static inline bool message_fits(const struct message *m, int source, const struct comm_request *r)

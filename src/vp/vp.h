@@ -1,8 +1,9 @@
 /* vp.h - the insides of room vp: virtual processors, their messages, and the world they share.
  *
- * Files: world.c builds and runs; vp_comm.c is comm.h for a virtual processor; clock.c its time; mailbox.c matches
- * messages, matching.c, poll.c and timer.c where time decides; launch.c sends; rendezvous.c carries large ones;
- * server.c is the shared kernel server; background.c loads the links; deadlock.c and failure.c explain. */
+ * Files: world.c builds and runs, team.c on several threads; vp_comm.c is comm.h for a virtual processor; clock.c its
+ * time; mailbox.c matches messages, matching.c, poll.c and timer.c where time decides; pool.c keeps them; launch.c
+ * sends; rendezvous.c carries large ones; server.c is the shared kernel server; background.c loads the links;
+ * deadlock.c and failure.c explain. */
 #ifndef VP_VP_H
 #define VP_VP_H
 
@@ -25,9 +26,6 @@
 #include "vp/cost.h"
 #include "vp/message.h"
 #include "vp/world.h"
-
-struct world;
-struct vp;
 
 /* Lanes of the events that this room posts before the starts of messages at the same time: messages that arrive for
  * receives from anybody, such receives, looks at the clock, others' services. */
@@ -75,11 +73,13 @@ struct world {
     struct node_cost node_cost;
     bool shared_channel, eager_only, noisy;
     bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
-
-    int *ready; /* (nrank) ring of ranks that can go on */
+    int *ready; /* (nown) ring of ranks that can go on */
     int ready_head, ready_count;
-
-    struct message *free_message[MESSAGE_CLASSES];
+    struct message_pool *pool; /* of the host thread */
+    struct team *team;         /* of several threads: each share of the ranks has its world (team.h); NULL: one */
+    int first, nown;           /* its ranks: first .. first + nown - 1 */
+    void (*arrived)(struct message *m);    /* what the end of a message's trip means */
+    void (*share_barrier)(struct vp *v);   /* of a share: v enters the machine's barrier; NULL: one thread */
 
     struct path_log *path; /* what binds (path.h), NULL unless recorded; owned */
     uint32_t barrier_path; /* of barrier_latest, then of barrier_release */
@@ -94,7 +94,6 @@ struct world {
     int64_t server_bytes;
     int64_t span_capacity;
 
-    void (*arrived)(struct message *m); /* what the end of a message's trip means */
     const struct world_load *load;
 };
 

@@ -31,7 +31,7 @@ static void charge_send(struct vp *v, const struct message *m)
     vp_advance(v, v->clock + cost);
     vp_path(v, PATH_SEND, served, m->bytes);
     vp_stage_time(v)->send_ps += cost;
-    if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, m->to->comm.rank, m->bytes, m->net.id);
+    if (w->record->spans) vp_span(v, SPAN_SEND, begin, v->clock, (int)(m->to - w->vp), m->bytes, m->net.id);
 }
 
 /* The same at the other end, with costs of its own. */
@@ -48,7 +48,7 @@ static void charge_receive(struct vp *v, const struct message *m)
     vp_advance(v, v->clock + cost);
     vp_path(v, PATH_RECV, served, m->bytes);
     vp_stage_time(v)->recv_ps += cost;
-    if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, m->from->comm.rank, m->bytes, m->net.id);
+    if (w->record->spans) vp_span(v, SPAN_RECV, begin, v->clock, message_source(m), m->bytes, m->net.id);
 }
 
 static struct message *make_message(struct vp *v, int dst, int64_t tag, const void *data, int64_t bytes)
@@ -61,7 +61,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     CHECK(bytes <= w->load->largest_message || w->load->largest_message < 0);
     /* comm.h copies what is sent: the program may change its buffer at once, whatever the
      * protocol. */
-    struct message *m = message_take(w, data ? bytes : 0);
+    struct message *m = message_take(w->pool, data ? bytes : 0);
     if (data && bytes) memcpy(m->data, data, (size_t)bytes);
     m->hollow = !data;
     m->bytes = bytes;
@@ -81,7 +81,7 @@ static struct message *make_message(struct vp *v, int dst, int64_t tag, const vo
     m->net.bytes = bytes;
     m->net.path = v->path;
     /* The order of sending counts from here, before the network says when it arrives. */
-    if (m->to->matching) matching_announce(m);
+    if (w->load->timed) matching_announce(m);
     return m;
 }
 
@@ -173,7 +173,7 @@ static void finish_receive(struct vp *v, struct comm_request *r)
     if (kept && !m->hollow) memcpy(r->buffer, m->data, (size_t)kept);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.id);
     v->digest = digest_mix(v->digest, (uint64_t)m->net.arrival);
-    message_give(v->world, m);
+    message_give(v->world->pool, m);
     r->active = REQUEST_DONE;
     r->detail = NULL;
 }
@@ -222,7 +222,7 @@ static void vp_wait(struct comm *c, struct comm_request *r)
  * until the next barrier is complete, for which every rank must have left this one. O(P)
  * for each barrier, and no messages: a network for barriers alone, such as the T3E's,
  * with the machine's time for it. */
-static void hardware_barrier(struct vp *v)
+static void enter_hardware_barrier(struct vp *v)
 {
     struct world *w = v->world;
     if (v->clock > w->barrier_latest) {
@@ -241,6 +241,13 @@ static void hardware_barrier(struct vp *v)
         for (int i = 0; i < w->nrank; i++)
             if (&w->vp[i] != v) vp_wake(w, &w->vp[i]);
     }
+}
+
+static void hardware_barrier(struct vp *v)
+{
+    const struct world *w = v->world;
+    if (w->share_barrier) w->share_barrier(v);
+    else enter_hardware_barrier(v);
     vp_path_join(v, w->barrier_path);
     vp_wait_until(v, w->barrier_release, w->barrier_release);
 }

@@ -17,6 +17,7 @@
 #include "vp/explain.h"
 #include "vp/matching.h"
 #include "vp/path.h"
+#include "vp/team.h"
 #include "vp/vp.h"
 
 enum { STACK_BYTES = 64 * 1024 };
@@ -41,82 +42,21 @@ static void arrived(struct message *m)
 /* The network knows its own part of a message, which is the first member of ours. */
 static void deliver(void *context, struct net_message *m)
 {
-    (void)context;
-    arrived((struct message *)m);
+    struct world *w = context;
+    struct message *own = (struct message *)m;
+    if (w->team && team_elsewhere(w, own)) team_post(w, own);
+    else arrived(own);
 }
 
-/* The clock stops with the program's last call. */
-static void rank_main(void *argument)
-{
-    struct vp *v = argument;
-    struct world *w = v->world;
-    w->load->program(&v->comm, w->load->context);
-    v->finish = v->clock;
-    w->nfinished++;
-}
-
-static void make_ranks(struct world *w, uint64_t seed)
+/* Arrays of all ranks; fresh memory costs nothing until it is used. */
+static void make_tables(struct world *w)
 {
     /* One row more than stages: "end" takes the idle time until the last rank is done. */
-    int row = w->nstage + 1;
+    const int row = w->nstage + 1;
     w->vp = TAKE(w->scratch, w->nrank, struct vp);
     w->ready = TAKE(w->scratch, w->nrank, int);
     w->result->stage = TAKE(w->arena, size_product(w->nrank, row), struct stage_time);
     w->result->finish_ps = TAKE(w->arena, w->nrank, int64_t);
-    for (int i = 0; i < w->nrank; i++) {
-        struct vp *v = &w->vp[i];
-        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank, .noutput = w->load->noutput,
-                                .output = w->load->output};
-        v->world = w;
-        /* Rows belong to the result and outlive the ranks. */
-        v->stages = w->result->stage + (size_t)i * (size_t)row;
-        v->posted_end = &v->posted;
-        v->unexpected_end = &v->unexpected;
-        v->node = w->placement.node[i];
-        v->processor = w->placement.processor[i];
-        v->digest = DIGEST_START;
-        /* The stream depends on seed and rank alone. */
-        if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
-        v->fiber = fiber_start(w->fibers, i, rank_main, v);
-        /* Tables of matching only where they are used: at 65,536 ranks they would take
-         * memory for nothing. */
-        if (w->load->timed) v->matching = matching_create(w);
-    }
-    /* All start at time 0; the host's order acts on no result. */
-    for (int i = 0; i < w->nrank; i++) vp_wake(w, &w->vp[w->load->order ? w->load->order[i] : i]);
-}
-
-/* A place in a ring without a division. */
-static inline struct vp *ready_ahead(const struct world *w, int ahead)
-{
-    if (ahead >= w->ready_count) return NULL;
-    int at = w->ready_head + ahead;
-    return &w->vp[w->ready[at >= w->nrank ? at - w->nrank : at]];
-}
-
-/* With many ranks each lies cold in memory when its turn comes: the ring tells early
- * enough who is next. Six ahead the rank's state, three ahead its stack and request, one
- * ahead its message: each is reached through the one before. */
-static inline void warm_up(const struct world *w)
-{
-    const struct vp *far = ready_ahead(w, 6), *near = ready_ahead(w, 3);
-    if (far) {
-        __builtin_prefetch(far);
-        __builtin_prefetch((const char *)far + 64);
-        __builtin_prefetch((const char *)far + 128);
-    }
-    if (near) {
-        fiber_prefetch(near->fiber);
-        __builtin_prefetch(near->stages + near->stage);
-        if (near->waiting) __builtin_prefetch(near->waiting);
-    }
-    const struct vp *next = ready_ahead(w, 1);
-    if (next && next->waiting && next->waiting->active == REQUEST_MATCHED) {
-        const char *m = next->waiting->detail;
-        __builtin_prefetch(m);
-        __builtin_prefetch(m + 64);
-        __builtin_prefetch(m + 128);
-    }
 }
 
 /* Often enough for a display, and too seldom to cost anything. */
@@ -140,13 +80,7 @@ static void loop(struct world *w)
     do {
         /* All that can run without a further event runs; then one event is taken, which
          * may wake others. */
-        while (w->ready_count && !w->stopped) {
-            warm_up(w);
-            struct vp *v = &w->vp[w->ready[w->ready_head]];
-            if (++w->ready_head == w->nrank) w->ready_head = 0;
-            w->ready_count--;
-            fiber_enter(v->fiber);
-        }
+        if (w->ready_count) world_resume(w, INT64_MAX);
         if (--quiet_events == 0) {
             tell_heartbeat(w);
             quiet_events = PULSE_EVENTS;
@@ -252,9 +186,14 @@ static void run(struct world *w, uint64_t seed)
     struct run_result *r = w->result;
     double begin = host_seconds();
     begin_heartbeat(w, begin);
-    make_ranks(w, seed);
-    background_start(w, seed);
-    loop(w);
+    make_tables(w);
+    if (w->load->threads > 1 && !world_alone(w->machine, w->load, w->record)) {
+        team_run(w, seed);
+    } else {
+        world_make_ranks(w, seed);
+        background_start(w, seed);
+        loop(w);
+    }
     r->host_s = host_seconds() - begin;
     if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
     if (w->nfinished == w->nrank && !w->failed) {
@@ -273,17 +212,10 @@ static void run(struct world *w, uint64_t seed)
     r->status = deadlock ? RUN_DEADLOCK : RUN_FAILED;
 }
 
-/* The promise of the largest message decides before the run whether any can need a
- * hand-shake. */
-static bool all_eager(const struct software_spec *s, int64_t largest)
-{
-    const int64_t most = software_eager_most(s);
-    return most == INT64_MAX || (largest >= 0 && largest <= most);
-}
-
 bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
                uint64_t seed, struct arena *a, struct run_result *out, struct err *e)
 {
+    struct message_pool pool = {0};
     struct world w = {
         .machine = m,
         .record = record,
@@ -293,15 +225,18 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .arrived = arrived,
         .sim = sim_create(),
         .nrank = load->nrank,
+        .nown = load->nrank,
+        .pool = &pool,
         .nstage = load->nstage,
         .load = load,
         .software = software_cost_make(&m->software),
         .node_cost = node_cost_make(&m->node),
         .shared_channel = m->software.shared_bandwidth > 0,
         /* Then a node's messages come in order and the network may use fewer events. */
-        .eager_only = (!load->timed || load->no_synchronous) && all_eager(&m->software, load->largest_message),
+        .eager_only = (!load->timed || load->no_synchronous) && software_all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
+    pool.arena = w.scratch;
     out->nrank = load->nrank;
     name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);

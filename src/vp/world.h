@@ -31,6 +31,8 @@ struct world_load {
     bool no_synchronous; /* none of its sends is synchronous: as largest_message, a promise that saves events */
     bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
     bool leftovers; /* of a foreign program: messages that nobody has received at its end are no failure */
+    int threads;     /* host threads; 0: one. More act where world_alone lets them, and on no result */
+    uint64_t delays; /* for tests: threads stop for a while at random, by this seed; 0: they do not */
     const int *order; /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
 };
 
@@ -45,5 +47,9 @@ struct world_load {
  *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no memory). */
 bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
                uint64_t seed, struct arena *a, struct run_result *out, struct err *e);
+
+/* world_alone: why world_run would use one host thread for such a run, whatever load->threads says; NULL: it may use
+ * several. A constant text. */
+const char *world_alone(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record);
 
 #endif

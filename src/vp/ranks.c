@@ -1,0 +1,86 @@
+/* ranks.c - a world's ranks: made, and let go on one after the other. */
+#include "base/digest.h"
+#include "vp/matching.h"
+#include "vp/team.h"
+
+/* The clock stops with the program's last call. */
+static void rank_main(void *argument)
+{
+    struct vp *v = argument;
+    struct world *w = v->world;
+    w->load->program(&v->comm, w->load->context);
+    v->finish = v->clock;
+    w->nfinished++;
+}
+
+void world_make_ranks(struct world *w, uint64_t seed)
+{
+    const int row = w->nstage + 1;
+    for (int i = w->first; i < w->first + w->nown; i++) {
+        struct vp *v = &w->vp[i];
+        v->comm = (struct comm){.type = &vp_comm_type, .rank = i, .size = w->nrank, .noutput = w->load->noutput,
+                                .output = w->load->output};
+        v->world = w;
+        /* Rows belong to the result and outlive the ranks. */
+        v->stages = w->result->stage + (size_t)i * (size_t)row;
+        v->posted_end = &v->posted;
+        v->unexpected_end = &v->unexpected;
+        v->node = w->placement.node[i];
+        v->processor = w->placement.processor[i];
+        v->digest = DIGEST_START;
+        /* The stream depends on seed and rank alone. */
+        if (w->noisy) v->noise = random_make(seed, (uint64_t)i, 0);
+        v->fiber = fiber_start(w->fibers, i, rank_main, v);
+        /* Tables of matching only where they are used: at 65,536 ranks they would take
+         * memory for nothing. */
+        if (w->load->timed) v->matching = matching_create(w);
+    }
+    /* All start at time 0; the host's order acts on no result. */
+    const int *order = w->nown == w->nrank ? w->load->order : NULL;
+    for (int i = w->first; i < w->first + w->nown; i++) vp_wake(w, &w->vp[order ? order[i] : i]);
+}
+
+/* A place in a ring without a division. */
+static inline struct vp *ready_ahead(const struct world *w, int ahead)
+{
+    if (ahead >= w->ready_count) return NULL;
+    int at = w->ready_head + ahead;
+    return &w->vp[w->ready[at >= w->nown ? at - w->nown : at]];
+}
+
+/* With many ranks each lies cold in memory when its turn comes: the ring tells early
+ * enough who is next. Six ahead the rank's state, three ahead its stack and request, one
+ * ahead its message: each is reached through the one before. */
+static inline void warm_up(const struct world *w)
+{
+    const struct vp *far = ready_ahead(w, 6), *near = ready_ahead(w, 3);
+    if (far) {
+        __builtin_prefetch(far);
+        __builtin_prefetch((const char *)far + 64);
+        __builtin_prefetch((const char *)far + 128);
+    }
+    if (near) {
+        fiber_prefetch(near->fiber);
+        __builtin_prefetch(near->stages + near->stage);
+        if (near->waiting) __builtin_prefetch(near->waiting);
+    }
+    const struct vp *next = ready_ahead(w, 1);
+    if (next && next->waiting && next->waiting->active == REQUEST_MATCHED) {
+        const char *m = next->waiting->detail;
+        __builtin_prefetch(m);
+        __builtin_prefetch(m + 64);
+        __builtin_prefetch(m + 128);
+    }
+}
+
+/* First come, first served, as vp_wake has put them. */
+void world_resume(struct world *w, int64_t most)
+{
+    while (w->ready_count && !w->stopped && most-- > 0) {
+        warm_up(w);
+        struct vp *v = &w->vp[w->ready[w->ready_head]];
+        if (++w->ready_head == w->nown) w->ready_head = 0;
+        w->ready_count--;
+        fiber_enter(v->fiber);
+    }
+}
