@@ -26,7 +26,7 @@
     X(PROGRAM_LINE, "INSERT INTO program_line VALUES (?1, ?2, ?3, ?4, ?5)")                                            \
     X(RUN_INSERT, NULL)                                                                                                \
     X(STAGE, NULL)                                                                                                     \
-    X(RANK_STAGE, NULL)                                                                                                \
+    X(RANK_TIMES, "INSERT INTO rank_times VALUES (?1, ?2)")                                                            \
     X(BASELINE, NULL)                                                                                                  \
     X(ERROR_CHECK, NULL)                                                                                               \
     X(OMISSION, NULL)                                                                                                  \
@@ -45,7 +45,7 @@ enum {
     STORE_VERSION = 7,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
     STORE_OLDEST = 4,               /* the oldest version that is upgraded */
     STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
-    STORE_RANK_ROWS = 256,          /* more ranks: table rank_stage stays empty */
+    STORE_RANK_ROWS = 256,          /* more ranks: table rank_times stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */
     STORE_SPAN_ROWS = 20000,        /* a longer timeline is a file */
     STORE_LINE_ROWS = 1000          /* lines of output kept of one run */

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "measure/run_row.h"
 #include "measure/study_row.h"
+#include "store/rank_times.h"
 #include "store/schema.h"
 
 enum { MOST_SEGMENTS = 5 };
@@ -32,7 +33,6 @@ static const struct row_table row_table[] = {
      {&run_identity_columns, &run_outcome_columns, &run_level_columns, &run_refinement_columns,
       &run_config_columns}},
     {STATEMENT_STAGE, "stage", "run_id, stage", "", "", {&stage_row_columns}},
-    {STATEMENT_RANK_STAGE, "rank_stage", "run_id, rank, stage", "", "", {&stage_time_columns}},
     {STATEMENT_BASELINE, "baseline", "run_id, ordinal", "", "", {&baseline_columns}},
     {STATEMENT_ERROR_CHECK, "error_check", "run_id, ordinal", "", "", {&error_check_columns}},
     {STATEMENT_OMISSION, "run_omission", "run_id", "", "", {&omission_columns}},
@@ -101,6 +101,19 @@ static void add_columns(const char *name, size_t length, struct text *sql)
     check_failed(__FILE__, __LINE__, missing.s);
 }
 
+/* What the entries of rank_times hold behind rank and stage, as view rank_stage shows it: "words"
+ * are its lines of comment, "fields" its list of columns. */
+static void add_rank_view(const char *part, size_t length, struct text *sql)
+{
+    const struct column_table *t = &stage_time_columns;
+    for (int i = 0; i < t->n; i++)
+        if (strncmp(part, "words", length) == 0)
+            text_add(sql, "--   %s: %s\n", t->column[i].name, t->column[i].doc);
+        else
+            text_add(sql, "       , json_extract(e.value, '$[%d]') AS %s\n", RANK_ENTRY_KEYS + i,
+                     t->column[i].name);
+}
+
 /* schema.sql has a line "@table@" where the columns of that table belong. */
 void rows_schema(struct text *sql)
 {
@@ -110,7 +123,11 @@ void rows_schema(struct text *sql)
         /* A mark is a whole line; an @ anywhere else in schema.sql stops the program here. */
         CHECK(end != NULL && end[1] == '\n');
         text_add_bytes(sql, rest, (size_t)(at - rest));
-        add_columns(at + 1, (size_t)(end - at - 1), sql);
+        static const char view[] = "rank_stage.";
+        const size_t prefix = sizeof view - 1;
+        if (strncmp(at + 1, view, prefix) == 0)
+            add_rank_view(at + 1 + prefix, (size_t)(end - at - 1) - prefix, sql);
+        else add_columns(at + 1, (size_t)(end - at - 1), sql);
         rest = end + 2;
     }
     text_add(sql, "%s", rest);

@@ -59,14 +59,12 @@ CREATE TABLE stage (
     PRIMARY KEY (run_id, stage)
 ) STRICT, WITHOUT ROWID;
 
--- The same per rank, for runs of at most meta.rank_rows_limit ranks. A rank that did nothing in a stage has no row.
-CREATE TABLE rank_stage (
-    run_id        INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
-    rank          INTEGER NOT NULL,    -- number of the rank, from 0
-    stage         INTEGER NOT NULL,    -- number of the stage, from 0
-@rank_stage@
-    PRIMARY KEY (run_id, rank, stage)
-) STRICT, WITHOUT ROWID;
+-- The same per rank, for runs of at most meta.rank_rows_limit ranks: all of a run in one text, which view rank_stage
+-- shows as rows. A row for each rank and stage took longer to store than a small run to simulate.
+CREATE TABLE rank_times (
+    run_id  INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    entries TEXT NOT NULL              -- JSON: [[rank, stage, ...], ...], in the order of the columns of view rank_stage
+) STRICT;
 
 -- Serial codes that the speedup is measured against: predicted time on one processor of the same machine.
 CREATE TABLE baseline (
@@ -206,6 +204,16 @@ CREATE TABLE omission (
 @omission@
     PRIMARY KEY (scenario, what)
 ) STRICT, WITHOUT ROWID;
+
+-- Where the time of each rank went, stage by stage (table rank_times). A rank that did nothing in a stage has no row.
+--   run_id: the run
+--   rank: number of the rank, from 0
+--   stage: number of the stage, from 0
+@rank_stage.words@
+CREATE VIEW rank_stage AS
+SELECT t.run_id, json_extract(e.value, '$[0]') AS rank, json_extract(e.value, '$[1]') AS stage
+@rank_stage.fields@
+FROM rank_times t JOIN json_each(t.entries) e;
 
 -- Speedup against each serial baseline; degree of parallelism f by Amdahl, 1/S = (1 - f) + f/P.
 --   run_id: the run

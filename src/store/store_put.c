@@ -17,6 +17,7 @@
 #include "spec/run_label.h"
 #include "spec/setting_number.h"
 #include "store/build.h"
+#include "store/rank_times.h"
 #include "store/rows.h"
 
 /* Run a statement that finds one row id; *id 0 when there is none. */
@@ -190,17 +191,18 @@ static bool put_numbered(struct store *s, enum statement which, int64_t run, int
     return put_row(s, which, &b, row, e);
 }
 
-/* A rank that did nothing in a stage has no row: large runs would have mostly zeros. */
-static bool put_rank_stage(struct store *s, int64_t run, int rank, int stage,
-                           const struct stage_time *t, struct err *e)
+/* All ranks in one row. */
+static bool put_rank_times(struct store *s, int64_t run, const struct run_result *r, struct err *e)
 {
     struct binding b;
-    if (stage_time_idle(t)) return true;
-    if (!bind_start(s, STATEMENT_RANK_STAGE, &b, e)) return false;
+    struct text t = {0};
+    if (!bind_start(s, STATEMENT_RANK_TIMES, &b, e)) return false;
+    rank_times_add(r, &t);
     bind_int(&b, run);
-    bind_int(&b, rank);
-    bind_int(&b, stage);
-    return put_row(s, STATEMENT_RANK_STAGE, &b, t, e);
+    sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8);
+    const bool ok = store_step(s, b.statement, e);
+    text_free(&t);
+    return ok;
 }
 
 /* Stages always; single ranks of runs up to STORE_RANK_ROWS ranks, whose rows can be looked at
@@ -213,12 +215,7 @@ static bool put_stages(struct store *s, int64_t run, const struct run_result *r,
         const struct stage_row row = stage_row_make(r, i);
         if (!put_numbered(s, STATEMENT_STAGE, run, i, &row, e)) return false;
     }
-    if (s->passing || r->nrank > STORE_RANK_ROWS) return true;
-    for (int k = 0; k < r->nrank; k++)
-        for (int i = 0; i < r->nstage; i++)
-            if (!put_rank_stage(s, run, k, i, &r->stage[(int64_t)k * r->nstage + i], e))
-                return false;
-    return true;
+    return s->passing || r->nrank > STORE_RANK_ROWS || put_rank_times(s, run, r, e);
 }
 
 /* The serial codes of the run, in the order in which they were timed. */

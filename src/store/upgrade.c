@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/beside.h"
+#include "store/rank_times.h"
 #include "store/rows.h"
 #include "store/upgrade_runs.h"
 
@@ -130,9 +131,14 @@ static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int vers
                           " AND sql IS NOT NULL";
     char identity[64];
     snprintf(identity, sizeof identity, "PRAGMA user_version = %d", STORE_VERSION);
+    /* A table before version 7, a view since: it must be out of the way before views are dropped. */
+    const bool rows = has_column(s, "rank_stage", NULL);
+    if (rows && !exec_named(s, e, "ALTER TABLE rank_stage RENAME TO older_rank_stage", NULL, NULL))
+        return false;
     /* Order: views refer to tables, so they go first and are made with the schema. */
     return for_each(s, fresh, others, drop_object, e) && for_each(s, fresh, tables, put_aside, e) &&
            store_exec(s, schema, e) && for_each(s, fresh, tables, fill_table, e) &&
+           (!rows || rank_times_upgrade(s, "older_rank_stage", e)) &&
            upgrade_runs(s, version, kept, e) && store_exec(s, identity, e);
 }
 

@@ -44,7 +44,7 @@ changed() {
     done <<'END'
 UPDATE run SET makespan_ps = makespan_ps + 1 WHERE id = 2#accounting: all stages take
 UPDATE stage SET wait_sum_ps = wait_sum_ps - 1 WHERE run_id = 2 AND stage = 1#stages: stage 1: its parts take
-UPDATE rank_stage SET send_ps = 2 * send_ps WHERE run_id = 2 AND rank = 1#rank sums: stage
+UPDATE rank_times SET entries = json_replace(entries, '$[9][3]', 1 + json_extract(entries, '$[9][3]')) WHERE run_id = 2#ranks: rank 1 takes
 UPDATE error_check SET passed = 0 WHERE run_id = 2 AND ordinal = 1#status: status ok, but qdd against aba has not passed
 UPDATE error_check SET relative_error = 1 WHERE run_id = 2 AND ordinal = 1#passed: qdd against aba: error 1.0
 UPDATE run SET status = 'invalid' WHERE id = 2#status: status invalid with the text ''

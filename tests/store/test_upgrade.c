@@ -94,6 +94,13 @@ static const char count_of_rows[] =
     " (SELECT count(*) FROM run_setting) || ' ' || (SELECT count(*) FROM ladder) || ' ' || (SELECT count(*) "
     "FROM build)";
 
+/* Every value with weights of its own, in the order of the rows. */
+static const char sums_of_ranks[] =
+    "SELECT group_concat(x, ';') FROM (SELECT run_id || ' ' || sum(rank * 3 + stage * 5) || ' ' ||"
+    " sum(rank * compute_ps) || ' ' || sum(rank * send_ps) || ' ' || sum(stage * recv_ps) || ' ' || sum(rank * wait_ps)"
+    " || ' ' || sum(contention_ps) || ' ' || sum(rank * messages) || ' ' || sum(stage * sent_bytes) || ' ' ||"
+    " sum(rank * flops) AS x FROM rank_stage GROUP BY run_id ORDER BY run_id)";
+
 static void nothing_is_lost(void **state)
 {
     struct fixture *f = *state;
@@ -109,6 +116,11 @@ static void nothing_is_lost(void **state)
         is(f->path, "PRAGMA user_version", "7");
         is(f->path, rows_of_runs, runs);
         is(f->path, count_of_rows, count);
+        /* Rows of ranks, now entries of one text a run, keep every value. */
+        char ranks[4096];
+        snprintf(ranks, sizeof ranks, "%s", value(f->kept, sums_of_ranks));
+        is(f->path, sums_of_ranks, ranks);
+        is(f->path, "SELECT type FROM sqlite_schema WHERE name = 'rank_stage'", "view");
         is(f->path, "PRAGMA integrity_check", "ok");
         is(f->path, "SELECT count(*) FROM pragma_foreign_key_check", "0");
         is(f->path, "SELECT count(*) FROM sqlite_schema WHERE name LIKE 'older%'", "0");
