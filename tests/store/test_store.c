@@ -107,7 +107,8 @@ static void a_run_comes_back_as_it_was_put(void **state)
      * upgrade. */
     assert_int_equal(
         number(f, "SELECT (SELECT entries FROM rank_times) = (SELECT json_group_array(json_array(rank, stage,"
-                  " compute_ps, send_ps, recv_ps, wait_ps, contention_ps, messages, sent_bytes, flops)) FROM rank_stage)"), 1);
+                  " compute_ps, send_ps, recv_ps, wait_ps, contention_ps, messages, sent_bytes, flops))"
+                  " FROM rank_stage)"), 1);
     assert_string_equal(cell(f, "SELECT name FROM stage WHERE stage = 6"), "CFA[3]");
     assert_string_equal(cell(f, "SELECT quantity || reference || passed FROM error_check WHERE ordinal = 1"),
                         "qddaba1");
