@@ -302,6 +302,8 @@ static bool has_answer(const struct node *c, enum netcheck_form form)
 static int likeness(const struct node *c, enum netcheck_form form)
 {
     int n = 0;
+    /* what stands in a list has no key */
+    if (c->kind != NODE_MAP) return 0;
     for (const struct node *x = c->child; x; x = x->next)
         n += find_key(keys_of(c, form), x->key) ? 1 : -1;
     return n;

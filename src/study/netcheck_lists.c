@@ -418,6 +418,9 @@ static bool check_agreement(struct netcheck_reader *r, const struct node *c,
     int n = document_find(c, "messages")->count;
     bool any_order;
     if (!netcheck_truth(r, c, "order_free", &any_order)) return false;
+    if (agree && agree->kind != NODE_MAP)
+        return err_set_at(r->e, ERR_DATA, r->path, agree->line,
+                          "'agree' must hold true or false by buffer");
     for (const struct node *x = agree ? agree->child : NULL; x; x = x->next) {
         const struct node *hand = document_find(document_find(c, "expected_wormhole"), x->key);
         const struct node *reference = document_find(booksim, x->key);

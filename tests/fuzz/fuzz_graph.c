@@ -1,0 +1,103 @@
+/* fuzz_graph.c - topologies of every family with any numbers, graphs link by link: refused with a
+ * reason, or every route leads from link to link to its end. */
+#include "fuzz.h"
+
+#include "machine/topology.h"
+#include "plan/machine_file.h"
+
+enum { FAMILIES = TOPOLOGY_GRAPH + 1, MOST_LINKS = 512, MOST_HOPS = 4096, PAIRS = 64 };
+
+/* Mostly small, now and then anything. */
+static int a_size(struct fuzz_bytes *b)
+{
+    unsigned how = fuzz_below(b, 32);
+    if (how < 24) return (int)how;
+    if (how < 30) return 1 << fuzz_below(b, 31);
+    return (int)(uint32_t)fuzz_take(b, 4);
+}
+
+static void take_links(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
+{
+    t->nlink = (int)fuzz_below(b, MOST_LINKS);
+    t->link = (int(*)[2])arena_take(a, size_product((size_t)t->nlink + 1, 2 * sizeof(int)));
+    t->link_percent = TAKE(a, 2 * t->nlink + 1, int);
+    t->nlink_percent = (int)fuzz_below(b, 3) * t->nlink;
+    for (int i = 0; i < t->nlink; i++) {
+        t->link[i][0] = (int)(int8_t)fuzz_take(b, 1);
+        t->link[i][1] = (int)(int8_t)fuzz_take(b, 1);
+    }
+    for (int i = 0; i < t->nlink_percent; i++) t->link_percent[i] = 1 + (int)fuzz_below(b, 200);
+}
+
+static void take_topology(struct topology_spec *t, struct fuzz_bytes *b, struct arena *a)
+{
+    *t = (struct topology_spec){.family = (enum topology_family)fuzz_below(b, FAMILIES)};
+    int wanted = topology_family_dims(t->family);
+    t->ndim = wanted ? wanted : 1 + (int)fuzz_below(b, MACHINE_MAX_DIMS);
+    for (int i = 0; i < t->ndim; i++) t->dims[i] = a_size(b);
+    t->nodes_per_router = 1 + (int)fuzz_below(b, 4);
+    t->processors_per_node = 1 + (int)fuzz_below(b, 4);
+    t->tie = (enum tie_rule)fuzz_below(b, 3);
+    t->routing = (enum dragonfly_routing)fuzz_below(b, 2);
+    t->xpress = fuzz_below(b, 4) == 0;
+    if (topology_has(t->family, TOPOLOGY_LISTED)) take_links(t, b, a);
+}
+
+/* Routes are walks: each link begins where the one before ended. */
+static void walk(const struct topology *t, struct fuzz_bytes *b)
+{
+    static struct hop route[MOST_HOPS];
+    for (int k = 0; t->max_hops <= MOST_HOPS && k < PAIRS; k++) {
+        int src = (int)(fuzz_take(b, 3) % (unsigned)t->nnode),
+            dst = (int)(fuzz_take(b, 3) % (unsigned)t->nnode);
+        uint64_t choice = fuzz_take(b, 2);
+        int n = topology_route(t, src, dst, choice, route), at = topology_router_of(t, src);
+        CHECK(n >= 0 && n <= t->max_hops);
+        if (t->fixed_routes) CHECK(topology_distance(t, src, dst) == n);
+        for (int i = 0; i < n; i++) {
+            int from, to, port;
+            CHECK(route[i].link >= 0 && route[i].link < t->nlink);
+            CHECK(route[i].vc_class >= 0 && route[i].vc_class < t->nclass);
+            topology_link_ends(t, route[i].link, &from, &to, &port);
+            CHECK(from == at && port == route[i].port && port < t->nport);
+            at = to;
+        }
+        CHECK(at == topology_router_of(t, dst));
+    }
+}
+
+/* Everything but the topology, read once. */
+static const struct machine_spec *ideal(void)
+{
+    static struct machine_spec m;
+    static struct arena *kept;
+    struct err e;
+    if (kept != NULL) return &m;
+    fuzz_data();
+    err_clear(&e);
+    kept = arena_create();
+    CHECK(plan_machine(&m, "ideal", NULL, kept, NULL, NULL, &e));
+    return &m;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct fuzz_bytes b = {data, data + size};
+    struct arena *a = arena_create();
+    struct err e;
+    err_clear(&e);
+    struct machine_spec m = *ideal();
+    take_topology(&m.topology, &b, a);
+    const struct topology *t = NULL;
+    if (machine_file_check(&m, "input.yaml", 1, &e)) t = topology_create(&m.topology, a, &e);
+    if (t != NULL) walk(t, &b);
+    else fuzz_refused(&e);
+    arena_destroy(a);
+    return 0;
+}
+
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned seed)
+{
+    (void)seed;
+    return LLVMFuzzerMutate(data, size, most);
+}
