@@ -30,7 +30,7 @@ const char *fuzz_folder(void)
     if (folder[0] != '\0') return folder;
     const char *base = getenv("TMPDIR");
     if (base == NULL || strlen(base) > 80)
-        base = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
+        base = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : P_tmpdir;
     snprintf(folder, sizeof folder, "%s/fuzz-XXXXXX", base);
     CHECK(mkdtemp(folder) != NULL);
     atexit(remove_folder);
