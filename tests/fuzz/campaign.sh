@@ -18,7 +18,7 @@ guided=${GUIDED:-60}
 [ -e "$build/fuzz/config.status" ] || {
     mkdir -p "$build/fuzz"
     (cd "$build/fuzz" && "$source/configure" CC="${FUZZ_CC:-clang}" CFLAGS="${FUZZ_CFLAGS:--O1 -g}" \
-        --enable-sanitizers --enable-fuzzers >configure.out 2>&1) ||
+        --enable-sanitizers --enable-fuzzers --disable-lto >configure.out 2>&1) ||
         { tail "$build/fuzz/configure.out"; echo 'the harnesses need clang with libFuzzer (Debian: clang, libclang-rt-dev)'; exit 69; }
 }
 harnesses=${*:-$(sed -n 's/^fuzz_tests += tests\/fuzz\/fuzz_//p' "$source/tests/fuzz/local.am")}
