@@ -7,8 +7,8 @@
 #include "model/model.h"
 
 /* estimate_inverse, estimate_forward, estimate_dynamics: of one evaluation (times the time steps) by the kernel of that
- * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints, flops within a
- * tenth; trees: see estimate_tree. */
+ * name, less what `omit` leaves out. Messages and bytes are exact for open chains of equal joints (the bytes of cyclic
+ * reduction are a bound), flops within a tenth; trees: see estimate_tree. */
 void estimate_inverse(const struct run_spec *spec, const struct model *model, const struct job_omit *omit,
                       struct program_estimate *out);
 /* estimate_forward: see above. */

@@ -92,10 +92,13 @@ static void placement_of(const struct model_spec *spec, struct body_def *b, stru
 static void springs_of(const struct model *m, const struct model_spec *spec, int i, double length, struct body_def *b)
 {
     if (joint_nu(b->joint) != 1 || (spec->stiffness == 0 && spec->damping == 0)) return;
-    /* From SI to the model's own units: a torque is kg m^2 / s^2, a damping one times s. */
-    double torque = m->kilogram * m->metre * m->metre / (m->second * m->second);
-    b->stiffness = spec->stiffness / torque;
-    b->damping = spec->damping / (torque * m->second);
+    /* From SI to the model's own units: stiffness is kg m^2 / s^2 a radian, and kg / s^2 where the
+     * joint slides; a damping is one times s. */
+    const bool slides = joint_is_linear(b->joint, 0);
+    const double area = slides ? 1 : m->metre * m->metre,
+                 unit = m->kilogram * area / (m->second * m->second);
+    b->stiffness = spec->stiffness / unit;
+    b->damping = spec->damping / (unit * m->second);
     pose_coordinates(spec, b->joint, i, length, &b->rest);
 }
 

@@ -76,6 +76,15 @@ static const char *idle_unless_general(const struct run_spec *r)
     return r->model.generator == MODEL_POLYMER ? "a polymer fixes it" : NULL;
 }
 
+/* Springs would pull a closed chain out of the pose that closes it. */
+static const char *idle_in_a_loop(const struct run_spec *r)
+{
+    const char *why = idle_from_file(r);
+    if (why != NULL) return why;
+    const bool loop = r->model.generator == MODEL_RING || r->model.generator == MODEL_FOUR_BAR;
+    return loop ? "rings and four-bars are generated without springs" : NULL;
+}
+
 /* Axes of a ring are parallel, or it could not close. */
 static const char *idle_in_a_ring(const struct run_spec *r)
 {
@@ -204,10 +213,12 @@ static const struct field fields[] = {
      .fallback = "0 N", .idle = idle_from_vector, .doc = "scale of seeded random wrenches on every body, 0: none"},
     /* Springs and dampers, also for linearly implicit steps (physics 9.0). */
     {.key = "stiffness", .kind = FIELD_REAL, .unit = UNIT_STIFFNESS, AT(stiffness), .min = 0, .max = 1e15,
-     .fallback = "0 N m/rad", .idle = idle_from_file, .doc = "stiffness of joint springs towards the first "
-                                                             "pose, 0: none"},
+     .fallback = "0 N m/rad", .idle = idle_in_a_loop,
+     .doc = "stiffness of joint springs towards the first pose (the same number in N/m where "
+     "a joint slides), 0: none"},
     {.key = "damping", .kind = FIELD_REAL, .unit = UNIT_DAMPING, AT(damping), .min = 0, .max = 1e15,
-     .fallback = "0 N m s/rad", .idle = idle_from_file, .doc = "damping of the joints, 0: none"},
+     .fallback = "0 N m s/rad", .idle = idle_in_a_loop,
+     .doc = "damping of the joints (the same number in N s/m where a joint slides), 0: none"},
     /* Baumgarte's alpha = beta (physics 7.2, 7.5): Runge-Kutta 4 needs alpha h below about 2.8.
      * With the projection of physics 7.5 it would not be needed. */
     {.key = "stabilisation", .kind = FIELD_REAL, .unit = UNIT_ANGULAR_RATE, AT(stabilisation), .min = 0, .max = 1e9,
