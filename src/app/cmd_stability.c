@@ -36,7 +36,7 @@ static bool keep_and_draw(const struct common *c, const struct stability_report 
 int cmd_stability(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR, "[SCENARIO]", doc, 0, 1);
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_DIR | TAKES_JOBS, "[SCENARIO]", doc, 0, 1);
     struct err e;
     err_clear(&e);
     struct plan p = {0};
@@ -44,7 +44,8 @@ int cmd_stability(int argc, char **argv)
     struct arena *a = arena_create();
     struct stability_report r;
     bool ok = c.narg == 0 || plan_read(&p, c.arg[0], &o, &e);
-    ok = ok && stability_measure(p.run, p.nrun, 0, c.quiet, a, &r, &e); /* 0: no limit of size */
+    const struct stability_options how = {.workers = c.jobs, .quiet = c.quiet};
+    ok = ok && stability_measure(p.run, p.nrun, &how, a, &r, &e);
     /* The table before the drawing; a document last. */
     if (ok && !c.json) stability_print(stdout, &r);
     ok = ok && keep_and_draw(&c, &r, &e);

@@ -61,7 +61,8 @@ static bool grades(const struct common *c, const struct plan *p, struct store *s
     if (!wanted) return true;
     struct arena *a = arena_create();
     struct stability_report r;
-    bool ok = stability_measure(p ? p->run : NULL, p ? p->nrun : 0, 0, p || c->quiet, a, &r, e) &&
+    const struct stability_options o = {.workers = c->jobs, .quiet = p || c->quiet};
+    bool ok = stability_measure(p ? p->run : NULL, p ? p->nrun : 0, &o, a, &r, e) &&
               keep_stability(s, &r, e);
     arena_destroy(a);
     return ok;

@@ -12,6 +12,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "study/side_by_side.h"
 #include "study/stability_scene.h"
 
 /* Points of a scenario by what their models have: bodies as built, a base that is not fixed. */
@@ -44,26 +45,59 @@ static bool measure_scene(struct stability_report *r, const struct stability_sce
     return good;
 }
 
-/* The built-in suite, scene by scene. */
-static bool measure_suite(struct stability_report *r, int most_bodies, bool quiet, struct err *e)
+/* The scenes of a report, and who makes them. */
+struct making {
+    const struct stability_scene *scene; /* (n) */
+    int n, most_bodies;
+    struct stability_report *report;     /* all rows, in this process */
+    struct stability_report part;        /* those of one scene, where it is made */
+    struct progress progress;
+};
+
+/* The rows of scene i, without those of the scenes before it. */
+static bool make_scene(void *context, int i, const void **data, size_t *bytes, struct err *e)
 {
-    int n;
-    const struct stability_scene *c = scene_list(&n);
-    struct progress p = progress_make("scenes", n, quiet);
-    for (int i = 0; i < n; i++) {
-        if (!measure_scene(r, &c[i], most_bodies, e)) return false;
-        progress_show(&p, i + 1);
-    }
-    progress_end(&p);
+    struct making *k = context;
+    k->part.nrow = 0;
+    if (!measure_scene(&k->part, &k->scene[i], k->most_bodies, e)) return false;
+    *data = k->part.row;
+    *bytes = (size_t)k->part.nrow * sizeof *k->part.row;
     return true;
+}
+
+/* Behind those of the scenes before it, whoever made them. */
+static bool take_scene(void *context, int i, const void *data, size_t bytes, struct err *e)
+{
+    struct making *k = context;
+    const struct stability_row *row = data;
+    (void)e;
+    for (size_t at = 0; at < bytes / sizeof *row; at++)
+        *row_add(k->report, row[at].subject, row[at].algorithm, row[at].precision) = row[at];
+    progress_show(&k->progress, i + 1);
+    return true;
+}
+
+/* All scenes; rows are plain structs, so they travel between processes as they are. */
+static bool measure_scenes(struct stability_report *r, const struct stability_scene *scene, int n,
+                           const struct stability_options *o, struct err *e)
+{
+    struct making k = {.scene = scene, .n = n, .most_bodies = o->most_bodies, .report = r};
+    k.part = (struct stability_report){.arena = arena_create()};
+    k.progress = progress_make("scenes", n, o->quiet);
+    const struct pieces p = {n, &k, make_scene, take_scene};
+    const bool good = side_by_side(&p, o->workers, e);
+    progress_end(&k.progress);
+    arena_destroy(k.part.arena);
+    return good;
 }
 
 /* The points of a scenario that are different scenes: kernels, levels and processors make no
  * other. */
 static bool measure_points(struct stability_report *r, const struct run_spec *spec, int nspec,
-                           int most_bodies, bool quiet, struct err *e)
+                           const struct stability_options *o, struct err *e)
 {
-    struct progress p = progress_make("scenes", nspec, quiet);
+    struct stability_scene *scene = TAKE(r->arena, nspec, struct stability_scene);
+    int n = 0;
     /* Points that differ in kernel, level or number of processors only are one scene. */
     for (int i = 0; i < nspec; i++) {
         bool seen = false;
@@ -76,27 +110,29 @@ static bool measure_points(struct stability_report *r, const struct run_spec *sp
             return err_set(e, ERR_CONFIG, "kernel '%s' has no scene", spec[i].kernel.name);
         char name[64];
         snprintf(name, sizeof name, "%.28s point %d", spec[i].scenario, i + 1);
-        /* A scenario's model says everything: nothing is filled in. */
-        struct stability_scene c = {.name = name, .spec = spec[i].model, .complete = true};
-        /* Stiffness or damping makes steppers interesting. */
-        c.moves = c.spec.stiffness > 0 || c.spec.damping > 0;
-        if (!measure_scene(r, &c, most_bodies, e)) return false;
-        progress_show(&p, i + 1);
+        /* A scenario's model says everything: nothing is filled in. Stiffness or damping makes
+         * steppers interesting. */
+        scene[n++] = (struct stability_scene){
+            .name = arena_text(r->arena, name),
+            .spec = spec[i].model,
+            .complete = true,
+            .moves = spec[i].model.stiffness > 0 || spec[i].model.damping > 0};
     }
-    progress_end(&p);
-    return true;
+    return measure_scenes(r, scene, n, o, e);
 }
 
 /* Rows are added in the order of scenes and algorithms: the same on every computer. */
-bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, bool quiet,
+bool stability_measure(const struct run_spec *spec, int nspec, const struct stability_options *o,
                        struct arena *a, struct stability_report *r, struct err *e)
 {
     /* a scenario's points, or the built-in suite */
     double begin = host_seconds();
+    int n;
+    const struct stability_scene *suite = scene_list(&n);
     *r = (struct stability_report){.arena = a, .suite = "suite"};
     if (nspec > 0) text_copy(r->suite, sizeof r->suite, spec[0].scenario);
-    bool good = nspec > 0 ? measure_points(r, spec, nspec, most_bodies, quiet, e)
-                          : measure_suite(r, most_bodies, quiet, e);
+    bool good = nspec > 0 ? measure_points(r, spec, nspec, o, e)
+                          : measure_scenes(r, suite, n, o, e);
     r->host_s = host_seconds() - begin;
     return good;
 }

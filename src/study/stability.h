@@ -20,13 +20,18 @@ struct stability_report {
     struct arena *arena;        /* borrowed */
 };
 
+struct stability_options {
+    int most_bodies; /* leave out larger scenes; 0: none */
+    int workers;     /* processes that measure scenes, 0: as many as processors; no row depends on it */
+    bool quiet;
+};
+
 /* stability_measure: all rows. spec (nspec): the points of a scenario; NULL, 0: the built-in suite.
  *
- *   most_bodies  in  leave out larger scenes; 0: none
- *   a            in  memory of the report
+ *   a  in  memory of the report
  *
- *   Returns false with ERR_CONFIG or ERR_DATA when a scene cannot be built. */
-bool stability_measure(const struct run_spec *spec, int nspec, int most_bodies, bool quiet, struct arena *a,
+ *   Returns false with ERR_CONFIG or ERR_DATA when a scene cannot be built, ERR_INTERNAL when a worker dies. */
+bool stability_measure(const struct run_spec *spec, int nspec, const struct stability_options *o, struct arena *a,
                        struct stability_report *r, struct err *e);
 
 /* stability_print: a line a row, then the counts and the worst scene. stability_print_json: the same as one document.

@@ -31,6 +31,7 @@ struct judge {
     const struct state *s;
     struct arena *a;
     double *reference;   /* (nu) */
+    double *right;       /* (nu) joint forces of the reference by inverse dynamics in quad precision */
     double force;        /* largest joint force with the right answer: the residual's scale */
     double condition;
 };
@@ -40,6 +41,16 @@ static bool quad_forward(const struct model *m, const struct state *s, struct ar
 {
     struct work w = {0};
     return dynamics_type_of(PRECISION_QUAD)->forward(m, s, FORWARD_ABA, a, qdd, NULL, NULL, &w);
+}
+
+/* Joint forces of the accelerations qdd in quad precision. */
+static void quad_inverse(const struct model *m, const struct state *s, double *qdd, struct arena *a,
+                         double *tau)
+{
+    struct work w = {0};
+    struct state with = *s;
+    with.qdd = qdd;
+    dynamics_type_of(PRECISION_QUAD)->inverse(m, &with, a, tau, &w);
 }
 
 /* Condition: how much the accelerations change, relative to a relative change of 1e-10 of
@@ -71,14 +82,10 @@ static double residual_of(const struct judge *j, double *qdd, double *power)
     const struct model *m = j->m;
     struct arena_mark mark = arena_mark(j->a);
     struct state s = *j->s;
-    double *tau = TAKE(j->a, m->nu, double), *right = TAKE(j->a, m->nu, double), largest = 0,
-           rates = 0;
+    double *tau = TAKE(j->a, m->nu, double), largest = 0, rates = 0;
+    const double *right = j->right;
     /* Two inverse dynamics in quad precision: their difference has M alone, without bias forces. */
-    struct work w = {0};
-    s.qdd = qdd;
-    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, tau, &w);
-    s.qdd = j->reference;
-    dynamics_type_of(PRECISION_QUAD)->inverse(m, &s, j->a, right, &w);
+    quad_inverse(m, &s, qdd, j->a, tau);
     *power = 0;
     for (int i = 0; i < m->nu; i++) {
         largest = fmax(largest, fabs(tau[i] - right[i]));
@@ -292,7 +299,9 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
                              const struct state *s, bool causes, struct arena *scratch)
 {
     const int first = r->nrow;
-    struct judge j = {r, subject, m, s, scratch, TAKE(scratch, m->nu + 1, double), 0, NAN};
+    struct judge j = {.report = r, .subject = subject, .m = m, .s = s, .a = scratch, .condition = NAN};
+    j.reference = TAKE(scratch, m->nu + 1, double);
+    j.right = TAKE(scratch, m->nu + 1, double);
     if (!quad_forward(m, s, scratch, j.reference)) {
         text_copy(row_add(r, subject, "aba", "quad")->reason, 60,
                   "the reference itself broke down");
@@ -300,6 +309,7 @@ void stability_accelerations(struct stability_report *r, const char *subject, co
     }
     /* The yardsticks of all rows. */
     j.force = force_of(&j);
+    quad_inverse(m, s, j.reference, scratch, j.right);
     if (m->nbody <= MOST_MEASURED) j.condition = condition_of(&j);
     /* Rows of serial algorithms. The sparse factorisation solves the same system as the dense
      * one, which large scenes cannot afford; single precision of two algorithms shows the rest. */

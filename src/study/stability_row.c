@@ -17,6 +17,7 @@ struct stability_row *row_add(struct stability_report *r, const char *subject,
         r->room = room;
     }
     struct stability_row *x = &r->row[r->nrow++];
+    *x = (struct stability_row){0}; /* the table may have been used before */
     text_copy(x->subject, sizeof x->subject, subject);
     text_copy(x->algorithm, sizeof x->algorithm, algorithm);
     text_copy(x->precision, sizeof x->precision, precision);
