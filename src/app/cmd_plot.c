@@ -6,16 +6,24 @@
 #include <unistd.h>
 
 #include "app/arguments.h"
+#include "app/flag.h"
+#include "app/plot_options.h"
 #include "app/verb.h"
 #include "base/json.h"
+#include "report/plot.h"
 #include "report/report.h"
 
 static const char doc[] =
-    "Draw FIGURE from the database DB into a folder: FIGURE.png, .svg, .csv, the script .gp and "
-    ".provenance.\n\n"
+    "Draw FIGURE, any column over another, or the rows of your own query QUERY.sql from the "
+    "database DB into a folder: NAME.png, .svg, .csv, the script .gp and .provenance.\n\n"
     "Example: mimdsim plot mimdsim.db fig6 --dir figures\n"
+    "Example: mimdsim plot mimdsim.db --x n --y speedup --by machine,level --where kernel=dynamics\n"
     "\vWithout FIGURE: list the available figures, what each shows, and the command that makes "
-    "the runs it needs.";
+    "the runs it needs.\n\n"
+    "KEY is a column of the view v_run or of table run, a setting such as "
+    "machine.network.hop_latency, or the end of one; a query has its own columns. Axes are "
+    "logarithmic where the range asks for it. Several runs in one place are told apart by "
+    "curves; what --by leaves together is drawn as mean and spread, and told on standard error.";
 
 /* The pictures that figure `name` stands for, as paths: a script can pick them up. */
 static bool list_pictures(const struct common *c, struct store *s, const char *name, struct json *j,
@@ -114,21 +122,91 @@ static struct store *open_database(const struct common *c, struct err *e)
     return NULL;
 }
 
+/* Remarks on what was drawn, for people. */
+static void say(const struct common *c, const struct text *told)
+{
+    if (told->length > 0 && !c->quiet) fprintf(stderr, "mimdsim: %s\n", told->s);
+}
+
+/* "my.sql": a query of the user's own. */
+static bool is_query(const char *word)
+{
+    const size_t n = strlen(word);
+    return n > 4 && strcmp(word + n - 4, ".sql") == 0;
+}
+
+/* The picture that was made, as the others are told. */
+static void print_picture(const struct common *c, const char *name)
+{
+    struct text path = {0};
+    text_add(&path, "%s/%s.png", c->directory, name);
+    struct json j = json_make(stdout);
+    if (c->json) {
+        json_array(&j);
+        json_text(&j, path.s);
+        json_end(&j);
+        json_finish(&j);
+    } else if (!c->quiet) {
+        puts(path.s);
+    }
+    text_free(&path);
+}
+
+/* One picture of what the options ask for, from stored runs or from the rows of a query. */
+static bool draw_request(const struct common *c, struct store *s, struct plot_request *r, struct err *e)
+{
+    struct text sql = {0}, told = {0};
+    struct arena *a = arena_create();
+    const char *file = c->narg == 2 ? c->arg[1] : NULL;
+    bool ok = c->narg <= 2 || err_set(e, ERR_USAGE, "one picture at a time: '%s'", c->arg[2]);
+    if (ok && file != NULL && !is_query(file))
+        ok = err_set(e, ERR_USAGE, "--x and --y draw runs or the rows of QUERY.sql, not figure '%s'", file);
+    if (ok && file != NULL) ok = text_read_file(&sql, file, e);
+    if (ok && file != NULL) r->query = sql.s != NULL ? sql.s : "";
+    plot_options_name(r, file, a);
+    ok = ok && plot_draw(s, plan_data_dir(), r, c->directory, &told, e);
+    if (file != NULL && !ok) err_in(e, file);
+    say(c, &told);
+    if (ok) print_picture(c, r->as);
+    text_free(&sql);
+    text_free(&told);
+    arena_destroy(a);
+    return ok;
+}
+
+/* Figures in the order of the command line; the first failure ends it. */
+static bool draw_figures(const struct common *c, struct store *s, const struct plot_request *r, struct err *e)
+{
+    struct text told = {0};
+    bool ok = r->nwhere == 0 || plot_only(s, r->nwhere, r->where, &told, e);
+    say(c, &told);
+    text_free(&told);
+    for (int i = 1; ok && i < c->narg; i++)
+        ok = report_figure(s, plan_data_dir(), c->arg[i], c->directory, e);
+    return ok && (!(c->json || !c->quiet) || print_pictures(c, s, e));
+}
+
 /* No argument: figures; a database: the same; figures: draw them. */
 int cmd_plot(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_DIR, "[DB [FIGURE...]]", doc, 0, 64);
+    struct plot_request r;
+    struct arena *a = arena_create();
     struct err e;
     err_clear(&e);
-    struct store *s = c.narg > 0 ? open_database(&c, &e) : NULL;
-    /* Figures in the order of the command line; the first failure ends it. */
-    bool ok = s != NULL || c.narg == 0;
-    for (int i = 1; ok && i < c.narg; i++)
-        ok = report_figure(s, plan_data_dir(), c.arg[i], c.directory, &e);
+    bool axes = false, columns = take_flag(&argc, argv, "--columns");
+    const bool right = plot_options_take(&r, &argc, argv, &axes, a, &e);
+    common_parse(&c, argc, argv, TAKES_DIR, "[DB [FIGURE...|QUERY.sql]]", doc, 0, 64);
+    if (right && axes && c.narg == 0) err_set(&e, ERR_USAGE, "the database is missing: `mimdsim plot DB --x ...`");
+    bool ok = right && e.kind == ERR_NONE;
+    struct store *s = ok && c.narg > 0 ? open_database(&c, &e) : NULL;
+    ok = ok && (s != NULL || c.narg == 0);
     /* A database alone lists figures as well: the user wants to choose one. */
-    if (ok && c.narg < 2) list_figures(&c);
-    else if (ok && (c.json || !c.quiet)) ok = print_pictures(&c, s, &e);
+    if (ok && columns && s != NULL) ok = plot_columns(s, stdout, &e);
+    else if (ok && (axes || (c.narg == 2 && is_query(c.arg[1])))) ok = draw_request(&c, s, &r, &e);
+    else if (ok && c.narg < 2) list_figures(&c);
+    else if (ok) ok = draw_figures(&c, s, &r, &e);
     store_close(s);
+    arena_destroy(a);
     return ok ? 0 : common_fail(&c, &e);
 }

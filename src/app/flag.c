@@ -29,24 +29,30 @@ bool take_flag(int *argc, char **argv, const char *name)
     return found;
 }
 
-/* As argp: "--name=value" and "--name value". The last one counts; a value that is missing is
- * "". */
-const char *take_value(int *argc, char **argv, const char *name)
+/* As argp: "--name=value" and "--name value". A value that is missing is "". */
+const char *take_first_value(int *argc, char **argv, const char *name)
 {
-    const char *value = NULL;
+    const char *value;
     size_t length = strlen(name);
-    for (int i = 1; i < *argc;) {
-        if (strcmp(argv[i], "--") == 0) break;
+    for (int i = 1; i < *argc && strcmp(argv[i], "--") != 0; i++) {
         if (strncmp(argv[i], name, length) == 0 && argv[i][length] == '=') {
             value = argv[i] + length + 1;
             drop(argc, argv, i, 1);
-        } else if (strcmp(argv[i], name) == 0) {
-            value = i + 1 < *argc ? argv[i + 1] : "";
-            drop(argc, argv, i, i + 1 < *argc ? 2 : 1);
-        } else {
-            i++;
+            return value;
         }
+        if (strcmp(argv[i], name) != 0) continue;
+        value = i + 1 < *argc ? argv[i + 1] : "";
+        drop(argc, argv, i, i + 1 < *argc ? 2 : 1);
+        return value;
     }
+    return NULL;
+}
+
+/* The last one counts. */
+const char *take_value(int *argc, char **argv, const char *name)
+{
+    const char *value = NULL, *next;
+    while ((next = take_first_value(argc, argv, name)) != NULL) value = next;
     return value;
 }
 

@@ -13,6 +13,9 @@ bool take_flag(int *argc, char **argv, const char *name);
  * "". */
 const char *take_value(int *argc, char **argv, const char *name);
 
+/* take_first_value: as take_value, but only the first of several is removed; for options that may be repeated. */
+const char *take_first_value(int *argc, char **argv, const char *name);
+
 /* take_seconds: as take_value, a number of seconds above 0 into *seconds; 0 when the option is not there. False with
  * ERR_USAGE. */
 bool take_seconds(int *argc, char **argv, const char *name, double *seconds, struct err *e);

@@ -78,7 +78,8 @@ int report_figures(const char *data_dir, char ***name)
     int nentry = scandir(plots, &entry, NULL, alphasort), n = 0;
     *name = memory_zeroed((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
     for (int i = 0; i < nentry; i++) {
-        char *stem = figure_stem(plots, entry[i]->d_name);
+        /* What begins with _ draws what a verb computed (plot.h): no figure by itself. */
+        char *stem = entry[i]->d_name[0] != '_' ? figure_stem(plots, entry[i]->d_name) : NULL;
         if (stem != NULL) (*name)[n++] = stem;
         free(entry[i]);
     }
