@@ -53,11 +53,11 @@ do for [format in formats] {
     set xrange [base:top]
     set yrange [nx + 0.55:0.45]
     set format x "%.6g"
-    set xtics nomirror out scale 0.6 autofreq
+    set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format)
     set lmargin at screen left; set rmargin at screen 0.975
     do for [m=1:panels] {
         set tmargin at screen at_y(upper + (m - 1)*panel_high + (panels > 1 ? 22 : 0)); set bmargin at screen at_y(upper + m*panel_high - 58)
-        set xlabel vlabel noenhanced
+        set xlabel vlabel noenhanced offset 0,name_lift(format)
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         set ytics () scale 0
         plot for [k=1:curves] data using (of(m, k, column("value")*vscale)):(y_of(column("xi"), k)):(base):(of(m, k, column("value")*vscale)):(y_of(column("xi"), k) - 0.42*bar_high/group_high):(y_of(column("xi"), k) + 0.42*bar_high/group_high) \

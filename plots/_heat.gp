@@ -43,13 +43,13 @@ do for [format in formats] {
     set cbrange [vmin:vmax]; if (vlog > 0) { set logscale cb 10 }
     set format cb "%.4g"
     set xrange [0.5:nx + 0.5]; set yrange [0.5:ny + 0.5]
-    set xtics () scale 0 rotate by (nx > 14 ? -60 : 0); set ytics () scale 0
+    set xtics () scale 0 offset 0,tick_lift(format) rotate by (nx > 14 ? -60 : 0); set ytics () scale 0
     do for [m=1:panels] {
         c = (m - 1) % columns; r = (m - 1)/columns
         set lmargin at screen at_x(c*panel_wide + left_px + 20); set rmargin at screen at_x(c*panel_wide + left_px + 20 + nx*cell_wide)
         top = upper + r*panel_high + (panels > 1 ? 22 : 4)
         set tmargin at screen at_y(top); set bmargin at screen at_y(top + ny*cell_high)
-        set xlabel xlabel noenhanced; set ylabel ylabel noenhanced
+        set xlabel xlabel noenhanced offset 0,name_lift(format); set ylabel ylabel noenhanced
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         plot data using (in_panel(m, column("xi"))):"yi":(0.48):(0.48):(column("value")*vscale) \
                 with boxxyerror fillcolor palette linewidth 0 notitle, \

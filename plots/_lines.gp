@@ -56,14 +56,14 @@ do for [format in formats] {
     if (!x_number) { set xrange [0.5:nx + 0.5] }
     set yrange [(vlog > 0 ? pad_low(vmin, vlog) : (vmin > 0 ? 0 : vmin - 0.05*(vmax - vmin))):(vlog > 0 ? pad_high(vmax, vlog) : vmax + 0.05*(vmax - vmin) + (vmax == vmin))]
     set format x "%.6g"; set format y "%.6g"
-    set xtics nomirror out scale 0.6 autofreq; set ytics nomirror out scale 0.6 autofreq
+    set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format); set ytics nomirror out scale 0.6 autofreq
     do for [m=1:panels] {
         c = (m - 1) % columns; r = (m - 1)/columns
         left = 0.09*800.0/wide + c*(0.985 - 0.02)/columns
         set lmargin at screen left
         set rmargin at screen (columns == 1 ? 0.975 : left + 0.985/columns - 0.075)
         set tmargin at screen at_y(upper + r*panel_high + 6); set bmargin at screen at_y(upper + (r + 1)*panel_high - (panels > 1 ? 82 : 48))
-        set xlabel xlabel noenhanced
+        set xlabel xlabel noenhanced offset 0,name_lift(format)
         set ylabel (c == 0 ? vlabel : "") noenhanced
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         plot for [k=1:curves] data using (column("rows") > 1 ? at_x(column("xi"), column("x")) : NaN):(of(m, k, column("low")*vscale)):(of(m, k, column("high")*vscale)) \

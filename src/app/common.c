@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/own_option_list.h"
 #include "app/programs.h"
 #include "app/verb.h"
 #include "base/check.h"
@@ -14,7 +15,8 @@
 
 /* Keys of long options without a letter. */
 enum {
-    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME, KEY_ONLY
+    KEY_JSON = 0x100, KEY_LEVEL, KEY_BRIEF, KEY_COMPARE, KEY_FORCE, KEY_DIR, KEY_FORMAT, KEY_ALLOW, KEY_NAME, KEY_ONLY,
+    KEY_OWN
 };
 
 /* The last number is the group: it orders --help and decides which verbs have the option. */
@@ -41,6 +43,19 @@ static const struct argp_option option_table[] = {
     {"json", KEY_JSON, NULL, 0, "write one JSON document to standard output", 5},
     {"quiet", 'q', NULL, 0, "no progress and no remarks on standard error", 5},
     {0},
+};
+
+/* Options of single verbs, which these take out of their arguments themselves: here for --help. */
+static const struct own_option {
+    const char *verb;
+    struct argp_option option;
+} own_table[] = {
+#define X(verb, name, value, text) {verb, {name, KEY_OWN, value, 0, text, 9}},
+    OWN_OPTION_LIST(X)
+#undef X
+};
+enum {
+    MOST_OPTIONS = sizeof option_table / sizeof *option_table + sizeof own_table / sizeof *own_table
 };
 
 /* Groups 0 and 5 belong to every verb. */
@@ -154,6 +169,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         break;
     case ARGP_KEY_END: /* all words have been seen */
         return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
+    case KEY_OWN:
+        /* A verb has taken out its own options by their whole names: this was the beginning of one. */
+        return refuse(state, "write the option in full%s", "");
     default:
         /* argp's own keys: initialisation, errors */
         return ARGP_ERR_UNKNOWN;
@@ -208,7 +226,7 @@ static const char *unknown_option(int argc, char **argv, const struct argp_optio
 static void refuse_option(const char *verb, const char *word, const struct argp_option *option,
                           bool document)
 {
-    const char *name[sizeof option_table / sizeof *option_table], *given;
+    const char *name[MOST_OPTIONS], *given;
     int n = 0;
     char text[128];
     for (const struct argp_option *o = option; o->name; o++) name[n++] = o->name;
@@ -247,11 +265,13 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     c->database = "mimdsim.db";
     c->directory = "figures";
     c->kernel = catalogue_of_kernels();
-    struct argp_option option[sizeof option_table / sizeof *option_table] = {{0}};
+    struct argp_option option[MOST_OPTIONS] = {{0}};
     int n = 0;
     for (const struct argp_option *o = option_table; o->name; o++)
         /* The verb's own table of options. */
         if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
+    for (size_t i = 0; i < sizeof own_table / sizeof *own_table; i++)
+        if (strcmp(argv[0] + strcspn(argv[0], " ") + 1, own_table[i].verb) == 0) option[n++] = own_table[i].option;
     struct parse p = {c, least, most, {0}};
     struct argp argp = {.options = option, .parser = parse_option, .args_doc = args, .doc = doc};
     bool document = common_wants_json(argc, argv);

@@ -63,10 +63,12 @@ static int split(const char *list, const char **word, int most, struct arena *a)
     return n;
 }
 
+/* The columns of --by. Given but empty ("--by ''"), it puts everything on one curve. */
 static bool find_by(struct plot *p, struct err *e)
 {
     const char *word[MOST_BY + 1];
     if (p->request->by == NULL) return true;
+    /* One word more than there is room for shows that there were too many. */
     const int n = split(p->request->by, word, MOST_BY + 1, p->sheet.arena);
     p->axes.by_given = true;
     if (n > MOST_BY) return err_set(e, ERR_USAGE, "--by: more than %d columns", MOST_BY);
@@ -78,17 +80,21 @@ static bool find_by(struct plot *p, struct err *e)
     return true;
 }
 
+/* What stands on which axis: of a heat map --y is a place and --z the value, of all others --y is
+ * the value. */
 static bool find_axes(struct plot *p, struct err *e)
 {
     const struct plot_request *r = p->request;
     const struct plot_sheet *s = &p->sheet;
     const bool map = r->z != NULL || r->kind == PLOT_HEAT;
     struct plot_axes *a = &p->axes;
+    /* Of a query the first columns are the axes; of runs all axes were named (check_request). */
     a->x = column_of(s, r->x, nth_column(s, 0, false), e);
     const int y = column_of(s, r->y, nth_column(s, 1, !map), e);
     a->y = map ? y : -1;
     a->value = map ? column_of(s, r->z, nth_column(s, 2, true), e) : y;
     if (a->x < 0 || y < 0 || a->value < 0) return false;
+    /* An axis may have words on it, a value must be a number. */
     if (!s->column[a->value].number)
         return err_set(e, ERR_USAGE, "'%s' is no number: it cannot be drawn over '%s'",
                        s->column[a->value].key, s->column[a->x].key);
@@ -105,6 +111,7 @@ static double prefix_of(enum unit unit, double largest, const char **name)
         const char *time, *rate;
     } prefix[] = {{1e-9, "ns", ""},  {1e-6, "µs", ""},  {1e-3, "ms", ""},  {1, "s", ""},
                   {1e3, "s", "k"},  {1e6, "s", "M"},  {1e9, "s", "G"},  {1e12, "s", "T"}};
+    /* Times go down from seconds, rates go up from one: nobody reads kiloseconds or millibytes. */
     const bool time = unit == UNIT_TIME;
     size_t at = 3;
     const size_t n = sizeof prefix / sizeof *prefix;
@@ -116,6 +123,7 @@ static double prefix_of(enum unit unit, double largest, const char **name)
     return prefix[at].factor;
 }
 
+/* frexp gives a mantissa of one half exactly for these. */
 static bool is_power_of_two(double v)
 {
     int exponent;
@@ -136,11 +144,15 @@ static void make_axis(struct axis *axis, const struct plot_column *c, enum plot_
 {
     double least = INFINITY, largest = 0;
     bool powers = true;
+    /* Numbers of bodies and of ranks are counted in powers of two, even where some are none. */
+    const bool counts = strcmp(c->key, "n") == 0 || strcmp(c->key, "P") == 0;
     for (int i = 0; i < n; i++) {
         least = fmin(least, v[i]);
         largest = fmax(largest, fabs(v[i]));
-        powers = powers && is_power_of_two(v[i]);
+        powers = powers && (counts || is_power_of_two(v[i]));
     }
+    /* Sizes stay in bytes: their prefixes are powers of 1,024, which a logarithmic axis shows by
+     * itself. */
     const char *name = "", *si = units_si(c->unit);
     const bool scaled = c->unit == UNIT_TIME || c->unit == UNIT_BANDWIDTH ||
                         c->unit == UNIT_FLOP_RATE || c->unit == UNIT_FREQUENCY;
@@ -160,6 +172,7 @@ static void make_axes(struct plot *p)
     const struct plot_points *q = &p->points;
     const struct plot_sheet *s = &p->sheet;
     const struct plot_request *r = p->request;
+    /* One buffer for the numbers of each axis in turn. */
     double *v = malloc((size_t)(q->n + q->nx + q->ny + 1) * sizeof *v);
     CHECK(v != NULL);
     for (int i = 0; i < q->nx; i++) v[i] = plot_sheet_at(s, q->x[i], p->axes.x)->number;
@@ -191,6 +204,7 @@ static bool check_bars(const struct plot *p, struct err *e)
 
 /* ---- texts ---- */
 
+/* "Run time against bodies n", unless the user has a better one. */
 static void make_title(const struct plot *p, struct text *t)
 {
     const struct plot_sheet *s = &p->sheet;
@@ -199,6 +213,7 @@ static void make_title(const struct plot *p, struct text *t)
         return;
     }
     text_add(t, "%s against %s", s->column[p->axes.value].title, s->column[p->axes.x].title);
+    /* A heat map has two. */
     if (p->axes.y >= 0) text_add(t, " and %s", s->column[p->axes.y].title);
     /* A sentence begins with a capital, the name of a column stays as it is. */
     if (t->s[0] >= 'a' && t->s[0] <= 'z' && strchr(s->column[p->axes.value].title, ' ') != NULL)
@@ -215,6 +230,7 @@ static void make_subtitle(const struct plot *p, struct text *t)
         struct err ignored;
         err_clear(&ignored);
         const int c = plot_sheet_find(s, key[i], &ignored);
+        /* Only what every row shares is true of the whole figure. */
         bool one = c >= 0 && c != p->axes.x && c != p->axes.y;
         for (int k = 1; one && k < s->nrow; k++)
             one = strcmp(plot_sheet_at(s, k, c)->text, plot_sheet_at(s, 0, c)->text) == 0;
@@ -239,6 +255,7 @@ static void tell(const struct plot *p, struct text *told)
 {
     const struct plot_sheet *s = &p->sheet;
     const char *what = s->runs ? "runs" : "rows";
+    /* Every row is accounted for: drawn, left out by a condition, or without a number. */
     int total = p->rows_before, drawn = s->nrow - p->points.unknown;
     text_add(told, "drawn: %d of %d %s", drawn, total, what);
     if (total > s->nrow) text_add(told, "; left out: %d by --where", total - s->nrow);
@@ -256,6 +273,7 @@ static void tell(const struct plot *p, struct text *told)
 
 /* ---- tables ---- */
 
+/* The points as rows, with the texts of their places: what a reader of the CSV file gets, too. */
 static bool put_points(const struct plot *p, struct store *s, struct err *e)
 {
     const struct plot_points *q = &p->points;
@@ -267,10 +285,12 @@ static bool put_points(const struct plot *p, struct store *s, struct err *e)
     for (int i = 0; ok && i < q->n; i++) {
         const struct plot_point *a = &q->at[i];
         const struct plot_cell *x = plot_sheet_at(&p->sheet, q->x[a->xi], p->axes.x);
+        /* Curves and bars have no second axis. */
         static const struct plot_cell none = {"", NAN};
         const struct plot_cell *y =
             q->ny > 0 ? plot_sheet_at(&p->sheet, q->y[a->yi], p->axes.y) : &none;
         const int64_t id = p->sheet.run_id[a->row];
+        /* Numbers of panels, curves and places begin with 1, as gnuplot counts. */
         const struct store_value v[] = {
             store_int(a->panel + 1), store_text(q->panel[a->panel]), store_int(a->series + 1),
             store_text(q->series[a->series]), store_int(a->xi + 1), store_real(x->number),
@@ -299,6 +319,7 @@ static bool put_about(const struct plot *p, struct store *s, struct err *e)
     struct text title = {0}, subtitle = {0}, bands = {0};
     const struct plot_points *q = &p->points;
     size_t longest = 0;
+    /* The script makes room for the longest name in the legend. */
     for (int i = 0; i < q->nseries; i++)
         if (strlen(q->series[i]) > longest) longest = strlen(q->series[i]);
     make_title(p, &title);
@@ -329,6 +350,7 @@ static bool put_about(const struct plot *p, struct store *s, struct err *e)
 static int list_keys(const struct plot_request *r, const char **key, struct arena *a)
 {
     int n = 0;
+    /* In this order, so that a legend names first what the user asked for first. */
     const char *const axis[] = {r->x, r->y, r->z};
     for (int i = 0; i < 3; i++)
         if (axis[i] != NULL) key[n++] = axis[i];
@@ -337,6 +359,7 @@ static int list_keys(const struct plot_request *r, const char **key, struct aren
     return n;
 }
 
+/* Rows of the query or of the runs, and the conditions on them. */
 static bool read_rows(struct plot *p, struct store *s, struct err *e)
 {
     const struct plot_request *r = p->request;
@@ -347,6 +370,7 @@ static bool read_rows(struct plot *p, struct store *s, struct err *e)
                         : plot_sheet_runs(&p->sheet, s, list_keys(r, key, a), key, e);
     arena_destroy(a);
     if (!ok) return false;
+    /* Conditions come after reading: they may name columns of a query as well as settings. */
     p->rows_before = p->sheet.nrow;
     return plot_where_keep(&p->sheet, r->nwhere, r->where, e);
 }
@@ -364,6 +388,7 @@ static bool check_request(const struct plot_request *r, struct err *e)
     return true;
 }
 
+/* Rows, columns, points, scales, tables, figure. Whatever fails, what was read is given back. */
 bool plot_draw(struct store *s, const char *data_dir, const struct plot_request *r, const char *dir,
                struct text *told, struct err *e)
 {
@@ -371,6 +396,7 @@ bool plot_draw(struct store *s, const char *data_dir, const struct plot_request 
     if (!check_request(r, e)) return false;
     bool ok = read_rows(&p, s, e) && find_axes(&p, e) &&
               plot_points_make(&p.points, &p.sheet, &p.axes, e);
+    /* Scales and texts follow from the points; then the figure's own query reads them as data. */
     if (ok) {
         make_axes(&p);
         p.figure = figure_of(&p);
@@ -383,6 +409,8 @@ bool plot_draw(struct store *s, const char *data_dir, const struct plot_request 
     return ok;
 }
 
+/* Which runs fulfil the conditions is found out as for a plot; the copy of the database then holds
+ * these alone, so that no figure needs to know of conditions. */
 bool plot_only(struct store *s, int n, const struct plot_condition *where, struct text *told,
                struct err *e)
 {
@@ -395,6 +423,7 @@ bool plot_only(struct store *s, int n, const struct plot_condition *where, struc
     ok = ok && plot_where_keep(&sheet, n, where, e);
     for (int i = 0; ok && i < sheet.nrow; i++)
         text_add(&ids, "%s%lld", i > 0 ? "," : "[", (long long)sheet.run_id[i]);
+    /* The list of runs goes to the database as one bound text. */
     text_add(&ids, "]");
     ok = ok && store_only(s, ids.s, e);
     if (ok) text_add(told, "drawn from %d of %d runs", sheet.nrow, before);
@@ -428,6 +457,7 @@ static bool no_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* Columns of the view, then settings: of those that vary how many values there are. */
 bool plot_columns(struct store *s, FILE *out, struct err *e)
 {
     return store_query(s, "SELECT * FROM v_run LIMIT 0", 0, NULL, print_column, no_row, out, e) &&

@@ -63,6 +63,7 @@ static int list_places(const struct making *m, int column, int *place)
         bool known = false;
         for (int j = 0; j < n && !known; j++) known = same_place(m, column, place[j], row);
         if (known) continue;
+        /* Words compare equal: they keep the order in which they came. */
         for (; k > 0 && compare_cells(m, column, place[k - 1], row) > 0; k--) place[k] = place[k - 1];
         place[k] = row;
         n++;
@@ -86,10 +87,12 @@ static bool has_place(const struct making *m, int row)
     return a->y < 0 || text_at(m, row, a->y)[0] != '\0';
 }
 
+/* Each row gets its numbers on the axes; the lists of places are made from the rows that have one. */
 static void place_rows(struct making *m)
 {
     struct plot_points *p = m->p;
     struct arena *a = m->sheet->arena;
+    /* Rows without a place are counted, since whoever reads the figure has to know of them. */
     for (int i = 0; i < m->sheet->nrow; i++)
         if (has_place(m, i)) m->at[m->n++].row = i;
         else p->unknown++;
@@ -123,6 +126,8 @@ static bool same_point(const struct making *m, int i, int k)
 /* Whether `column` differs between two rows of one point. */
 static bool splits(const struct making *m, int column)
 {
+    /* All pairs: a few thousand rows are compared in a fraction of a second, and most pairs differ
+     * in their place already. */
     for (int i = 0; i < m->n; i++)
         for (int k = 0; k < i; k++)
             if (same_point(m, i, k) &&
@@ -131,6 +136,7 @@ static bool splits(const struct making *m, int column)
     return false;
 }
 
+/* How many different values a column has among the rows that are drawn. */
 static int values_of(const struct making *m, int column)
 {
     int *place = malloc((size_t)(m->n + 1) * sizeof *place);
@@ -140,6 +146,7 @@ static int values_of(const struct making *m, int column)
     return n;
 }
 
+/* Whether a column is an axis already, or tells curves apart. */
 static bool is_used(const struct plot_axes *a, int column)
 {
     bool used = column == a->x || column == a->y || column == a->value;
@@ -154,6 +161,7 @@ static void choose_columns(struct making *m)
     struct plot_axes *a = m->axes;
     for (int c = 0; c < m->sheet->ncolumn && a->nby < MOST_BY; c++) {
         const struct plot_column *column = &m->sheet->column[c];
+        /* A result that differs says nothing about which runs these are. */
         const bool fit = m->sheet->runs ? column->trait : !column->number;
         if (fit && !is_used(a, c) && splits(m, c) && values_of(m, c) <= MOST_SPLIT)
             a->by[a->nby++] = c;
@@ -170,6 +178,7 @@ static const char *curve_name(const struct making *m, int from, int to, int row)
         /* What all rows share tells nothing apart. */
         if (text[0] == '\0' || m->one_value[i]) continue;
         text_add(&t, "%s", t.length > 0 ? ", " : "");
+        /* "bodies n 64": a number alone would not say of what. */
         if (c->number) text_add(&t, "%s ", c->title);
         text_add(&t, "%s", text);
     }
@@ -209,6 +218,7 @@ static bool name_curves(struct making *m, struct err *e)
     for (int i = 0; i < nby; i++) m->one_value[i] = values_of(m, m->axes->by[i]) == 1;
     p->panel = TAKE(a, m->n + 1, const char *);
     p->series = TAKE(a, m->n + 1, const char *);
+    /* First all in one panel; when that is too much, a panel for each value of the first column. */
     for (int from = 0; from < 2; from++) {
         const bool maps = m->axes->y >= 0; /* a heat map has one panel for each curve */
         const int split = maps ? nby : from;
@@ -225,6 +235,7 @@ static bool name_curves(struct making *m, struct err *e)
 
 /* ---- points ---- */
 
+/* For qsort: by panel, curve and place; rows of one point as they came. */
 static int compare_placed(const void *a, const void *b)
 {
     const struct placed *x = a, *y = b;
@@ -282,6 +293,7 @@ static void add_point(struct making *m, const struct placed *at, int n)
         low = fmin(low, v);
         high = fmax(high, v);
     }
+    /* In a second pass, since squares of nearly equal numbers would cancel in one. */
     const double mean = sum / n;
     for (int i = 0; i < n; i++) {
         const double d = plot_sheet_at(m->sheet, at[i].row, m->axes->value)->number - mean;
@@ -293,6 +305,7 @@ static void add_point(struct making *m, const struct placed *at, int n)
         const double half = student(n) * sqrt(square / (n - 1.0) / n);
         low = mean - half, high = mean + half;
     } else if (n > 1) {
+        /* Runs that differ in more are no sample of one quantity: a range, no interval. */
         tell_difference(m, at, n);
     }
     p->repeated += repeated;
@@ -321,6 +334,7 @@ static double distance(const struct plot_points *p, int a, int b)
         const struct plot_point *q = &p->at[i];
         if (q->series != a && q->series != b) continue;
         const struct plot_point *other = point_at(p, q->panel, q->series == a ? b : a, q->xi);
+        /* A curve that goes on alone can be seen there. */
         if (other == NULL) return 1;
         const double scale = fmax(fabs(q->value), fabs(other->value));
         if (scale > 0) largest = fmax(largest, fabs(q->value - other->value) / scale);
@@ -345,18 +359,21 @@ static void name_hidden(struct making *m)
         }
 }
 
+/* Everything but the result lives in the arena of the sheet. */
 bool plot_points_make(struct plot_points *p, const struct plot_sheet *sheet, struct plot_axes *axes,
                       struct err *e)
 {
     *p = (struct plot_points){0};
     struct making m = {.sheet = sheet, .axes = axes, .p = p,
                        .at = TAKE(sheet->arena, sheet->nrow + 1, struct placed)};
+    /* Places first: which rows meet on one point decides which columns a legend needs. */
     place_rows(&m);
     if (m.n == 0)
         return err_set(e, ERR_NO_INPUT, "no row has a number for %s and a value for %s",
                        sheet->column[axes->value].key, sheet->column[axes->x].key);
     if (!axes->by_given) choose_columns(&m);
     if (!name_curves(&m, e)) return false;
+    /* Rows of one point follow each other then. */
     qsort(m.at, (size_t)m.n, sizeof *m.at, compare_placed);
     p->at = TAKE(sheet->arena, m.n, struct plot_point);
     for (int i = 0, k; i < m.n; i = k) {

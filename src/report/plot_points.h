@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "report/plot_sheet.h"
 
-enum { MOST_BY = 8, MOST_SERIES = 8, MOST_PANELS = 12 };
+enum { MOST_BY = 8, MOST_SERIES = 6, MOST_PANELS = 12 };
 
 /* Which columns are what. */
 struct plot_axes {

@@ -70,6 +70,7 @@ static const char *looked_up(const char *const list[][2], size_t n, const char *
     return word;
 }
 
+/* Lists of some tens of words: searched from the front. */
 static bool is_in(const char *const *list, int n, const char *word)
 {
     for (int i = 0; i < n; i++)
@@ -109,6 +110,7 @@ static bool add_setting(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* Settings in which runs differ come first, since these are what curves are told apart by. */
 static bool list_names(struct names *n, struct store *s, struct err *e)
 {
     if (!store_query(s, "SELECT * FROM v_run LIMIT 0", 0, NULL, add_columns, no_row, n, e))
@@ -140,6 +142,7 @@ static bool unknown(const struct names *n, const char *key, struct err *e)
         all[count++] = n->setting[i];
         if (dot != NULL && count < 2 * MOST_NAMES) all[count++] = dot + 1;
     }
+    /* The last word of a key is what people remember of it. */
     const char *near = text_nearest(key, all, count);
     return err_set(e, ERR_USAGE,
                    "'%.80s' is neither a column of a run nor a setting%s%s%s; `mimdsim plot DB "
@@ -157,6 +160,7 @@ static bool resolve(const struct names *n, const char *key, struct source *out, 
         if (strcmp(n->column[i], word) == 0)
             return out->name = n->column[i], out->result = i >= n->nview, true;
     out->setting = true;
+    /* A whole key wins over the ends of others. */
     for (int i = 0; i < n->nsetting; i++) {
         if (strcmp(n->setting[i], word) == 0) return out->name = n->setting[i], true;
         if (!ends_in(n->setting[i], word)) continue;
@@ -191,6 +195,7 @@ static int choose(const struct names *n, int nkey, const char *const *key, struc
         if (!resolve(n, key[i], &one, e)) return -1;
         count = add_source(list, count, one);
     }
+    /* Behind what was asked for: all in which runs may differ, so that nothing is mixed unseen. */
     for (int i = 0; i < TRAITS; i++) count = add_source(list, count, (struct source){.name = traits[i]});
     /* Runs with one configuration are repetitions of each other. */
     count = add_source(list, count, (struct source){.name = "config_hash"});
@@ -208,6 +213,8 @@ static int choose(const struct names *n, int nkey, const char *const *key, struc
 /* One row a run: its number, then for each column the value and, of a setting, the number. */
 static void write_query(const struct source *list, int n, struct text *sql)
 {
+    /* A setting is joined by its key, which is a bound parameter; a column stands in the view or,
+     * where that lacks it, in the table. */
     int param = 0;
     text_add(sql, "SELECT v.run_id");
     for (int i = 0; i < n; i++) {
@@ -285,6 +292,7 @@ static bool take_run(void *context, int ncolumn, const char *const *name,
     struct reading *r = context;
     (void)ncolumn, (void)name;
     struct plot_cell *row = next_row(r);
+    /* The number of the run is no column: no axis shows it. */
     r->sheet->run_id[r->sheet->nrow - 1] = value[0].integer;
     for (int i = 0; i < r->sheet->ncolumn; i++) {
         const struct store_value *v = &value[1 + 3 * i];
@@ -316,6 +324,7 @@ static void name_columns(struct plot_sheet *sheet, const struct source *list)
         const char *name = arena_text(sheet->arena, list[i].name), *dot = strrchr(name, '.');
         /* Two words of a key mostly say enough: link.bandwidth. */
         while (dot != NULL && dot > name && dot[-1] != '.') dot--;
+        /* The unit of a setting comes with its rows. */
         sheet->column[i] = (struct plot_column){
             .key = name,
             .title = looked_up(title, sizeof title / sizeof *title, dot != NULL ? dot : name),
@@ -324,6 +333,7 @@ static void name_columns(struct plot_sheet *sheet, const struct source *list)
     }
 }
 
+/* One query for all columns. Its text is made of names out of the lists above alone. */
 bool plot_sheet_runs(struct plot_sheet *sheet, struct store *s, int n, const char *const *key,
                      struct err *e)
 {
@@ -361,6 +371,7 @@ static bool take_header(void *context, int ncolumn, const char *const *name,
     (void)value;
     sheet->ncolumn = ncolumn;
     sheet->column = TAKE(sheet->arena, ncolumn, struct plot_column);
+    /* A query that has a column run_id tells whose numbers these are; the provenance names them. */
     r->run_column = -1;
     for (int i = 0; i < ncolumn; i++) {
         const char *own = arena_text(sheet->arena, name[i]);
@@ -373,6 +384,7 @@ static bool take_header(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* A row of a user's query: texts as they are, numbers with six digits as texts. */
 static bool take_row(void *context, int ncolumn, const char *const *name,
                      const struct store_value *value)
 {
@@ -384,6 +396,7 @@ static bool take_row(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
+/* store_query refuses whatever would change the database, and more than one statement. */
 bool plot_sheet_query(struct plot_sheet *sheet, struct store *s, const char *sql, struct err *e)
 {
     *sheet = (struct plot_sheet){.arena = arena_create()};
@@ -396,6 +409,7 @@ bool plot_sheet_query(struct plot_sheet *sheet, struct store *s, const char *sql
 
 /* ---- looking up ---- */
 
+/* In a query only its own names count; of runs also other words for columns, and ends of keys. */
 int plot_sheet_find(const struct plot_sheet *sheet, const char *key, struct err *e)
 {
     const char *name[MOST_NAMES];

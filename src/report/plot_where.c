@@ -32,6 +32,7 @@ static const char *trimmed(const char *s, size_t n, struct arena *a)
     return copy;
 }
 
+/* KEY OPERATOR VALUE, blanks around each of them as one likes. */
 bool plot_where_parse(struct plot_condition *c, const char *text, struct arena *a, struct err *e)
 {
     /* The first operator in the text divides it: a value may hold others. */
@@ -70,6 +71,7 @@ static bool is_one_of(const struct plot_cell *cell, const struct plot_column *co
 {
     char one[256], why[160];
     for (const char *s = values;; s++) {
+        /* Compared as texts first: "16" is also the name of something. */
         const size_t n = strcspn(s, "|");
         double number;
         snprintf(one, sizeof one, "%.*s", (int)n, s);
@@ -83,6 +85,7 @@ static bool is_one_of(const struct plot_cell *cell, const struct plot_column *co
     }
 }
 
+/* A row without a number fulfils no order: comparisons with NAN are false. */
 static bool fulfils(const struct plot_cell *cell, const struct plot_column *column,
                     const struct plot_condition *c, double number)
 {
@@ -107,6 +110,7 @@ static bool nothing_left(const struct plot_sheet *sheet, int at, const struct pl
     int n = 0;
     for (int i = 0; i < sheet->nrow && n < MOST_TOLD; i++) {
         const char *value = plot_sheet_at(sheet, i, at)->text;
+        /* Each value once, and no more than a line holds. */
         bool known = false;
         for (int k = 0; k < n; k++) known = known || strcmp(told[k], value) == 0;
         if (known) continue;
@@ -124,6 +128,7 @@ static bool keep(struct plot_sheet *sheet, const struct plot_condition *c, struc
 {
     const int at = plot_sheet_find(sheet, c->key, e);
     if (at < 0) return false;
+    /* Only numbers have an order; equality and patterns hold for words, too. */
     const struct plot_column *column = &sheet->column[at];
     const bool ordered = c->operator >= PLOT_LESS && c->operator <= PLOT_AT_LEAST;
     double number = 0;
@@ -131,6 +136,7 @@ static bool keep(struct plot_sheet *sheet, const struct plot_condition *c, struc
     if (ordered && (!column->number ||
                     !number_of(c->value, column->unit, &number, why, (int)sizeof why)))
         return err_set(e, ERR_USAGE, "--where %s: '%.60s': %s", c->key, c->value, why);
+    /* Counted before anything moves: the message of an empty choice needs all rows. */
     int n = 0;
     for (int i = 0; i < sheet->nrow; i++) n += fulfils(plot_sheet_at(sheet, i, at), column, c, number);
     if (n == 0) return nothing_left(sheet, at, c, e);
@@ -146,6 +152,7 @@ static bool keep(struct plot_sheet *sheet, const struct plot_condition *c, struc
     return true;
 }
 
+/* One after the other, so that a message can name the condition that left nothing. */
 bool plot_where_keep(struct plot_sheet *sheet, int n, const struct plot_condition *c, struct err *e)
 {
     if (sheet->nrow == 0)

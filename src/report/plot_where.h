@@ -1,4 +1,4 @@
-/* plot_where.h - conditions on the rows of a plot: "level=link", "n>=64", "hop_latency<=1 us", "label=T3E, links x2". */
+/* plot_where.h - conditions on the rows of a plot: "level=link", "n>=64", "hop_latency<=1 us". */
 #ifndef REPORT_PLOT_WHERE_H
 #define REPORT_PLOT_WHERE_H
 

@@ -59,6 +59,7 @@ bool store_call(struct store *s, const struct run_spec *spec, struct err *e)
     struct binding b;
     struct text label = {0};
     run_label(spec, &label);
+    /* By its identity, as everywhere: there may be no such row, which is no error. */
     bool ok = bind_start(s, STATEMENT_RUN_CALL, &b, e);
     if (ok) {
         bind_text(&b, spec->config_hash);

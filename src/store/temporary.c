@@ -25,6 +25,7 @@ bool store_temporary(struct store *s, const char *name, const char *columns, str
     struct text sql = {0};
     text_add(&sql, "DROP TABLE IF EXISTS temp.\"%s\"; CREATE TEMP TABLE \"%s\" (%s)", name, name,
              columns);
+    /* Forbidden again whatever happened in between. */
     bool ok = allow(s, true, e) && store_exec(s, sql.s, e);
     ok = allow(s, false, e) && ok;
     text_free(&sql);
@@ -72,6 +73,7 @@ static sqlite3 *copy_of(struct store *s, struct err *e)
     sqlite3 *copy = NULL;
     bool ok = sqlite3_open("", &copy) == SQLITE_OK;
     sqlite3_backup *b = ok ? sqlite3_backup_init(copy, "main", s->db, "main") : NULL;
+    /* With the pages of its log, in one go: a database that others write is seen at one moment. */
     if (b != NULL) sqlite3_backup_step(b, -1);
     ok = b != NULL && sqlite3_backup_finish(b) == SQLITE_OK;
     if (ok) return copy;
@@ -86,6 +88,7 @@ bool store_only(struct store *s, const char *run_ids, struct err *e)
     CHECK(!s->writable);
     sqlite3 *copy = copy_of(s, e);
     if (copy == NULL) return false;
+    /* From here on the store is the copy; its file is untouched and no longer open. */
     sqlite3_close(s->db);
     s->db = copy;
     sqlite3_stmt *q = NULL;
