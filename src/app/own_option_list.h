@@ -11,6 +11,7 @@
     X("run", "point", "ID", "only this run of the plan (mimdsim plan lists them)")                            \
     X("run", "limit", "SECONDS", "processor time that a run of your own program may take (default 600)")      \
     X("run", "keep-all", NULL, "also compute what the scene does not need")                                   \
+    X("run", "campaign", "WAY", "mpi: the processes that mpirun started share the plan")                      \
     X("plan", "shards", "N", "also the shard that each run belongs to")                                       \
     X("plan", "format", "FORMAT", "lines (default) or json")                                                  \
     X("paper", "paper-only", NULL, "without the five scenes of accuracy, stability and omissions")            \

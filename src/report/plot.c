@@ -104,6 +104,7 @@ static bool find_axes(struct plot *p, struct err *e)
 /* ---- axes ---- */
 
 /* A prefix under which the largest value has one to three digits before its point. */
+/* Base units in the data, readable ones on the axis: the factor between them is data, too. */
 static double prefix_of(enum unit unit, double largest, const char **name)
 {
     static const struct {

@@ -29,6 +29,7 @@ struct making {
     bool one_value[MOST_BY]; /* columns that tell curves apart, but have one value */
 };
 
+/* What people read of a value. */
 static const char *text_at(const struct making *m, int row, int column)
 {
     return plot_sheet_at(m->sheet, row, column)->text;
@@ -71,6 +72,7 @@ static int list_places(const struct making *m, int column, int *place)
     return n;
 }
 
+/* The number of the row's value on an axis. */
 static int place_of(const struct making *m, int column, const int *place, int n, int row)
 {
     for (int i = 0; i < n; i++)

@@ -318,6 +318,7 @@ static void find_numbers(struct plot_sheet *sheet)
     }
 }
 
+/* How each column is called on an axis and in a legend. */
 static void name_columns(struct plot_sheet *sheet, const struct source *list)
 {
     for (int i = 0; i < sheet->ncolumn; i++) {
