@@ -157,6 +157,7 @@ static bool draw_request(const struct common *c, struct store *s, struct plot_re
 {
     struct text sql = {0}, told = {0};
     struct arena *a = arena_create();
+    /* The database, and perhaps a query. */
     const char *file = c->narg == 2 ? c->arg[1] : NULL;
     bool ok = c->narg <= 2 || err_set(e, ERR_USAGE, "one picture at a time: '%s'", c->arg[2]);
     if (ok && file != NULL && !is_query(file))
@@ -178,6 +179,7 @@ static bool draw_request(const struct common *c, struct store *s, struct plot_re
 static bool draw_figures(const struct common *c, struct store *s, const struct plot_request *r, struct err *e)
 {
     struct text told = {0};
+    /* Conditions make the database smaller: every figure then shows what is left. */
     bool ok = r->nwhere == 0 || plot_only(s, r->nwhere, r->where, &told, e);
     say(c, &told);
     text_free(&told);
@@ -194,6 +196,7 @@ int cmd_plot(int argc, char **argv)
     struct arena *a = arena_create();
     struct err e;
     err_clear(&e);
+    /* What belongs to this verb alone is taken out first; what was wrong in it is told after --help had its chance. */
     bool axes = false, columns = take_flag(&argc, argv, "--columns");
     const bool right = plot_options_take(&r, &argc, argv, &axes, a, &e);
     common_parse(&c, argc, argv, TAKES_DIR, "[DB [FIGURE...|QUERY.sql]]", doc, 0, 64);

@@ -148,6 +148,7 @@ static void say_failed(const struct keep *k)
 /* Runs that are stored already get the name that is given now; without one they keep theirs. */
 static bool call_stored(struct store *s, const struct run_spec *run, const bool *skip, int n, struct err *e)
 {
+    /* One transaction for all: a name costs no more than a row. */
     bool ok = store_begin(s, e);
     for (int i = 0; i < n && ok; i++)
         if (skip[i] && run[i].label[0] != '\0') ok = store_call(s, &run[i], e);

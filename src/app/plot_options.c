@@ -13,6 +13,7 @@
 /* The number of `word` in a list that ends with NULL; -1 with the nearest one told. */
 static int word_of(const char *option, const char *word, const char *const *list, struct err *e)
 {
+    /* The list is told when no word of it is near. */
     int n = 0;
     struct text all = {0};
     for (; list[n] != NULL; n++) {
@@ -27,6 +28,7 @@ static int word_of(const char *option, const char *word, const char *const *list
     return -1;
 }
 
+/* Which of the kinds of picture; the order is that of enum plot_kind. */
 static bool take_kind(struct plot_request *r, const char *word, struct err *e)
 {
     static const char *const kinds[] = {"auto", "lines", "bars", "heat", NULL};
@@ -40,6 +42,7 @@ static bool take_log(struct plot_request *r, const char *word, struct err *e)
 {
     static const char *const axes[] = {"none", "x", "y", "xy", NULL};
     if (word == NULL) return true;
+    /* Two bits: x and y. */
     const int at = word_of("--log", word, axes, e);
     r->x_scale = at & 1 ? PLOT_SCALE_LOG : PLOT_SCALE_LINEAR;
     r->y_scale = at & 2 ? PLOT_SCALE_LOG : PLOT_SCALE_LINEAR;
@@ -59,6 +62,7 @@ static bool take_conditions(struct plot_request *r, int *argc, char **argv, stru
     return true;
 }
 
+/* Words first, then what has to be read. Only --by may be empty: everything on one curve. */
 bool plot_options_take(struct plot_request *r, int *argc, char **argv, bool *given, struct arena *a,
                        struct err *e)
 {
@@ -77,6 +81,7 @@ bool plot_options_take(struct plot_request *r, int *argc, char **argv, bool *giv
            take_log(r, take_value(argc, argv, "--log"), e) && take_conditions(r, argc, argv, a, e);
 }
 
+/* "speedup-over-n", so that two requests do not write the same files. */
 void plot_options_name(struct plot_request *r, const char *query_file, struct arena *a)
 {
     struct text t = {0};
