@@ -138,6 +138,7 @@ static bool is_query(const char *word)
 /* The picture that was made, as the others are told. */
 static void print_picture(const struct common *c, const char *name)
 {
+    /* The same words as for figures by name, so that a script reads one form. */
     struct text path = {0};
     text_add(&path, "%s/%s.png", c->directory, name);
     struct json j = json_make(stdout);
@@ -166,6 +167,7 @@ static bool draw_request(const struct common *c, struct store *s, struct plot_re
     if (ok && file != NULL) r->query = sql.s != NULL ? sql.s : "";
     plot_options_name(r, file, a);
     ok = ok && plot_draw(s, plan_data_dir(), r, c->directory, &told, e);
+    /* A mistake in a query of the user's own is told with its file. */
     if (file != NULL && !ok) err_in(e, file);
     say(c, &told);
     if (ok) print_picture(c, r->as);
@@ -205,6 +207,7 @@ int cmd_plot(int argc, char **argv)
     struct store *s = ok && c.narg > 0 ? open_database(&c, &e) : NULL;
     ok = ok && (s != NULL || c.narg == 0);
     /* A database alone lists figures as well: the user wants to choose one. */
+    /* What is asked for: a list of columns, one picture, the list of figures, or figures by name. */
     if (ok && columns && s != NULL) ok = plot_columns(s, stdout, &e);
     else if (ok && (axes || (c.narg == 2 && is_query(c.arg[1])))) ok = draw_request(&c, s, &r, &e);
     else if (ok && c.narg < 2) list_figures(&c);

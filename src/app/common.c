@@ -171,6 +171,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return c->narg < p->least ? refuse(state, "an argument is missing%s", "") : 0;
     case KEY_OWN:
         /* A verb has taken out its own options by their whole names: this was the beginning of one. */
+        /* As if it were unknown: to guess here and not there would be worse. */
         return refuse(state, "write the option in full%s", "");
     default:
         /* argp's own keys: initialisation, errors */
@@ -270,6 +271,7 @@ void common_parse(struct common *c, int argc, char **argv, unsigned takes, const
     for (const struct argp_option *o = option_table; o->name; o++)
         /* The verb's own table of options. */
         if (!group_of(o->group) || takes & group_of(o->group)) option[n++] = *o;
+    /* Behind them those of the verb alone; argv[0] is "mimdsim VERB". */
     for (size_t i = 0; i < sizeof own_table / sizeof *own_table; i++)
         if (strcmp(argv[0] + strcspn(argv[0], " ") + 1, own_table[i].verb) == 0) option[n++] = own_table[i].option;
     struct parse p = {c, least, most, {0}};

@@ -32,6 +32,7 @@ bool take_flag(int *argc, char **argv, const char *name)
 /* As argp: "--name=value" and "--name value". A value that is missing is "". */
 const char *take_first_value(int *argc, char **argv, const char *name)
 {
+    /* "--x" must not match "--xy": a whole word, or a whole word before "=". */
     const char *value;
     size_t length = strlen(name);
     for (int i = 1; i < *argc && strcmp(argv[i], "--") != 0; i++) {
@@ -51,6 +52,7 @@ const char *take_first_value(int *argc, char **argv, const char *name)
 /* The last one counts. */
 const char *take_value(int *argc, char **argv, const char *name)
 {
+    /* All are removed: argp must not see any of them. */
     const char *value = NULL, *next;
     while ((next = take_first_value(argc, argv, name)) != NULL) value = next;
     return value;
