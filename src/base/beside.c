@@ -21,7 +21,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 
-static const char middle[] = ".new-", ending[] = ".part";
+static const char middle[] = ".new-", ending[] = ".part", journal[] = "-journal";
 enum { DRAWN = 6 };
 
 /* Locked, where the file system has locks, and still there: a cleaner may have come between the
@@ -84,8 +84,14 @@ static void remove_left(int dir, const char *name)
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&
         flock(file, LOCK_EX | LOCK_NB) == 0 &&
         fstatat(dir, name, &found, AT_SYMLINK_NOFOLLOW) == 0 && found.st_dev == info.st_dev &&
-        found.st_ino == info.st_ino)
+        found.st_ino == info.st_ino) {
+        struct text log = {0};
         unlinkat(dir, name, 0);
+        /* What a database that was being made had beside itself goes with it. */
+        text_add(&log, "%s%s", name, journal);
+        unlinkat(dir, log.s, 0);
+        text_free(&log);
+    }
     close(file);
 }
 
