@@ -8,9 +8,11 @@
 #include "app/arguments.h"
 #include "app/campaign_mpi.h"
 #include "app/flag.h"
+#include "app/known_error.h"
 #include "app/levels.h"
 #include "app/run_table.h"
 #include "app/shard.h"
+#include "app/uncertainty.h"
 #include "app/verb.h"
 #include "base/check.h"
 #include "base/memory.h"
@@ -39,6 +41,9 @@ static const char doc[] =
     "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level loggp, every message "
     "eager, one processor a node; docs/parallel.md), several run its ranks at once, with the same results to the bit. "
     "auto, the default: as many as help, on the processors that --jobs leaves.\n\n"
+    "--uncertainty N: draw the uncertain parameters of the machine from their ranges, run each point again with them, "
+    "and tell the band that 90 % of the predicted times lie in, and which parameter it comes from: "
+    "N (k + 2) runs for k parameters, or 2 N with --bands-only (docs/studies.md).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -97,6 +102,25 @@ static bool is_point(const char *point, const struct run_spec *r)
     char id[RUN_NAME];
     run_name(r, id);
     return point == NULL || strncmp(id, point, strlen(point)) == 0;
+}
+
+/* What the options of this verb ask for. */
+struct asked {
+    bool keep_all;
+    double limit; /* [s], 0: as usual */
+    int threads;
+    struct part part;
+    struct uncertainty_options uncertainty;
+};
+
+/* Options of this verb alone, taken out before the common ones are read. */
+static bool take_options(int *argc, char **argv, struct asked *a, struct err *e)
+{
+    a->keep_all = take_flag(argc, argv, "--keep-all");
+    const char *shard = take_value(argc, argv, "--shard");
+    a->part.point = take_value(argc, argv, "--point");
+    return take_seconds(argc, argv, "--limit", &a->limit, e) && take_threads(argc, argv, &a->threads, e) &&
+           uncertainty_take(argc, argv, &a->uncertainty, e) && shard_parse(shard, &a->part.shard, e);
 }
 
 /* A point is one run: what names none, or several, was mistyped or cut too short. */
@@ -158,7 +182,7 @@ static bool call_stored(struct store *s, const struct run_spec *run, const bool 
 }
 
 /* Settle levels, leave out what is stored, run the rest, print all. */
-static bool answer(const struct common *c, const struct plan *p, const struct part *part, struct job *job,
+static bool answer(const struct common *c, const struct plan *p, const struct asked *asked, struct job *job,
                    struct keep *k, struct err *e)
 {
     struct plan settled = *p;
@@ -169,12 +193,17 @@ static bool answer(const struct common *c, const struct plan *p, const struct pa
     if (!k->store) return false;
     struct run_spec *run = orders_usual(p, k, &settled);
     if (!levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e)) return false;
-    bool *skip = skipped(k->store, p, settled.run, part, c->force);
+    bool *skip = skipped(k->store, p, settled.run, &asked->part, c->force);
     bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
     if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
     else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
-    return ok && run_table_print(k->store, &settled, c->json, stdout, e);
+    /* What is known of the errors, before the rows are shown. */
+    const struct uncertainty_options *u = &asked->uncertainty;
+    ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
+         (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
+    if (!ok || !run_table_print(k->store, &settled, c->json, stdout, e)) return false;
+    return u->n == 0 || !u->shares || c->json || uncertainty_print(k->store, &settled, stdout, e);
 }
 
 /* What the other processes of a job do of this: they make runs, and store and print nothing. */
@@ -201,28 +230,26 @@ static int exit_status(bool ok, const struct keep *k, bool none, const struct co
 int cmd_run(int argc, char **argv)
 {
     struct common c;
-    const bool keep_all = take_flag(&argc, argv, "--keep-all");
-    const char *shard = take_value(&argc, argv, "--shard"), *campaign = take_value(&argc, argv, "--campaign");
-    struct part part = {.point = take_value(&argc, argv, "--point")};
+    struct asked asked = {0};
     struct job job;
-    double limit;
     struct err e;
     err_clear(&e);
-    int threads;
-    const bool limited = take_seconds(&argc, argv, "--limit", &limit, &e) && take_threads(&argc, argv, &threads, &e);
-    bool ok = job_open(&job, campaign, &e) && limited;
+    const char *campaign = take_value(&argc, argv, "--campaign");
+    const bool understood = take_options(&argc, argv, &asked, &e);
+    bool ok = job_open(&job, campaign, &e) && understood;
     /* The processes of a job share the processors already. */
-    if (job.on && threads == RUN_THREADS_AUTO) threads = 1;
+    if (job.on && asked.threads == RUN_THREADS_AUTO) asked.threads = 1;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
     job_heard(&job, &c);
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
-    struct keep k = {.error = &e, .quiet = c.quiet, .limit = limit, .keep_all = keep_all, .threads = threads};
-    ok = ok && shard_parse(shard, &part.shard, &e) && plan_read(&p, c.arg[0], &o, &e) &&
-         check_point(part.point, &p, &e);
+    struct keep k = {.error = &e, .quiet = c.quiet, .limit = asked.limit, .keep_all = asked.keep_all,
+                     .threads = asked.threads};
+    ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
+         uncertainty_count(&p, &asked.uncertainty, &e);
     ok = job_agree(&job, &p, ok, &e);
-    c.force = c.force || keep_all; /* the same results, but not the same row */
-    if (ok) ok = job.h.rank == 0 ? answer(&c, &p, &part, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);
+    c.force = c.force || asked.keep_all; /* the same results, but not the same row */
+    if (ok) ok = job.h.rank == 0 ? answer(&c, &p, &asked, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);
     store_close(k.store);
     const bool none = k.refusals == p.nrun; /* nothing of the plan could run */
     plan_free(&p);

@@ -3,10 +3,9 @@
  *
  * How much of a verdict hangs on numbers that nobody knows exactly? Each sample is the study in
  * small (the scenarios sample-*), with every uncertain parameter of its machine drawn from its
- * published range. */
+ * published range (study/uncertain.h, as `mimdsim run --uncertainty` does). */
 #include "app/sampling.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,17 +17,15 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "run/run.h"
-#include "spec/field.h"
+#include "study/uncertain.h"
 
 /* Fixed: samples are the same in every study, and stored ones are found again. */
 enum { SAMPLING_SEED = 2002 };
 
 /* A parameter with a published range. */
-struct uncertain {
+struct drawn {
     const char *machine; /* whose */
-    const char *key;     /* network.link.bandwidth */
-    const struct field *field;
-    double min, max;
+    struct uncertain parameter;
 };
 
 struct scene {
@@ -44,7 +41,7 @@ struct sampler {
     struct arena *arena;
     int nscene, nuncertain, nsample;
     struct scene *scene;
-    struct uncertain *uncertain;
+    struct drawn *uncertain;
     double *drawn;         /* (nsample x nuncertain) */
     struct plan *plan;     /* (nsample x nscene) */
     struct run_spec *spec; /* all of them, sample by sample */
@@ -52,13 +49,6 @@ struct sampler {
     struct store *passing; /* results of the sample in progress */
     int kept;              /* specs handed over so far */
 };
-
-/* Numbers with a range that is not empty. */
-static bool is_drawn(const struct origin *o, const struct field *f)
-{
-    bool number = f->kind == FIELD_REAL || f->kind == FIELD_INT || f->kind == FIELD_INT64;
-    return number && o->max > o->min && o->min >= 0;
-}
 
 /* All uncertain parameters of a machine, once, however many scenes it has. */
 static bool add_machine(struct sampler *p, const char *machine)
@@ -70,20 +60,14 @@ static bool add_machine(struct sampler *p, const char *machine)
     for (int i = 0; i < p->nuncertain; i++)
         if (strcmp(p->uncertain[i].machine, machine) == 0) return true;
     if (!plan_machine(&m, machine, &none, p->arena, &origin, &n, p->e)) return false;
-    /* Room for all of this machine's values; the list is copied for each machine. */
-    struct uncertain *u = TAKE(p->arena, p->nuncertain + n, struct uncertain);
+    struct uncertain *list;
+    n = uncertain_list(origin, n, &m, UNCERTAIN_PRINTED, p->arena, &list);
+    /* The whole list is copied for each machine. */
+    struct drawn *u = TAKE(p->arena, p->nuncertain + n, struct drawn);
     if (p->nuncertain) memcpy(u, p->uncertain, (size_t)p->nuncertain * sizeof *u);
     p->uncertain = u;
-    for (int i = 0; i < n; i++) {
-        struct text full = {0};
-        text_add(&full, "machine.%s", origin[i].key);
-        const struct field_table *table;
-        const struct field *f = field_find_full(full.s, &table);
-        text_free(&full);
-        if (f && is_drawn(&origin[i], f))
-            u[p->nuncertain++] = (struct uncertain){arena_text(p->arena, machine), origin[i].key, f,
-                                                    origin[i].min, origin[i].max};
-    }
+    for (int i = 0; i < n; i++)
+        u[p->nuncertain++] = (struct drawn){arena_text(p->arena, machine), list[i]};
     return true;
 }
 
@@ -109,28 +93,23 @@ static bool find_scenes(struct sampler *p)
                                     "there is no scenario sample-*.yaml to sample with");
 }
 
-/* Log-uniform, as rates and times are known by factors; uniform from a range that begins at 0.
- * Every parameter has a random stream of its own, so a new one does not change the others'
- * draws. */
-static double draw(const struct uncertain *u, int sample)
+/* Every parameter has a random stream of its own, so a new one does not change the others' draws. */
+static double draw(const struct drawn *u, int sample)
 {
     uint64_t name = DIGEST_START;
-    for (const char *s = u->key; *s; s++) name = digest_mix(name, (unsigned char)*s);
+    for (const char *s = u->parameter.key; *s; s++) name = digest_mix(name, (unsigned char)*s);
     for (const char *s = u->machine; *s; s++) name = digest_mix(name, (unsigned char)*s);
     struct random r = random_make(SAMPLING_SEED, (uint64_t)sample, name);
-    double x = random_uniform(&r, 0, 1);
-    double value = u->min > 0 ? u->min * exp(x * log(u->max / u->min)) : x * u->max;
-    /* A whole number stays one. */
-    return u->field->kind == FIELD_REAL ? value : round(value);
+    return uncertain_value(&u->parameter, random_uniform(&r, 0, 1));
 }
 
 /* "machine.KEY=VALUE", as --set takes it: the value is read back with all its digits. */
-static const char *setting(struct sampler *p, const struct uncertain *u, double value)
+static const char *setting(struct sampler *p, const struct drawn *u, double value)
 {
     struct text t = {0};
     char number[64];
-    units_print(value, u->field->unit, number, sizeof number);
-    text_add(&t, "machine.%s=%s", u->key, number);
+    units_print(value, u->parameter.field->unit, number, sizeof number);
+    text_add(&t, "machine.%s=%s", u->parameter.key, number);
     const char *s = arena_text(p->arena, t.s);
     text_free(&t);
     return s;
@@ -190,7 +169,7 @@ static bool keep_settings(struct sampler *p, int sample)
     static const char *const name[] = {"sample", "key", "value"};
     for (int i = 0; i < p->nuncertain; i++) {
         struct text key = {0};
-        text_add(&key, "%s.%s", p->uncertain[i].machine, p->uncertain[i].key);
+        text_add(&key, "%s.%s", p->uncertain[i].machine, p->uncertain[i].parameter.key);
         const struct store_value value[] = {store_int(sample), store_text(key.s),
                                             store_real(p->drawn[sample * p->nuncertain + i])};
         bool ok = store_insert(p->store, "sample_setting", 3, name, value, p->e);

@@ -26,6 +26,7 @@ struct start {
     const char *name; /* as it was asked for */
     struct run_spec run; /* machine and base settings applied */
     struct machine_spec file; /* the machine as its file has it */
+    struct machine_file whole; /* with where each value comes from */
     struct start *next; /* the one that was made before */
 };
 
@@ -33,6 +34,7 @@ struct start {
 struct plan_memory {
     const struct scenario *scenario;
     struct start *starts;
+    struct start **start_of; /* (nrun) on which machine each run is */
 };
 
 struct expansion {
@@ -40,6 +42,7 @@ struct expansion {
     const struct scenario *scenario;
     struct err *err;
     struct start *starts; /* made so far, newest first */
+    struct start *present; /* of the present point */
     int point[SCENARIO_MAX_AXES]; /* where each axis stands */
     struct identity *identity;    /* owned */
     struct machine_changes changes; /* of the machines seen so far */
@@ -104,6 +107,7 @@ static struct start *start_make(struct expansion *x, const struct setting *machi
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++) /* the first table is the whole run's */
         field_defaults(table[i], (char *)&s->run + table[i]->offset, a);
+    s->whole = m;
     s->run.machine = s->file = m.spec;
     s->name = machine->text;
     s->next = x->starts;
@@ -279,9 +283,10 @@ static void name_run(struct expansion *x, struct run_spec *run, const struct mac
 /* One point: 1 run made, 0 left out, -1 failed. */
 static int make_point(struct expansion *x, struct run_spec *run)
 {
-    const struct start *start = start_of(x);
+    struct start *start = start_of(x);
     const struct scenario *s = x->scenario;
     if (start == NULL) return -1;
+    x->present = start;
     /* Later settings win: the base (in the start), the axes in order, then --set. */
     *run = start->run;
     for (int i = 0; i < s->naxis; i++) {
@@ -345,6 +350,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
     p->run = run;
     p->point = TAKE(p->arena, capacity, int64_t);
     p->group = TAKE(p->arena, capacity, int);
+    p->memory->start_of = TAKE(p->arena, capacity, struct start *);
     do {
         int made = make_point(x, &run[p->nrun]);
         if (made < 0) return false;
@@ -357,6 +363,7 @@ static bool expand_points(struct expansion *x, int64_t capacity)
             run[p->nrun + rep].rep = rep;
             p->point[p->nrun + rep] = point_number(x, true);
             p->group[p->nrun + rep] = group;
+            p->memory->start_of[p->nrun + rep] = x->present;
         }
         p->nrun += repetitions;
     } while (advance(x));
@@ -388,12 +395,18 @@ bool expand_runs(struct plan *p, const struct scenario *s, struct err *e)
                           n < INT64_MAX / SCENARIO_MAX_POINTS ? "" : "more than ", (long long)n, MAX_RUNS);
     const struct field_table *const *table = field_tables(&ntable);
     x.identity = identity_create(table, ntable);
+    p->memory = TAKE(p->arena, 1, struct plan_memory);
     bool fine = expand_points(&x, n);
     identity_destroy(x.identity);
     p->search = s->search;
-    p->memory = TAKE(p->arena, 1, struct plan_memory);
-    *p->memory = (struct plan_memory){s, x.starts};
+    p->memory->scenario = s;
+    p->memory->starts = x.starts;
     return fine;
+}
+
+struct machine_file *expand_machine(const struct plan *p, int index)
+{
+    return &p->memory->start_of[index]->whole;
 }
 
 /* The point is set as the odometer was, and made once more with the further settings behind all
@@ -404,7 +417,7 @@ bool plan_vary(struct plan *p, int index, int n, const char *const *key, const c
     struct scenario s = *p->memory->scenario;
     struct plan counts = *p;
     struct expansion x = {.plan = &counts, .scenario = &s, .err = e, .starts = p->memory->starts,
-                          .changes = {.arena = p->arena}};
+                          .changes = {.arena = p->arena}, .calls = {.arena = p->arena}};
     int ntable;
     /* the odometer as it stood when the point was made */
     int64_t number = p->point[index];

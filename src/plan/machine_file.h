@@ -19,6 +19,8 @@ struct machine_file {
     struct machine_spec spec;
     const char *path;            /* of the file named, not of its bases */
     struct machine_value *value; /* (machine_table.nfield) */
+    int norigin;
+    struct origin *origin; /* (norigin) once somebody asked for them (plan_origins), else NULL */
     int npublished;
     struct machine_published { /* published figures that no run uses */
         const char *name;

@@ -235,6 +235,24 @@ bool plan_machine(struct machine_spec *m, const char *name, const struct plan_op
     return true;
 }
 
+/* Runs follow each other by machine, so the list is made anew only where the machine changes; it is
+ * remembered in the file itself. */
+void plan_origins(const struct plan *p, int index, const struct origin **origin, int *n)
+{
+    struct machine_file *m = expand_machine(p, index);
+    if (m->origin == NULL) {
+        m->origin = TAKE(p->arena, machine_table.nfield + m->npublished, struct origin);
+        m->norigin = list_origins(m, m->origin, p->arena);
+    }
+    *origin = m->origin;
+    *n = m->norigin;
+}
+
+const struct machine_spec *plan_machine_file(const struct plan *p, int index)
+{
+    return &expand_machine(p, index)->spec;
+}
+
 /* ---- lists */
 
 /* The title of a machine or the question of a scenario; of a file that cannot be read, why. */

@@ -100,6 +100,13 @@ struct origin {
 bool plan_machine(struct machine_spec *m, const char *name, const struct plan_options *o, struct arena *a,
                   struct origin **origin, int *norigin, struct err *e);
 
+/* plan_origins: where the values of the machine of run `index` come from, as its file gives them, into (*n) entries in
+ * p->arena; runs on one machine share them. */
+void plan_origins(const struct plan *p, int index, const struct origin **origin, int *n);
+
+/* plan_machine_file: the machine of run `index` as its file has it. */
+const struct machine_spec *plan_machine_file(const struct plan *p, int index);
+
 /* plan_list: stems and titles of the files in machines/ ("machines") or scenarios/ ("scenarios"), sorted. */
 bool plan_list(const char *what, struct arena *a, const char ***stem, const char ***title, int *n, struct err *e);
 

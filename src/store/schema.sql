@@ -528,3 +528,67 @@ CREATE TABLE IF NOT EXISTS ideal (
     makespan_ps INTEGER,               -- NULL: it cannot be run
     PRIMARY KEY (run_id, machine)
 ) STRICT, WITHOUT ROWID;
+
+-- A run with the uncertain parameters of its machine drawn anew (mimdsim run --uncertainty N).
+CREATE TABLE IF NOT EXISTS uncertainty_sample (
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    sample      INTEGER NOT NULL,      -- number of the point in the design
+    design      TEXT NOT NULL,         -- digest of the parameters, their ranges and the number of points
+    makespan_ps INTEGER,               -- NULL: with these values it cannot be run
+    serial_ps   INTEGER,               -- of the fastest serial code; NULL: there is none
+    PRIMARY KEY (run_id, sample)
+) STRICT, WITHOUT ROWID;
+-- What the uncertain parameters of the machine leave open of a run.
+CREATE TABLE IF NOT EXISTS uncertainty (
+    run_id    INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    quantity  TEXT NOT NULL,           -- makespan_ps or speedup
+    nominal   REAL,                    -- of the run itself
+    samples   INTEGER NOT NULL,        -- that the band comes from
+    failed    INTEGER NOT NULL,        -- that could not be run
+    mean      REAL,                    -- of the samples
+    deviation REAL,                    -- standard deviation of the samples
+    low       REAL,                    -- 5 % of the samples lie below
+    median    REAL,                    -- of the samples
+    high      REAL,                    -- 5 % of the samples lie above
+    PRIMARY KEY (run_id, quantity)
+) STRICT, WITHOUT ROWID;
+-- Which parameter the variance of a run comes from: Sobol' indices with their standard errors.
+CREATE TABLE IF NOT EXISTS uncertainty_share (
+    run_id      INTEGER NOT NULL REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    quantity    TEXT NOT NULL,         -- makespan_ps or speedup
+    key         TEXT NOT NULL,         -- full name of the parameter
+    low         REAL NOT NULL,         -- it was drawn between this
+    high        REAL NOT NULL,         -- and this, in SI units
+    class       TEXT NOT NULL,         -- of the evidence for it
+    printed     INTEGER NOT NULL CHECK (printed IN (0, 1)),  -- 1: the machine file gives the range, 0: the class does
+    first       REAL,                  -- share of the variance that it explains alone; NULL: not asked for
+    first_error REAL,                  -- standard error
+    total       REAL,                  -- with its interactions
+    total_error REAL,                  -- standard error
+    PRIMARY KEY (run_id, quantity, key)
+) STRICT, WITHOUT ROWID;
+-- Of each run the digest that it shares with runs alike but for their size: the errors of levels are known by it.
+CREATE TABLE IF NOT EXISTS run_family (
+    run_id INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,  -- the run
+    family TEXT NOT NULL               -- as in table ladder
+) STRICT;
+
+-- How far the predicted time of a run is known. NULL: not known.
+--   run_id: the run
+--   level_error: of the network level, relative to the most detailed one: the largest of the ladder of such runs
+--   level_at: the point of that error
+--   machine_low: of the machine's parameters: the time that 5 % of the samples lie below, relative to the run's, less 1
+--   machine_high: the time that 5 % of the samples lie above, likewise
+--   machine_samples: of the band
+--   arithmetic_error: of the numbers that the program computed, relative to independent references
+CREATE VIEW IF NOT EXISTS v_known_error AS
+SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.n, r.P,
+       (SELECT max(l.relative_error) FROM ladder l JOIN run_family f ON f.family = l.family
+        WHERE f.run_id = r.id AND l.ladder = 'network' AND l.quantity = 'makespan' AND l.method = r.level) AS level_error,
+       (SELECT l.at FROM ladder l JOIN run_family f ON f.family = l.family
+        WHERE f.run_id = r.id AND l.ladder = 'network' AND l.quantity = 'makespan' AND l.method = r.level
+        ORDER BY l.relative_error DESC LIMIT 1) AS level_at,
+       u.low / u.nominal - 1 AS machine_low, u.high / u.nominal - 1 AS machine_high, u.samples AS machine_samples,
+       (SELECT max(e.relative_error) FROM error_check e WHERE e.run_id = r.id) AS arithmetic_error
+FROM run r LEFT JOIN uncertainty u ON u.run_id = r.id AND u.quantity = 'makespan_ps'
+WHERE r.status IN ('ok', 'invalid');

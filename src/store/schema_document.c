@@ -39,7 +39,7 @@ static bool starts(const char *line, const char *word)
 static const char *find_statement(const char *schema, const char *name, const char **about)
 {
     static const char *const opening[] = {"CREATE TABLE IF NOT EXISTS ", "CREATE TABLE ",
-                                          "CREATE VIEW "};
+                                          "CREATE VIEW IF NOT EXISTS ", "CREATE VIEW "};
     *about = NULL;
     for (const char *line = schema; *line; line = next_line(line)) {
         /* Comment lines right above the statement belong to it; any other line in between ends
@@ -48,7 +48,7 @@ static const char *find_statement(const char *schema, const char *name, const ch
             if (*about == NULL) *about = line;
             continue;
         }
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 4; i++) {
             const char *rest = line + strlen(opening[i]);
             if (!starts(line, opening[i]) || !starts(rest, name) || rest[strlen(name)] != ' ')
                 continue;

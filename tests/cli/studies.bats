@@ -131,3 +131,46 @@ documented() {
     # shellcheck disable=SC1091
     source ./commands
 }
+
+@test "uncertainty: bands around the prediction, shares that add up, and nothing is made twice" {
+    works mimdsim run speedup-t3e --only 'n == 8' --uncertainty 16 -o u.db --quiet
+    stdout_says 'software.recv.overhead'
+    sql_is u.db "SELECT count(*), min(low < median AND median < high), min(samples), max(failed) FROM uncertainty" '4|1|32|0'
+    # what the band is around is the run itself
+    sql_is u.db "SELECT count(*) FROM uncertainty u JOIN run r ON r.id = u.run_id WHERE quantity = 'makespan_ps' AND nominal = makespan_ps" 2
+    # nearly additive: the total shares make about one, as far as so few samples can tell
+    sql_is u.db "SELECT min(s) > 0.3 AND max(s) < 2 FROM (SELECT sum(total) AS s FROM uncertainty_share WHERE quantity = 'makespan_ps' GROUP BY run_id)" 1
+    # a parameter with a range by its class, and none that is a fact of the design
+    sql_is u.db "SELECT DISTINCT class, printed, round(high / low, 3) FROM uncertainty_share WHERE key = 'machine.software.send.copy'" 'D|0|2.56'
+    sql_is u.db "SELECT count(*) FROM uncertainty_share WHERE key IN ('machine.node.clock', 'machine.network.flit')" 0
+    before=$(sql u.db 'SELECT total(makespan_ps), count(*) FROM uncertainty_sample')
+    works mimdsim run speedup-t3e --only 'n == 8' --uncertainty 16 -o u.db
+    [[ $stderr != *runs* ]] || { show; return 1; }
+    sql_is u.db 'SELECT total(makespan_ps), count(*) FROM uncertainty_sample' "$before"
+    # the same samples with any number of workers
+    works mimdsim run speedup-t3e --only 'n == 8' --uncertainty 16 -o one.db --quiet -j 1
+    sql_is one.db 'SELECT total(makespan_ps), count(*) FROM uncertainty_sample' "$before"
+}
+
+@test "uncertainty: bands alone, what is set is not drawn, and what cannot be is refused" {
+    works mimdsim run speedup-t3e --only 'n == 8' --uncertainty 16 --bands-only -o b.db --quiet
+    sql_is b.db 'SELECT count(*), count(DISTINCT run_id) FROM uncertainty_sample' '64|2'
+    sql_is b.db 'SELECT count(first) FROM uncertainty_share' 0
+    works mimdsim run speedup-t3e --only 'n == 8' --uncertainty 8 -o b.db --quiet --set machine.software.recv.overhead='5 us'
+    sql_is b.db "SELECT count(*) FROM uncertainty_share s JOIN v_setting v ON v.run_id = s.run_id AND v.key = s.key
+        WHERE s.key = 'machine.software.recv.overhead' AND v.value = '5 us'" 0
+    # a machine of which everything is given: not known is said
+    printf '%s\n' 'schema_version: 1' 'base: ideal' 'title: mine' 'node: {flop_rate: 100 Mflop/s, div: 1 cycles, sqrt: 1 cycles, trig: 1 cycles}' >mine.yaml
+    works mimdsim run speedup-t3e -m mine.yaml --only 'n == 8' --uncertainty 8 -o i.db
+    stderr_says 'the uncertainty is not known'
+    sql_is i.db 'SELECT count(*) FROM uncertainty' 0
+    for wrong in 3 1e9 -5 x ''; do
+        fails_with 64 mimdsim run speedup-t3e --uncertainty "$wrong" -o none.db
+        stderr_says 'is not a number of samples from 4 to 10000'
+    done
+    fails_with 64 mimdsim run speedup-t3e --bands-only -o none.db
+    fails_with 78 mimdsim run speedup-t3e --uncertainty 10000 -o none.db
+    stderr_says 'expected at most 100000'
+    rm [bi].db* mine.yaml
+    nothing_left_behind
+}
