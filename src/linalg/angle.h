@@ -1,4 +1,4 @@
-/* angle.h - sine and cosine with the same bits on every host: no run-time choice of instructions as in a libm.
+/* angle.h - sine and cosine with the same bits on every host: no run-time choice of operations as in a libm.
  *
  * Double: reduction by pi/2 in three pieces (Cody and Waite), then the minimax polynomials of Sun's fdlibm; errors
  * under 1 ulp. Angles beyond ANGLE_REDUCED go to the C library. Other precisions use their library. */
@@ -58,7 +58,8 @@ static inline void angle_sincos(real x, real *s, real *c)
     *c = real_cos(x);
 }
 
-/* angle_sincos_batch: s[i], c[i] of x[i], i = 0 .. n-1, in packed registers. s, c may not overlap x. */
+/* angle_sincos_batch: s[i], c[i] of x[i], i = 0 .. n-1, in packed registers, the widest that the host has;
+ * the same bits as angle_sincos of each. s, c may not overlap x. */
 void angle_sincos_batch(int n, const real *restrict x, real *restrict s, real *restrict c);
 
 #endif

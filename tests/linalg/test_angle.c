@@ -69,12 +69,38 @@ static void batch_equals_single_bit_by_bit(void **state)
     }
 }
 
+/* Whole vectors, overlapping last ones, and too few for one; nothing is written beside the batch. */
+static void batches_of_all_lengths_are_the_same_bits(void **state)
+{
+    (void)state;
+    enum { MOST = 40, GUARD = 3 };
+    double x[MOST + 1], s[MOST + 2 * GUARD], c[MOST + 2 * GUARD];
+    struct random r = random_make(3, 0, 0);
+    for (int i = 0; i <= MOST; i++) x[i] = i % 7 == 0 ? -0.0 : angle_of(&r, i);
+    for (int n = 0; n <= MOST; n++)
+        for (int from = 0; from < 2 && from + n <= MOST; from++) {
+            for (int i = 0; i < MOST + 2 * GUARD; i++) s[i] = c[i] = 7;
+            angle_sincos_batch(n, x + from, s + GUARD, c + GUARD);
+            for (int i = 0; i < n; i++) {
+                double s1, c1;
+                angle_sincos(x[from + i], &s1, &c1);
+                assert_memory_equal(&s[GUARD + i], &s1, sizeof s1);
+                assert_memory_equal(&c[GUARD + i], &c1, sizeof c1);
+            }
+            for (int i = 0; i < GUARD; i++) {
+                assert_true(s[i] == 7 && c[i] == 7);
+                assert_true(s[GUARD + n + i] == 7 && c[GUARD + n + i] == 7);
+            }
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_stay_under_one_ulp),
         cmocka_unit_test(huge_angles_and_special_values_go_to_the_library),
         cmocka_unit_test(batch_equals_single_bit_by_bit),
+        cmocka_unit_test(batches_of_all_lengths_are_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
