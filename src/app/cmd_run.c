@@ -44,6 +44,9 @@ static const char doc[] =
     "--uncertainty N: draw the uncertain parameters of the machine from their ranges, run each point again with them, "
     "and tell the band that 90 % of the predicted times lie in, and which parameter it comes from: "
     "N (k + 2) runs for k parameters, or 2 N with --bands-only (docs/studies.md).\n\n"
+    "The table shows what says something of these runs, and how far each time is known: the error of the network "
+    "level, of the machine's parameters, of the arithmetic. --columns NAMES: these columns instead (names with commas, "
+    "or all). --csv: all of them, for programs.\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -56,11 +59,36 @@ struct keep {
     struct run_order *order; /* in step with `run` */
     int invalid, deadlock, redundant, refined, alone; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
+    char reason[300];      /* of the run that was told last to have gone wrong, "": none was */
+    int alike, untold;     /* runs in a row for this reason, those of them that were not told */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
     double limit;          /* of people's own programs [s], 0: as usual */
     int threads;           /* of each run, as in run_order */
     bool quiet, keep_all;
 };
+
+/* How many more runs ended for the reason that was told last. */
+static void say_rest(struct keep *k)
+{
+    if (k->untold > 0) fprintf(stderr, "mimdsim: and %d more: %s\n", k->untold, k->reason);
+    k->alike = k->untold = 0;
+    k->reason[0] = '\0';
+}
+
+/* The same reason again and again, as of a placement that no machine of the sweep takes, is told of
+ * the first runs only: each row has it. */
+static void say_wrong(struct keep *k, const struct run_spec *spec, const struct run_result *r)
+{
+    enum { TOLD = 3 };
+    char reason[sizeof k->reason];
+    text_copy(reason, sizeof reason, r->text);
+    if (strcmp(k->reason, reason) != 0) say_rest(k);
+    text_copy(k->reason, sizeof k->reason, reason);
+    if (k->alike++ >= TOLD) k->untold++;
+    else
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
+                r->text);
+}
 
 /* One result, in plan order: counted, told where it is no plain success, stored. Remarks that
  * hold for many runs are made once. */
@@ -72,9 +100,7 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
     k->failed += r->status == RUN_FAILED;
     if (r->refusal && k->refusals++ == 0) k->refusal = r->refusal;
     k->deadlock += r->status == RUN_DEADLOCK;
-    if (r->status != RUN_OK)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
-                r->text);
+    if (r->status != RUN_OK) say_wrong(k, spec, r);
     else if (r->loop_rank >= 0 && r->loop_rank < r->loop_rows && k->redundant++ == 0 && !k->quiet)
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
@@ -111,6 +137,7 @@ struct asked {
     int threads;
     struct part part;
     struct uncertainty_options uncertainty;
+    struct run_table_look look;
 };
 
 /* Options of this verb alone, taken out before the common ones are read. */
@@ -120,7 +147,8 @@ static bool take_options(int *argc, char **argv, struct asked *a, struct err *e)
     const char *shard = take_value(argc, argv, "--shard");
     a->part.point = take_value(argc, argv, "--point");
     return take_seconds(argc, argv, "--limit", &a->limit, e) && take_threads(argc, argv, &a->threads, e) &&
-           uncertainty_take(argc, argv, &a->uncertainty, e) && shard_parse(shard, &a->part.shard, e);
+           uncertainty_take(argc, argv, &a->uncertainty, e) && run_table_take(argc, argv, &a->look, e) &&
+           shard_parse(shard, &a->part.shard, e);
 }
 
 /* A point is one run: what names none, or several, was mistyped or cut too short. */
@@ -198,12 +226,14 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
     else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
+    say_rest(k);
     /* What is known of the errors, before the rows are shown. */
     const struct uncertainty_options *u = &asked->uncertainty;
     ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
          (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
-    if (!ok || !run_table_print(k->store, &settled, c->json, stdout, e)) return false;
-    return u->n == 0 || !u->shares || c->json || uncertainty_print(k->store, &settled, stdout, e);
+    if (!ok || !run_table_print(k->store, &settled, &asked->look, stdout, e)) return false;
+    return u->n == 0 || !u->shares || asked->look.json || asked->look.csv ||
+           uncertainty_print(k->store, &settled, stdout, e);
 }
 
 /* What the other processes of a job do of this: they make runs, and store and print nothing. */
@@ -241,6 +271,7 @@ int cmd_run(int argc, char **argv)
     if (job.on && asked.threads == RUN_THREADS_AUTO) asked.threads = 1;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
     job_heard(&job, &c);
+    asked.look.json = c.json;
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e, .quiet = c.quiet, .limit = asked.limit, .keep_all = asked.keep_all,

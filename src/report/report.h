@@ -51,6 +51,16 @@ void report_figure_about(const char *data_dir, const char *name, struct text *ti
 /* report_value_json: one value of a row as the next value of a document. */
 void report_value_json(struct json *j, const struct store_value *v);
 
+/* How a table is shown. */
+struct report_look {
+    bool compact; /* columns without any value are left out */
+    int width;    /* characters that a line may have, 0: any number */
+};
+
+/* report_table: print the rows of `sql` as an aligned table on `out`. */
+bool report_table(struct store *s, const char *sql, int nparam, const char *const *param,
+                  const struct report_look *look, FILE *out, struct err *e);
+
 /* report_query: print the rows of `sql` as an aligned table (or as JSON, one document with
  * sorted keys) on `out`. */
 bool report_query(struct store *s, const char *sql, int nparam, const char *const *param, bool json, FILE *out,

@@ -174,3 +174,56 @@ documented() {
     rm [bi].db* mine.yaml
     nothing_left_behind
 }
+
+@test "the table of run: columns that say something, how far each time is known, chosen ones, and CSV" {
+    works mimdsim run speedup-t3e --only 'n == 8' -o t.db --quiet
+    stdout_says 'level_error  machine_error  arithmetic_error'
+    stdout_says 'not known    not known      5.6e-13'
+    [[ $output != *measured_us* && $output != *message* && $output != *digest* ]] || { show; return 1; }
+    # the same table knows more once more is known: the level by a ladder of such runs, the machine by samples
+    works mimdsim accuracy speedup-t3e --only 'n == 8' -o t.db --quiet
+    works mimdsim run speedup-t3e --only 'n == 8' -o t.db --quiet --uncertainty 8 --bands-only
+    [[ $output != *'not known'* ]] || { show; return 1; }
+    sql_is t.db "SELECT count(*), min(machine_low < 0), min(machine_high > 0), min(level_error >= 0) FROM v_known_error" '2|1|1|1'
+    # micro-benchmarks have other columns: no body, no speedup
+    works mimdsim run pingpong --only 'kernel.message == 8 B' -o p.db --quiet
+    stdout_says measured_us
+    [[ $output != *speedup* && $output != *solver* ]] || { show; return 1; }
+    works mimdsim run speedup-t3e --only 'n == 8' -o t.db --quiet --columns P,makespan_us,digest
+    stdout_is "P  makespan_us  digest
+8      609.722  $(sql t.db "SELECT digest FROM run WHERE level = 'link'")
+8      609.379  $(sql t.db "SELECT digest FROM run WHERE level = 'loggp'")"
+    works mimdsim run speedup-t3e --only 'n == 8' -o t.db --quiet --csv
+    stdout_says 'machine,kernel,formulation,solver,message,level,n,P,makespan_us,level_error,machine_low,machine_high'
+    [ "$(wc -l <<<"$output")" -eq 3 ]
+    fails_with 64 mimdsim run speedup-t3e --only 'n == 8' -o t.db --quiet --columns n,makespan
+    stderr_says "no column 'makespan'; did you mean 'makespan_us'?"
+    fails_with 64 mimdsim run speedup-t3e -o none.db --columns
+    [ ! -e none.db ]
+}
+
+@test "on a terminal the table is as wide as the terminal, and says what it left out" {
+    command -v script >/dev/null || skip 'no script(1)'
+    works mimdsim run speedup-t3e --only 'n >= 96' -o t.db --quiet
+    for width in 130 80 50; do
+        script -qec "stty cols $width; '$MIMDSIM' run speedup-t3e --only 'n >= 96' -o t.db --quiet" /dev/null </dev/null |
+            tr -d '\r' >out
+        [ "$(awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le "$width" ] || { cat out; return 1; }
+        grep -q 1269.97 out
+    done
+    grep -q 'in all rows: machine t3e-300' out
+    grep -q 'left out for' out
+}
+
+@test "what does not suit a machine is a row with its reason, told three times at most, and the others run" {
+    fails_with 1 mimdsim run speedup-t3e --set machine.placement.kind=gray,linear --only 'n <= 8 and level == link' -o g.db --quiet
+    [ "$(grep -c 'placement gray needs a hypercube' <<<"$stderr")" -eq 4 ]
+    stderr_says 'mimdsim: and 2 more: placement gray needs a hypercube'
+    stderr_says '5 of 10 runs failed'
+    sql_is g.db "SELECT status, count(*) FROM run GROUP BY 1" $'failed|5\nok|5'
+    fails_with 1 mimdsim run speedup-t3e --set machine.topology.family=fat-tree,torus --only 'n == 8' -o f.db --quiet --csv
+    stdout_says 'topology.dims has 3 numbers; its family takes 2'
+    # a machine that is too small refuses the points that it cannot hold alone
+    fails_with 1 mimdsim run speedup-t3e -m quad-ppro --only 'n <= 6 and level == loggp' -o q.db --quiet
+    sql_is q.db "SELECT group_concat(P || ' ' || status, ', ') FROM (SELECT * FROM run ORDER BY P)" '2 ok, 3 ok, 4 ok, 6 failed'
+}
