@@ -133,7 +133,7 @@ END
     stdout_says "fig5           Figure 5: how the time of each stage is spent"
     stdout_says "needs: mimdsim paper fig5"
     listed=$(grep -c '^[a-z]' <<<"$output")
-    [ "$listed" -eq "$(find "$MIMDSIM_DATA/plots" -name '*.gp' ! -name style.gp | wc -l)" ]
+    [ "$listed" -eq "$(find "$MIMDSIM_DATA/plots" -name '*.gp' ! -name style.gp ! -name '_*' | wc -l)" ]
     [ "$(grep -c ' needs: mimdsim ' <<<"$output")" -eq "$listed" ]
     [ "$(awk '{ if (length($0) > n) n = length($0) } END { print n }' <<<"$output")" -le 130 ]
     stdout_says "fig9           Figure 9: speedup for up to 128 processors with n/P = 1, 2, 4, 8, 16, ... bodies per processor"
