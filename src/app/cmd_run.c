@@ -11,6 +11,7 @@
 #include "app/known_error.h"
 #include "app/levels.h"
 #include "app/run_table.h"
+#include "app/search.h"
 #include "app/shard.h"
 #include "app/uncertainty.h"
 #include "app/verb.h"
@@ -47,6 +48,8 @@ static const char doc[] =
     "The table shows what says something of these runs, and how far each time is known: the error of the network "
     "level, of the machine's parameters, of the arithmetic. --columns NAMES: these columns instead (names with commas, "
     "or all). --csv: all of them, for programs.\n\n"
+    "A scenario with `optimise:` is searched: the answer is the best setting for each point of the other axes "
+    "(docs/studies.md).\n\n"
     "--keep-all: also compute what the scene does not need (mimdsim explain lists it, and the "
     "error bound of leaving it "
     "out); the predicted time includes it.";
@@ -231,6 +234,10 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     const struct uncertainty_options *u = &asked->uncertainty;
     ok = ok && known_error_note(k->store, k->run, p->nrun, e) &&
          (u->n == 0 || uncertainty_run(c, &settled, u, k->store, e));
+    const bool search = settled.search != NULL && asked->part.shard.of == 0 && asked->part.point == NULL;
+    ok = ok && (!search || search_run(&settled, k->store, e));
+    if (ok && search && asked->look.columns == NULL)
+        return search_print(k->store, &settled, &asked->look, stdout, e);
     if (!ok || !run_table_print(k->store, &settled, &asked->look, stdout, e)) return false;
     return u->n == 0 || !u->shares || asked->look.json || asked->look.csv ||
            uncertainty_print(k->store, &settled, stdout, e);
@@ -277,7 +284,7 @@ int cmd_run(int argc, char **argv)
     struct keep k = {.error = &e, .quiet = c.quiet, .limit = asked.limit, .keep_all = asked.keep_all,
                      .threads = asked.threads};
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
-         uncertainty_count(&p, &asked.uncertainty, &e);
+         uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e);
     ok = job_agree(&job, &p, ok, &e);
     c.force = c.force || asked.keep_all; /* the same results, but not the same row */
     if (ok) ok = job.h.rank == 0 ? answer(&c, &p, &asked, &job, &k, &e) : help_out(&job, &c, &p, &k, &e);

@@ -30,7 +30,7 @@ struct shown {
 /* An error that is not known is said to be; what has no predicted time has no error either. */
 #define NOT_KNOWN(value, text)                                                                     \
     "CASE WHEN k.run_id IS NULL THEN NULL WHEN " value " IS NULL THEN 'not known' ELSE " text " E" \
-                                                                                              "ND"
+    "ND"
 /* Failed runs have no model; what the kernel's other runs have tells whether n means anything. */
 #define HAS_N                                                                                      \
     "r.nu > 0 OR EXISTS (SELECT 1 FROM v_setting v WHERE v.run_id = r.id AND v.key = 'program.n')" \
@@ -250,17 +250,17 @@ bool run_table_take(int *argc, char **argv, struct run_table_look *l, struct err
 }
 
 /* The query as JSON, as CSV or as a table. */
-static bool print(struct store *s, const char *sql, const char *keys,
-                  const struct run_table_look *l, FILE *out, struct err *e)
+bool run_table_show(struct store *s, const char *sql, const char *param,
+                    const struct run_table_look *l, FILE *out, struct err *e)
 {
     int64_t rows;
-    if (l->json) return report_query(s, sql, 1, &keys, true, out, e);
+    if (l->json) return report_query(s, sql, 1, &param, true, out, e);
     if (l->csv)
-        return csv_write(s, sql, 1, &keys, out, NULL, NULL, &rows, e) &&
+        return csv_write(s, sql, 1, &param, out, NULL, NULL, &rows, e) &&
                (fflush(out) == 0 || err_set(e, ERR_IO, "the output cannot be written"));
     /* who asks for columns gets them, whatever they hold */
     const struct report_look look = {.compact = l->columns == NULL, .width = terminal_width(out)};
-    return report_table(s, sql, 1, &keys, &look, out, e);
+    return report_table(s, sql, 1, &param, &look, out, e);
 }
 
 /* The identities of the plan's runs as one parameter: a list of any length, and no text of a
@@ -278,7 +278,7 @@ bool run_table_print(struct store *s, const struct plan *p, const struct run_tab
     bool ok = choose_columns(&c, l, &sql, e);
     if (ok) {
         text_add(&whole, "SELECT %s%s", sql.s, from_sql);
-        ok = print(s, whole.s, keys.s, l, out, e);
+        ok = run_table_show(s, whole.s, keys.s, l, out, e);
     }
     text_free(&keys);
     text_free(&sql);

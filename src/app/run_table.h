@@ -18,6 +18,10 @@ struct run_table_look {
 /* run_table_take: "--columns LIST" and "--csv" out of the arguments. False with ERR_USAGE. */
 bool run_table_take(int *argc, char **argv, struct run_table_look *l, struct err *e);
 
+/* run_table_show: the rows of any query with one parameter in the same look, but for the choice of columns. */
+bool run_table_show(struct store *s, const char *sql, const char *param,
+                    const struct run_table_look *l, FILE *out, struct err *e);
+
 /* run_table_print: the runs of `p` that `s` holds, in plan order. The keys that are swept stand
  * behind P, each by the end of its name that no other column has: link.bandwidth. A table leaves
  * out columns without any value, and on a terminal it is at most as wide: what is the same in all

@@ -567,6 +567,19 @@ CREATE TABLE IF NOT EXISTS uncertainty_share (
     total_error REAL,                  -- standard error
     PRIMARY KEY (run_id, quantity, key)
 ) STRICT, WITHOUT ROWID;
+-- What a search found (`optimise:` of a scenario): the best run for each point of the other axes.
+CREATE TABLE IF NOT EXISTS optimum (
+    scenario   TEXT NOT NULL,          -- that was searched
+    ordinal    INTEGER NOT NULL,       -- order of the points of the other axes
+    goal       TEXT NOT NULL,          -- least or greatest, and the formula
+    within     TEXT,                   -- the condition that it has to keep; NULL: none
+    run_id     INTEGER REFERENCES run (id) ON DELETE CASCADE,  -- the best run; NULL: none could be run
+    value      REAL,                   -- of the goal, in SI units
+    value_text TEXT,                   -- for people, with its unit
+    holds      INTEGER NOT NULL CHECK (holds IN (0, 1)),  -- 0: no run keeps the condition; this one misses it least
+    tried      INTEGER NOT NULL,       -- runs that were looked at
+    PRIMARY KEY (scenario, ordinal)
+) STRICT, WITHOUT ROWID;
 -- Of each run the digest that it shares with runs alike but for their size: the errors of levels are known by it.
 CREATE TABLE IF NOT EXISTS run_family (
     run_id INTEGER PRIMARY KEY REFERENCES run (id) ON DELETE CASCADE,  -- the run

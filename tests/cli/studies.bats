@@ -227,3 +227,70 @@ documented() {
     fails_with 1 mimdsim run speedup-t3e -m quad-ppro --only 'n <= 6 and level == loggp' -o q.db --quiet
     sql_is q.db "SELECT group_concat(P || ' ' || status, ', ') FROM (SELECT * FROM run ORDER BY P)" '2 ok, 3 ok, 4 ok, 6 failed'
 }
+
+@test "optimise: the best listed setting for each point of the other axes, and every run is a row" {
+    scenario 'ranks: n' 'sweep: {n: [16, 64]}' 'optimise: {least: makespan, over: {kernel.solver: [cr, pcr, pcr-symmetric]}}'
+    works mimdsim run s.yaml -o o.db --quiet
+    sql_is o.db 'SELECT count(*) FROM run' 6
+    sql_is o.db 'SELECT o.ordinal, r.n, o.tried, o.value = r.makespan_ps / 1e12 FROM optimum o JOIN run r ON r.id = o.run_id' $'0|16|3|1\n1|64|3|1'
+    # what it found is what a query finds
+    sql_is o.db 'SELECT count(*) FROM optimum o JOIN run r ON r.id = o.run_id JOIN run q ON q.n = r.n WHERE q.makespan_ps < r.makespan_ps' 0
+    # greatest is the other end; a limit that nothing keeps is said
+    scenario 'ranks: n' 'n: 16' 'optimise: {greatest: makespan, over: {kernel.solver: [cr, pcr, pcr-symmetric]}}'
+    works mimdsim run s.yaml -o o.db --quiet
+    sql_is o.db 'SELECT r.makespan_ps = (SELECT max(makespan_ps) FROM run WHERE n = 16) FROM optimum o JOIN run r ON r.id = o.run_id' 1
+    scenario 'ranks: n' 'n: 16' 'optimise: {least: makespan, within: speedup > 100, over: {kernel.solver: [cr, pcr]}}'
+    works mimdsim run s.yaml -o o.db --quiet --json
+    json_is '$[0].holds' no
+    # points that cannot run are no candidates
+    scenario 'sweep: {n: [256]}' 'optimise: {least: makespan, over: {ranks: [64, 128, 256]}}'
+    fails_with 1 mimdsim run s.yaml -o o.db --quiet --json
+    json_is '$[0].tried' 2
+}
+
+@test "optimise: a range is searched up to where the limit holds, resumably" {
+    scenario 'n: 16' 'ranks: n' 'optimise:' '  greatest: machine.software.recv.overhead' '  within: makespan <= 700 us' \
+        '  over: {machine.software.recv.overhead: {from: 1 us, to: 10 us}}' '  runs: 60'
+    works mimdsim run s.yaml -o o.db --quiet --json
+    json_is '$[0].holds' yes
+    best=$(sql o.db 'SELECT value FROM optimum')
+    # a per cent more breaks the limit
+    works mimdsim run s.yaml -o other.db --quiet --set machine.software.recv.overhead="$(awk "BEGIN { print $best * 1.01e6 }") us" \
+        --columns makespan_us
+    awk "BEGIN { exit !($(tail -n 1 <<<"$output") > 700) }"
+    count=$(sql o.db 'SELECT count(*) FROM run')
+    works mimdsim run s.yaml -o o.db --quiet
+    sql_is o.db 'SELECT count(*), max(id) FROM run' "$count|$count"
+    sql_is o.db 'SELECT value FROM optimum' "$best"
+    # without a limit a monotone goal is at its end, exactly
+    scenario 'n: 16' 'ranks: n' 'optimise: {least: makespan, over: {machine.software.recv.overhead: {from: 1 us, to: 10 us}}}'
+    works mimdsim run s.yaml -o end.db --quiet
+    sql_is end.db 'SELECT r.makespan_ps = (SELECT min(makespan_ps) FROM run) FROM optimum o JOIN run r ON r.id = o.run_id' 1
+    sql_is end.db "SELECT v.value FROM optimum o JOIN v_setting v ON v.run_id = o.run_id AND v.key = 'machine.software.recv.overhead'" '1 us'
+}
+
+@test "optimise: what makes no sense is refused before anything runs" {
+    try() {
+        scenario 'n: 16' 'ranks: n' "optimise: $1"
+        fails_with "${3:-65}" mimdsim run s.yaml -o none.db
+        stderr_says "$2"
+        [ ! -e none.db ]
+    }
+    try '{least: makspan, over: {kernel.solver: [cr, pcr]}}' "did you mean 'makespan'?"
+    try '{least: makespan, over: {kernel.solver: [cr, pxcr]}}' "did you mean 'pcr'?"
+    try '{least: makespan, within: makespan <= 2, over: {kernel.solver: [cr, pcr]}}' "a time on the left of '<='"
+    try '{least: makespan, within: makespan, over: {kernel.solver: [cr, pcr]}}' 'a value; expected a condition'
+    try '{least: kernel.solver, over: {kernel.solver: [cr, pcr]}}' 'a text, not a number'
+    try '{over: {kernel.solver: [cr, pcr]}}' 'the goal is missing'
+    try '{least: makespan}' "'over' is missing"
+    try '{least: makespan, greatest: speedup, over: {kernel.solver: [cr]}}' 'one goal'
+    try '{least: makespan, ovr: {kernel.solver: [cr]}}' "did you mean 'over'?"
+    try '{least: makespan, over: {kernel.solver: {from: cr, to: pcr}}}' 'no number, so it has no range'
+    try '{least: makespan, over: {n: {from: 4, to: 8}}}' "duplicate key 'model.n'"
+    try '{least: makespan, runs: 10000, over: {kernel.solver: [cr, pcr], ranks: [1, 2, 4, 8, 16, 3, 5, 6], machine.network.hop_latency: {from: 1 ns, to: 1 us}}}' \
+        "'ranks' is swept"
+    scenario 'n: 16' 'sweep: {ranks: [1, 2, 4, 8, 16, 3, 5, 6]}' \
+        'optimise: {least: makespan, runs: 10000, over: {kernel.solver: [cr, pcr], machine.network.hop_latency: {from: 1 ns, to: 1 us}}}'
+    fails_with 78 mimdsim run s.yaml -o none.db
+    stderr_says '16 combinations with up to 10000 runs each are 160000 runs; expected at most 100000'
+}
