@@ -110,7 +110,7 @@ enum { COMM_ANY_SOURCE = -1 };
 
 /* comm_isend: the same, and *r is complete when the software of the sender is done with the
  * message: of one that is too large to be sent eagerly when the receiver has asked for it.
- * comm_issend: complete when it has been received. */
+ * comm_issend: complete when its receive has begun; for programs that declare .wildcards = 1. */
 #define comm_isend(c, to, tag, data, bytes, r)                                                     \
     comm_isend_at((c), (to), (tag), (data), (bytes), 0, (r), __FILE__, __LINE__)
 #define comm_issend(c, to, tag, data, bytes, r)                                                    \

@@ -106,7 +106,7 @@ struct mimdsim_program {
     void (*estimate)(int ranks, struct mimdsim_estimate *out);
 
     int cost;      /* enum mimdsim_cost */
-    int wildcards; /* 1: it uses COMM_ANY_SOURCE, masks of tags, tests or probes, which take longer
+    int wildcards; /* 1: it uses COMM_ANY_SOURCE, masks of tags, tests, probes or synchronous sends, which take longer
                       to simulate */
     int64_t stack_bytes; /* stack of a rank; 0: 8 MiB, of which only what is used takes memory */
 };

@@ -9,6 +9,7 @@
 
 enum { PATH_SIZE = 4096 };
 
+/* A path that is too long is a file that is not there. */
 static bool is_there(const char *folder, const char *name)
 {
     char path[3 * PATH_SIZE];
@@ -28,6 +29,7 @@ static bool find_self(char self[PATH_SIZE], char folder[PATH_SIZE])
     return slash != NULL;
 }
 
+/* For a reader who has no manual at hand; gcc's own --help lists gcc's options. */
 static int print_help(const char *verb, const char *compiler)
 {
     printf(
@@ -73,6 +75,7 @@ static int compile_as(enum driver_language language, int argc, char **argv)
     return err_exit_status(e.kind);
 }
 
+/* One compiler driver, three languages. */
 int cmd_cc(int argc, char **argv) { return compile_as(DRIVER_C, argc, argv); }
 int cmd_cxx(int argc, char **argv) { return compile_as(DRIVER_CXX, argc, argv); }
 int cmd_f90(int argc, char **argv) { return compile_as(DRIVER_FORTRAN, argc, argv); }

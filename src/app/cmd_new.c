@@ -1,12 +1,11 @@
 /* cmd_new.c - mimdsim new: a parallel program to begin with, and its scenario. */
 #include <ctype.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "app/verb.h"
+#include "base/new_file.h"
 #include "base/text.h"
 
 static const char doc[] =
@@ -42,21 +41,6 @@ static void fill(struct text *out, const char *template, const char *name)
     }
 }
 
-/* A new file: O_EXCL, so that nothing that is there, a link least of all, is written to. What could
- * not be written as a whole is removed again: a disk that is full leaves nothing. */
-static bool write_new(const char *path, const struct text *content, struct err *e)
-{
-    const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL, 0666);
-    if (fd < 0 && errno == EEXIST)
-        return err_set(e, ERR_CREATE, "%s is there already; choose another name, or move it away",
-                       path);
-    if (fd < 0) return err_set(e, ERR_CREATE, "%s: %s", path, strerror(errno));
-    const bool written = write(fd, content->s, content->length) == (ssize_t)content->length;
-    if (close(fd) == 0 && written) return true;
-    unlink(path);
-    return err_set(e, ERR_IO, "%s cannot be written: %s", path, strerror(errno));
-}
-
 /* The template lies in the data folder, where whoever teaches may put another one. */
 static bool make_file(const char *name, const char *ending, struct err *e)
 {
@@ -66,7 +50,7 @@ static bool make_file(const char *name, const char *ending, struct err *e)
     if (fine) fill(&content, template.s, name);
     path.length = 0;
     text_add(&path, "%s%s", name, ending);
-    fine = fine && write_new(path.s, &content, e);
+    fine = fine && new_file_write(path.s, &content, e);
     text_free(&path);
     text_free(&template);
     text_free(&content);

@@ -17,6 +17,7 @@ void stored_add_claim(struct text *all, const struct claim_rule *rule)
     text_add(all, "%s\n%s\n", rule->id, rule->sql);
 }
 
+/* The texts are of no use afterwards. */
 void stored_digest(struct text *all, char hex[65])
 {
     digest_sha256_hex(all->s, all->length, hex);
@@ -31,6 +32,7 @@ static bool take_text(void *context, int ncolumn, const char *const *name, const
     return false;
 }
 
+/* Empty where there is no such note. */
 bool stored_note(struct store *s, const char *key, char value[65], struct err *e)
 {
     const char *const bound[] = {key};
@@ -47,8 +49,10 @@ bool stored_is(struct store *s, const char *key, const char *hex)
     return stored_note(s, key, value, &ignored) && strcmp(value, hex) == 0;
 }
 
+/* The note replaces the one of that key. */
 bool stored_keep(struct store *s, const char *key, const char *text, struct err *e)
 {
+    /* Table meta has a text for each key. */
     static const char *const name[] = {"key", "value"};
     const struct store_value value[] = {store_text(key), store_text(text)};
     return store_insert(s, "meta", 2, name, value, e);

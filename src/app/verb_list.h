@@ -20,6 +20,7 @@
     X(cmd_kernels, "kernels", "list built-in programs (programs lists all)")                                           \
     X(cmd_programs, "programs", "list programs: built in, examples, your own")                                         \
     X(cmd_new, "new", "write a parallel program to begin with, and its scenario")                                      \
+    X(cmd_lab, "lab", "learn: lessons to work through, with answers that are checked")                                 \
     X(cmd_verify, "verify", "compare every algorithm with reference vectors")                                          \
     X(cmd_validate, "validate", "compare machines with published values, networks with references")                    \
     X(cmd_links, "links", "show the most heavily loaded links of a run")                                               \

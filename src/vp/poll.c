@@ -59,7 +59,8 @@ static void poll(struct vp *v, sim_ps expected)
  * slip is a bug and told as one. */
 static void need_time(struct vp *v, const char *what)
 {
-    if (!v->matching) vp_misuse(v, "%s in a program that has promised to do without it", what);
+    if (!v->matching) vp_misuse(v, "%s in a program that has promised to do without it "
+                     "(a kernel in one file declares .wildcards = 1)", what);
 }
 
 /* ---- requests ---- */

@@ -106,7 +106,8 @@ static void vp_isend_synchronous(struct comm *c, int dst, int64_t tag, const voi
                                  struct comm_request *r)
 {
     struct vp *v = (struct vp *)c;
-    if (v->world->eager_only) vp_misuse(v, "a synchronous send in a program that has promised to do without it");
+    if (v->world->eager_only) vp_misuse(v, "a synchronous send in a program that has promised to do without it "
+                                       "(a kernel in one file declares .wildcards = 1)");
     struct message *m = make_message(v, dst, tag, data, bytes);
     m->synchronous = 1;
     rendezvous_send(v, m, r);
@@ -148,7 +149,8 @@ static void vp_irecv_matching(struct comm *c, int src, int64_t tag, int64_t mask
                   (long long)tag, src, v->world->nrank - 1);
     /* Only matching in simulated time knows who came first. */
     if (src < 0 && !v->matching)
-        vp_misuse(v, "a receive from any source in a program that has promised to do without it");
+        vp_misuse(v, "a receive from any source in a program that has promised to do without it "
+                     "(a kernel in one file declares .wildcards = 1)");
     *r = (struct comm_request){.buffer = buffer,
                                .bytes = capacity,
                                .capacity = capacity,
