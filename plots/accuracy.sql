@@ -1,11 +1,11 @@
--- Work-precision diagrams of one scenario: the error of every level, method and step size against the run time on this
--- computer and against the predicted run time on the machine. Methods that give the same bits at the same predicted cost
--- share a curve. Failed points are listed below the diagrams.
+-- Work-precision diagram of one ladder of a scenario (network, arithmetic, integration): the error of every level, method
+-- or step size against the run time on this computer and against the predicted run time on the machine. Further left is
+-- cheaper, further down is better. Methods that give the same bits at the same predicted cost share a curve.
 -- needs: mimdsim accuracy scenarios/speedup-t3e.yaml
--- each: SELECT DISTINCT scenario, 'accuracy-' || scenario FROM ladder ORDER BY 1
+-- each: SELECT json_array(scenario, ladder), 'accuracy-' || scenario || '-' || ladder, 'accuracy-' || scenario FROM ladder GROUP BY scenario, ladder ORDER BY scenario, min(ladder = 'arithmetic') + 2 * min(ladder = 'integration')
 WITH place AS ( -- of several points that were measured, the one that takes the machine longest
     SELECT DISTINCT ladder, first_value(at) OVER one AS at, first_value(family) OVER one AS family FROM ladder
-    WHERE scenario = ?1 WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
+    WHERE scenario = ?1 ->> '$[0]' AND ladder = ?1 ->> '$[1]' WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
 rung AS (
     SELECT l.*, CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END AS block,
            CASE WHEN ladder = 'network' THEN 1
@@ -19,7 +19,7 @@ rung AS (
                 WHEN rung LIKE '% twice' THEN 3 WHEN rung LIKE '% robust' THEN 2 WHEN rung LIKE '% inner' THEN 1
                 ELSE 0 END AS refinement
     FROM ladder l JOIN place USING (ladder, at, family)
-    WHERE scenario = ?1 AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd'
+    WHERE scenario = ?1 ->> '$[0]' AND ladder = ?1 ->> '$[1]' AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd'
                                                    ELSE 'state' END),
 method AS (
     SELECT block, panel, method, min(ordinal) AS first,
@@ -47,7 +47,7 @@ ORDER BY r.block, r.panel, c.series, drawn DESC, r.precision, r.refinement, r.or
 -- table: failed
 WITH place AS (
     SELECT DISTINCT ladder, first_value(at) OVER one AS at, first_value(family) OVER one AS family FROM ladder
-    WHERE scenario = ?1 WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
+    WHERE scenario = ?1 ->> '$[0]' AND ladder = ?1 ->> '$[1]' WINDOW one AS (PARTITION BY ladder ORDER BY ifnull(machine_ps, -1) DESC, at, family)),
 failed AS (
     SELECT CASE ladder WHEN 'network' THEN 1 WHEN 'arithmetic' THEN 2 ELSE 3 END AS block, ladder, method,
            CASE WHEN ladder = 'network' THEN 1
@@ -58,7 +58,7 @@ failed AS (
            replace(replace(rung, 'tolerance ', ''), ' steps', '') AS rung, ordinal, relative_error,
            iif(relative_error IS NULL, replace(text, ',', ' –'), 'error above 0.1') AS reason
     FROM ladder JOIN place USING (ladder, at, family)
-    WHERE scenario = ?1 AND status = 'failed'
+    WHERE scenario = ?1 ->> '$[0]' AND ladder = ?1 ->> '$[1]' AND status = 'failed'
           AND quantity = CASE ladder WHEN 'network' THEN 'makespan' WHEN 'arithmetic' THEN 'qdd' ELSE 'state' END),
 grouped AS (
     SELECT block, panel, min(ordinal) AS first, method || ': ' || group_concat(rung, '; ') AS which, reason

@@ -39,7 +39,7 @@ do for [format in formats] {
          (x < 1 ? NaN : x) with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000", \
          for [k=last:1:-1] data using "P":(of(k, column("speedup"))) with lines linewidth 2 dashtype dash[turn(k)] \
             linecolor rgb colour[turn(k)], \
-         for [k=last:1:-1] data using "P":(of(k, column("speedup"))):(sprintf("n = P = %d: speedup %.3g, f = %.3g", \
+         for [k=last:1:-1] data using "P":(near(of(k, column("speedup")))):(sprintf("n = P = %d: speedup %.3g, f = %.3g", \
             column("P"), column("speedup"), column("parallel_fraction"))) with labels hypertext point \
             pointtype point[turn(k)] pointsize 0.8 linecolor rgb colour[turn(k)], \
          for [k=1:last] keyentry with linespoints linewidth 2 dashtype dash[turn(k)] pointtype point[turn(k)] \

@@ -56,7 +56,7 @@ do for [format in formats] {
          data using "P":(has_band ? of(1, column("speedup")) : NaN) with lines linewidth 6 linecolor rgb band title "over ".name[1], \
          for [k=first:last] data using "P":(of(k, column("speedup"))) with lines linewidth 1.8 dashtype dash[turn(k-first+1)] \
             linecolor rgb colour[turn(k-first+1)], \
-         for [k=first:last] data using "P":(of(k, column("speedup"))):(sprintf("n = P = %d: speedup %.3g, f = %.3g", \
+         for [k=first:last] data using "P":(near(of(k, column("speedup")))):(sprintf("n = P = %d: speedup %.3g, f = %.3g", \
             column("P"), column("speedup"), column("parallel_fraction"))) with labels hypertext point \
             pointtype point[turn(k-first+1)] pointsize 0.8 linecolor rgb colour[turn(k-first+1)], \
          for [k=first:last] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k-first+1)] \

@@ -60,7 +60,7 @@ do for [format in formats] {
              1 with lines linewidth 0.6 linecolor rgb grey, \
              for [k=first:last] data using "P":(of(m, k, column("speedup"))) with lines linewidth 1.6 \
                 dashtype dash[turn(k-first+1)] linecolor rgb colour[turn(k-first+1)], \
-             for [k=first:last] data using "P":(of(m, k, column("speedup"))):(sprintf("P = %d: speedup %.3g, f = %.3g", \
+             for [k=first:last] data using "P":(near(of(m, k, column("speedup")))):(sprintf("P = %d: speedup %.3g, f = %.3g", \
                 column("P"), column("speedup"), column("parallel_fraction"))) with labels hypertext point \
                 pointtype point[turn(k-first+1)] pointsize 0.7 linecolor rgb colour[turn(k-first+1)]
     }

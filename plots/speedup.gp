@@ -42,7 +42,7 @@ do for [format in formats] {
              1 with lines linewidth 0.6 linecolor rgb grey notitle, \
              for [k=first(q):final(q)] data using "P":(of(k, column("speedup"))) with lines linewidth 1.6 \
                 dashtype dash[turn(k)] linecolor rgb colour[turn(k)], \
-             for [k=first(q):final(q)] data using "P":(of(k, column("speedup"))):(sprintf("P = %d: speedup %.3g", column("P"), \
+             for [k=first(q):final(q)] data using "P":(near(of(k, column("speedup")))):(sprintf("P = %d: speedup %.3g", column("P"), \
                 column("speedup"))) with labels hypertext point pointtype point[turn(k)] pointsize 0.8 linecolor rgb colour[turn(k)], \
              for [k=first(q):final(q)] keyentry with linespoints linewidth 1.6 dashtype dash[turn(k)] pointtype point[turn(k)] \
                 pointsize 0.8 linecolor rgb colour[turn(k)] title name[k]

@@ -28,6 +28,10 @@ array point[6] = [7, 5, 9, 13, 11, 15]
 array hollow[6] = [6, 4, 8, 12, 10, 14]
 array dash[6] = [1, 2, 4, 5, 3, 1]
 turn(k) = (int(k) - 1) % 6 + 1
+# Where a point with a tooltip is not to be drawn: outside of every axis. gnuplot 5.4 breaks down over labels of which the
+# only one is no number.
+away = 1e300
+near(v) = v == v ? v : away
 # The fastest serial code is always one of the others: a wide pale band under that one's curve.
 band = "#d0d0d0"
 grey = "#666666"

@@ -19,8 +19,9 @@ static const char doc[] =
     "Measure the error and the cost of network levels, of precisions and algorithms,\n"
     "and of integrators and step sizes, at the largest points of SCENARIO that take\n"
     "seconds. Results go to table `ladder` of the database, and work-precision\n"
-    "diagrams to accuracy-SCENARIO.png and .svg; failed methods are listed. At the\n"
-    "end the cheapest level, method and integrator within the error are printed.\n\n"
+    "diagrams to accuracy-SCENARIO-network.png and .svg, -arithmetic and\n"
+    "-integration; failed methods are listed. At the end the cheapest level, method\n"
+    "and integrator within the error are printed.\n\n"
     "Example: mimdsim accuracy scenarios/speedup-t3e.yaml --within 2%\n"
     "\v--within X: the permitted relative error, such as 2% or 1e-6. The default is 2% for "
     "simulated times, 1e-10 for accelerations and 1e-6 for states.";

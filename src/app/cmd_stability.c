@@ -15,17 +15,18 @@
 static const char doc[] =
     "Run the suite of stiff and extreme scenes, or the scenes of SCENARIO, with\n"
     "every algorithm and integrator, and grade each result: ok, degraded or failed.\n"
-    "Results go to table `stability` of the database, and a chart to stability.png\n"
-    "and .svg, or stability-SCENARIO.png and .svg.\n\n"
+    "Results go to table `stability` of the database, and charts to\n"
+    "stability-suite-GROUP.png and .svg, a group of cases each, or to\n"
+    "stability-SCENARIO-cases and stability-SCENARIO-motions.\n\n"
     "Example: mimdsim stability\n";
 
-/* A scenario's chart has the scenario's name; the built-in suite's has none. */
+/* The charts have the scenario's name, or "suite". */
 static bool keep_and_draw(const struct common *c, const struct stability_report *r, struct err *e)
 {
     struct store *s = arguments_store(c, c->database, e);
     if (!s) return false;
     struct text figure = {0};
-    text_add(&figure, strcmp(r->suite, "suite") == 0 ? "stability" : "stability-%s", r->suite);
+    text_add(&figure, "stability-%s", r->suite);
     bool ok = keep_stability(s, r, e) && keep_draw(c, s, figure.s, e);
     text_free(&figure);
     store_close(s);

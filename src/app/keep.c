@@ -47,9 +47,14 @@ bool keep_stability(struct store *s, const struct stability_report *r, struct er
 /* The figure is drawn from the database, so it can be drawn again by `mimdsim plot`. */
 bool keep_draw(const struct common *c, struct store *s, const char *figure, struct err *e)
 {
+    struct report_drawings d;
     if (!report_figure(s, plan_data_dir(), figure, c->directory, e)) return false;
-    if (!c->quiet)
-        fprintf(stderr, "mimdsim: figure %s/%s.png; its section: mimdsim report %s\n", c->directory,
-                figure, c->database);
+    if (c->quiet) return true;
+    /* A study may have several drawings: each is told. */
+    if (!report_drawings_find(s, plan_data_dir(), figure, &d, e)) return false;
+    for (int i = 0; i < d.n; i++)
+        fprintf(stderr, "mimdsim: figure %s/%s.png\n", c->directory, d.as[i]);
+    fprintf(stderr, "mimdsim: its section: mimdsim report %s\n", c->database);
+    report_drawings_free(&d);
     return true;
 }

@@ -96,9 +96,9 @@ static bool tell_ladders(void *context, int ncolumn, const char *const *name,
     text_add(&figure, "accuracy-%s", value[0]);
     bool ok = sentences(c, choice_sentences, value[0]);
     if (ok)
-        page_figure(c->page, figure.s,
-                    "Error against the run time on this computer and on the simulated machine; "
-                    "exact results are on the line at the bottom.");
+        page_figures(c->page, c->store, figure.s,
+                     "Error against the run time on this computer and on the simulated machine; "
+                     "exact results are on the line at the bottom.");
     if (ok) page_paragraph(c->page, "Failed:");
     ok = ok && table(c, failed_rungs, value[0], "None.");
     text_free(&figure);
@@ -236,9 +236,9 @@ static bool tell_suite(void *context, int ncolumn, const char *const *name,
     (void)ncolumn;
     (void)name;
     page_heading(c->page, 3, built_in ? "The suite" : value[0]);
-    text_add(&figure, built_in ? "stability" : "stability-%s", value[0]);
+    text_add(&figure, "stability-%s", value[0]);
     page_paragraph(c->page, value[2]);
-    page_figure(c->page, figure.s,
+    page_figures(c->page, c->store, figure.s,
                 "Cases and algorithms; each cell gives the power of ten of the relative error. For "
                 "stiff motions: error, step, evaluations (if not run: the number needed) and "
                 "energy drift.");
@@ -303,7 +303,7 @@ static bool tell_savings(void *context, int ncolumn, const char *const *name,
     (void)name;
     page_heading(c->page, 3, value[0]);
     text_add(&figure, "omissions-%s", value[0]);
-    page_figure(c->page, figure.s,
+    page_figures(c->page, c->store, figure.s,
                 "Time saved by each omission: the time of the same run with the omission undone, "
                 "minus the time of the run with the omission.");
     text_free(&figure);

@@ -11,39 +11,11 @@
 
 #include "base/beside.h"
 #include "base/check.h"
+#include "base/digest.h"
 #include "base/text.h"
-
-/* HTML that is complete in itself: no style sheet, no script, no font from elsewhere. */
-static const char style[] =
-    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>\n"
-    "body { font: 16px/1.5 'DejaVu Sans', Verdana, sans-serif; color: #1a1a1a; max-width: 62em; "
-    "margin: 2em auto; padding: 0 1em }\n"
-    "h1, h2, h3 { line-height: 1.25; font-weight: 600 } h2 { margin-top: 2.2em; border-bottom: 1px "
-    "solid #ccc }\n"
-    "table { border-collapse: collapse; margin: 1em 0; font-size: 0.8em; display: block; "
-    "overflow-x: auto }\n"
-    "th, td { text-align: left; vertical-align: top; padding: 0.25em 0.7em; border-bottom: 1px "
-    "solid #ddd }\n"
-    "th { border-bottom: 2px solid #888 } td.pass { background: #d5e8f3 } td.fail { background: "
-    "#b0401a; color: #fff }\n"
-    "td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }\n"
-    "td.short, td.pass, td.fail { white-space: nowrap }\n"
-    "nav ul { columns: 18em; padding-left: 1.2em }\n"
-    "figure { margin: 1.5em 0 } figure img { width: 100%; height: auto } figcaption { font-size: "
-    "0.85em; color: #444 }\n</style>\n";
-
-/* Any text in HTML, also inside attributes. */
-static void escape(FILE *html, const char *s)
-{
-    for (; *s; s++) {
-        if (*s == '<') fputs("&lt;", html);
-        else if (*s == '>') fputs("&gt;", html);
-        else if (*s == '&') fputs("&amp;", html);
-        else if (*s == '"') fputs("&quot;", html);
-        else putc(*s, html);
-    }
-}
+#include "report/markup.h"
+#include "report/report.h"
+#include "report/svg.h"
 
 /* Text for Markdown: what would be taken for markup is escaped; a line break would end a table's
  * row. */
@@ -55,18 +27,80 @@ static void escape_md(FILE *md, const char *s, bool cell)
     }
 }
 
+/* Base64, RFC 4648, section 4: three bytes are four digits of six bits; a short end is filled
+ * with '='. */
+static void base64(FILE *out, const unsigned char *s, size_t n)
+{
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < n; i += 3) {
+        /* bytes behind the end count as 0 */
+        unsigned a = s[i], b = i + 1 < n ? s[i + 1] : 0, c = i + 2 < n ? s[i + 2] : 0;
+        putc(digit[a >> 2], out);
+        putc(digit[(a & 3) << 4 | b >> 4], out);
+        putc(i + 1 < n ? digit[(b & 15) << 2 | c >> 6] : '=', out);
+        putc(i + 2 < n ? digit[c & 63] : '=', out);
+    }
+}
+
+/* The fingerprint by which a browser knows the one script that may run. */
+static void put_script_source(FILE *html, const struct text *script)
+{
+    char hex[65], pair[3] = "";
+    unsigned char hash[32];
+    digest_sha256_hex(script->s, script->length, hex);
+    for (int i = 0; i < 32; i++) {
+        memcpy(pair, hex + 2 * i, 2);
+        hash[i] = (unsigned char)strtoul(pair, NULL, 16);
+    }
+    fputs("'sha256-", html);
+    base64(html, hash, sizeof hash);
+    fputs("'", html);
+}
+
+/* HTML that is complete in itself: no style sheet, no script, no font from elsewhere. Texts of a
+ * database are escaped, pictures are read and written again; the policy is the second lock: the
+ * browser fetches nothing and runs no script but ours. */
+static void put_head(FILE *html, const struct text *style, const struct text *script)
+{
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+          "style-src 'unsafe-inline'; script-src ",
+          html);
+    put_script_source(html, script);
+    fprintf(html, "\">\n<style>\n%s</style>\n", style->s);
+}
+
+/* The contents of data_dir/plots/NAME, never NULL. */
+static bool read_part(const struct page *p, const char *name, struct text *t, struct err *e)
+{
+    struct text path = {0};
+    text_add(&path, "%s/plots/%s", p->data_dir, name);
+    bool ok = text_read_file(t, path.s, e);
+    text_add(t, "%s", "");
+    text_free(&path);
+    return ok;
+}
+
 /* Everything is written to memory: the list of contents needs headings that are not known yet, and
  * the files appear whole. */
-void page_open(struct page *p, const char *title, const char *figures)
+bool page_open(struct page *p, const char *title, struct err *e)
 {
-    *p = (struct page){.figures = figures};
+    struct text style = {0};
+    *p = (struct page){.figures = p->figures, .data_dir = p->data_dir};
+    const bool ok =
+        read_part(p, "report.css", &style, e) && read_part(p, "report.js", &p->script, e);
     p->md = text_stream(&p->text_md);
     p->html = text_stream(&p->text_html);
-    fputs(style, p->html);
-    fputs("<title>", p->html);
-    escape(p->html, title);
-    fputs("</title>\n</head>\n<body>\n", p->html);
-    page_heading(p, 1, title);
+    if (ok) {
+        put_head(p->html, &style, &p->script);
+        fputs("<title>", p->html);
+        markup_escape(p->html, title);
+        fputs("</title>\n</head>\n<body>\n", p->html);
+        page_heading(p, 1, title);
+    }
+    text_free(&style);
+    return ok;
 }
 
 /* The list goes here when it is known. */
@@ -99,7 +133,7 @@ static bool write_file(const char *folder, const char *name, const char *ending,
 
 bool page_close(struct page *p, const char *folder, const char *name, bool keep, struct err *e)
 {
-    fputs("</body>\n</html>\n", p->html);
+    fprintf(p->html, "<script>%s</script>\n</body>\n</html>\n", p->script.s ? p->script.s : "");
     text_stream_end(p->md);
     text_stream_end(p->html);
     if (p->has_contents) {
@@ -108,8 +142,8 @@ bool page_close(struct page *p, const char *folder, const char *name, bool keep,
     }
     const bool ok = !keep || (write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
                               write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
-    struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html};
-    for (int i = 0; i < 4; i++) text_free(mine[i]);
+    struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html, &p->script};
+    for (int i = 0; i < 5; i++) text_free(mine[i]);
     *p = (struct page){0};
     return ok;
 }
@@ -132,7 +166,7 @@ static void list_heading(struct page *p, const char *text, const char *anchor)
     struct text md = {0}, html = {0};
     FILE *to_md = text_stream(&md), *to_html = text_stream(&html);
     escape_md(to_md, text, false);
-    escape(to_html, text);
+    markup_escape(to_html, text);
     text_stream_end(to_md);
     text_stream_end(to_html);
     text_add(&p->list_md, "- [%s](#%s)\n", md.s, anchor);
@@ -152,7 +186,7 @@ void page_heading(struct page *p, int level, const char *text)
     fputs("\n\n", p->md);
     if (level == 2) fprintf(p->html, "<h2 id=\"%s\">", anchor.s);
     else fprintf(p->html, "<h%d>", level);
-    escape(p->html, text);
+    markup_escape(p->html, text);
     fprintf(p->html, "</h%d>\n", level);
     if (level == 2 && p->has_contents) list_heading(p, text, anchor.s);
     text_free(&anchor);
@@ -163,7 +197,7 @@ void page_paragraph(struct page *p, const char *text)
     escape_md(p->md, text, false);
     fputs("\n\n", p->md);
     fputs("<p>", p->html);
-    escape(p->html, text);
+    markup_escape(p->html, text);
     fputs("</p>\n", p->html);
 }
 
@@ -182,7 +216,7 @@ static const char *cell_class(const char *s)
 /* A row in both. In Markdown the head is followed by a line of hyphens; HTML needs none. */
 void page_row(struct page *p, bool head, int n, const char *const *cell)
 {
-    fputs(head ? "<table>\n<tr>" : "<tr>", p->html);
+    fputs(head ? "<div class=\"wide\">\n<table>\n<thead>\n<tr>" : "<tr>", p->html);
     putc('|', p->md);
     for (int i = 0; i < n; i++) {
         const char *s = cell[i] ? cell[i] : "";
@@ -190,11 +224,11 @@ void page_row(struct page *p, bool head, int n, const char *const *cell)
         escape_md(p->md, s, true);
         fputs(" |", p->md);
         fprintf(p->html, head ? "<th>" : "<td%s>", cell_class(s));
-        escape(p->html, s);
+        markup_escape(p->html, s);
         fputs(head ? "</th>" : "</td>", p->html);
     }
     putc('\n', p->md);
-    fputs("</tr>\n", p->html);
+    fputs(head ? "</tr>\n</thead>\n<tbody>\n" : "</tr>\n", p->html);
     for (int i = 0; head && i < n; i++) fputs(i + 1 < n ? "|---" : "|---|\n", p->md);
     /* Not 0: a table is open. */
     p->columns = n;
@@ -205,7 +239,7 @@ void page_table_end(struct page *p)
     /* No table is open: an end too many does no harm. */
     if (!p->columns) return;
     fputs("\n", p->md);
-    fputs("</table>\n", p->html);
+    fputs("</tbody>\n</table>\n</div>\n", p->html);
     p->columns = 0;
 }
 
@@ -260,21 +294,6 @@ bool page_table(struct page *p, struct store *s, const char *sql, int nparam,
     return ok;
 }
 
-/* Base64, RFC 4648, section 4: three bytes are four digits of six bits; a short end is filled
- * with '='. */
-static void base64(FILE *out, const unsigned char *s, size_t n)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < n; i += 3) {
-        /* bytes behind the end count as 0 */
-        unsigned a = s[i], b = i + 1 < n ? s[i + 1] : 0, c = i + 2 < n ? s[i + 2] : 0;
-        putc(digit[a >> 2], out);
-        putc(digit[(a & 3) << 4 | b >> 4], out);
-        putc(i + 1 < n ? digit[(b & 15) << 2 | c >> 6] : '=', out);
-        putc(i + 2 < n ? digit[c & 63] : '=', out);
-    }
-}
-
 /* A path as Markdown takes it for a link's target: what would end or quote it is
  * percent-encoded. */
 static void put_target(FILE *md, const char *path)
@@ -284,40 +303,78 @@ static void put_target(FILE *md, const char *path)
         else putc(*path, md);
 }
 
-/* Markdown refers to the file beside it, by the last part of the folder's path; HTML contains
- * the picture, so that it can be sent alone. */
-void page_figure(struct page *p, const char *name, const char *caption)
+/* Markdown refers to the file beside it, by the last part of the folder's path. */
+static void put_picture_md(struct page *p, const char *name)
 {
-    struct text path = {0}, svg = {0};
-    struct err ignored;
-    err_clear(&ignored);
-    /* A figure that cannot be read was not drawn: no error of the report. */
     const char *slash = strrchr(p->figures, '/');
+    fputs("![", p->md);
+    escape_md(p->md, name, false);
+    fputs("](", p->md);
+    put_target(p->md, slash && slash[1] ? slash + 1 : p->figures);
+    putc('/', p->md);
+    put_target(p->md, name);
+    fputs(".svg)\n\n", p->md);
+}
+
+/* The picture of a drawing: HTML contains it, so that it can be sent alone. False: it was not
+ * drawn, or cannot be read, which is no error of the report. */
+static bool put_picture(struct page *p, const char *name)
+{
+    struct text path = {0}, svg = {0}, clean = {0};
+    struct err ignored;
+    char prefix[24];
+    err_clear(&ignored);
     text_add(&path, "%s/%s.svg", p->figures, name);
-    if (text_read_file(&svg, path.s, &ignored)) {
-        fputs("![", p->md);
-        escape_md(p->md, name, false);
-        fputs("](", p->md);
-        put_target(p->md, slash && slash[1] ? slash + 1 : p->figures);
-        putc('/', p->md);
-        put_target(p->md, name);
-        fputs(".svg)\n\n", p->md);
-        /* SVG as a data: address; inside <img> it cannot run scripts. */
-        fputs("<figure><img alt=\"", p->html);
-        escape(p->html, name);
-        fputs("\" src=\"data:image/svg+xml;base64,", p->html);
-        base64(p->html, (const unsigned char *)svg.s, svg.length);
-        fputs("\">\n<figcaption>", p->html);
-        escape(p->html, caption);
+    snprintf(prefix, sizeof prefix, "f%d-", ++p->nfigure);
+    /* In memory first: half a picture would spoil the page. */
+    FILE *out = text_stream(&clean);
+    bool ok = text_read_file(&svg, path.s, &ignored) && svg_clean(&svg, prefix, out, &ignored);
+    text_stream_end(out);
+    if (ok) {
+        put_picture_md(p, name);
+        fwrite(clean.s, 1, clean.length, p->html);
+    }
+    text_free(&clean);
+    text_free(&path);
+    text_free(&svg);
+    return ok;
+}
+
+/* Caption below; what was not drawn is told. */
+static void put_caption(struct page *p, const char *caption, int drawn, int missing)
+{
+    if (drawn > 0) {
+        fputs("<figcaption>", p->html);
+        markup_escape(p->html, caption);
         fputs("</figcaption></figure>\n", p->html);
         escape_md(p->md, caption, false);
         fputs("\n\n", p->md);
-    } else {
-        page_paragraph(p, caption);
+    } else page_paragraph(p, caption);
+    if (missing > 0)
         page_paragraph(
             p, "This figure was not drawn: gnuplot is missing or no run is stored for it. Its data "
                "are in the CSV file of the same name.");
-    }
-    text_free(&path);
-    text_free(&svg);
+}
+
+void page_figure(struct page *p, const char *name, const char *caption)
+{
+    fputs("<figure>\n", p->html);
+    const bool drawn = put_picture(p, name);
+    if (!drawn) fputs("</figure>\n", p->html);
+    put_caption(p, caption, drawn, !drawn);
+}
+
+void page_figures(struct page *p, struct store *s, const char *name, const char *caption)
+{
+    struct report_drawings d = {0};
+    struct err ignored;
+    int drawn = 0;
+    err_clear(&ignored);
+    /* Without rows there is no drawing: told like a missing one. */
+    const int n = report_drawings_find(s, p->data_dir, name, &d, &ignored) ? d.n : 0;
+    fputs("<figure>\n", p->html);
+    for (int i = 0; i < n; i++) drawn += put_picture(p, d.as[i]);
+    if (drawn == 0) fputs("</figure>\n", p->html);
+    put_caption(p, caption, drawn, n == 0 || drawn < n);
+    report_drawings_free(&d);
 }

@@ -12,6 +12,9 @@
 struct page {
     FILE *md, *html;     /* into the texts below */
     const char *figures; /* folder of the pictures */
+    const char *data_dir; /* holds plots/ */
+    int nfigure;         /* written: each has identifiers of its own */
+    struct text script;  /* of the HTML, written at its end */
     int columns;         /* of the table being written */
     struct text text_md, text_html; /* all but the list of contents */
     bool has_contents;
@@ -19,8 +22,10 @@ struct page {
     struct text list_md, list_html;
 };
 
-/* page_open: begin a report; `figures` is borrowed. */
-void page_open(struct page *p, const char *title, const char *figures);
+/* page_open: begin a report; p->figures and p->data_dir are the caller's, set before and borrowed. The look and the
+ * script that sorts tables are data_dir/plots/report.css and report.js; they become a part of the HTML, and no other
+ * script runs in it. Returns false with ERR_NO_INPUT where these are missing; page_close is due all the same. */
+bool page_open(struct page *p, const char *title, struct err *e);
 
 /* page_close: end it: folder/NAME.md and folder/NAME.html are there, whole, in place of older ones, when `keep`; else
  * nothing is written. Returns false with ERR_CREATE or ERR_IO. */
@@ -41,7 +46,11 @@ bool page_table(struct page *p, struct store *s, const char *sql, int nparam, co
 void page_row(struct page *p, bool head, int n, const char *const *cell);
 void page_table_end(struct page *p);
 
-/* page_figure: figure `name` with its caption, the SVG inside the HTML; a figure that was not drawn is told as such. */
+/* page_figure: the drawing `name` with its caption, the SVG inside the HTML; one that was not drawn is told as such. */
 void page_figure(struct page *p, const char *name, const char *caption);
+
+/* page_figures: all drawings that `name` stands for in the database (report_drawings_find), the caption below the last
+ * one. One that has none is told as not drawn. */
+void page_figures(struct page *p, struct store *s, const char *name, const char *caption);
 
 #endif

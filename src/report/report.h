@@ -23,10 +23,12 @@ struct report_drawings {
     char figure[64];   /* whose description draws them */
     int n;
     char **which, **as; /* (n) the row that is shown, "" for all; the name of the files. Owned */
+    char **of;          /* (n) the name of all drawings that belong together, or `as`. Owned */
 };
 
-/* report_drawings_find: the drawings of `name`, a figure ("accuracy": all of them) or a drawing of one
- * ("accuracy-four-bar"). Returns false with ERR_NO_INPUT as report_figure does, then with nothing to free. */
+/* report_drawings_find: the drawings of `name`: a figure ("accuracy": all of them), some that belong together
+ * ("accuracy-four-bar"), or a single one ("accuracy-four-bar-network"). Returns false with ERR_NO_INPUT as
+ * report_figure does, then with nothing to free. */
 bool report_drawings_find(struct store *s, const char *data_dir, const char *name, struct report_drawings *d,
                           struct err *e);
 

@@ -14,6 +14,7 @@
 #include "report/findings.h"
 #include "report/opening.h"
 #include "report/page.h"
+#include "report/runs_section.h"
 
 /* C2 before C10, indicators last. */
 #define IN_ORDER " ORDER BY substr(id, 1, 1) <> 'C', length(id), id"
@@ -184,7 +185,7 @@ static bool figures(struct chapter *c)
         bool ok = text_read_file(&sql, path.s, c->e);
         if (ok) {
             caption(sql.s, &words);
-            page_figure(c->page, c->d->figure[i], words.s ? words.s : "");
+            page_figures(c->page, c->d->store, c->d->figure[i], words.s ? words.s : "");
         }
         text_free(&path);
         text_free(&sql);
@@ -367,7 +368,8 @@ static bool chapters(struct chapter *c)
     page_contents(c->page);
     return (!claimed || (contradictions(c) && explanations_section(c->page, d->store, c->e) &&
                          estimates(c) && claims(c))) &&
-           figures(c) && findings_accuracy(c->page, d->store, c->e) &&
+           (d->whole || runs_section(c->page, d->store, c->e)) && figures(c) &&
+           findings_accuracy(c->page, d->store, c->e) &&
            findings_stability(c->page, d->store, c->e) && (!claimed || variants(c)) &&
            machines(c) && (!run || numerics(c)) && omissions(c) &&
            (!run || (effort(c) && provenance(c))) &&
@@ -376,7 +378,7 @@ static bool chapters(struct chapter *c)
 
 bool document_write(const struct document *d, struct err *e)
 {
-    struct page page = {0};
+    struct page page = {.data_dir = d->data_dir};
     /* The report lies beside its folder of figures, so that links are short: its folder is the
      * path above, without trailing slashes. */
     char *figures_folder = memory_text(d->figures);
@@ -389,8 +391,8 @@ bool document_write(const struct document *d, struct err *e)
                  figures_folder);
     else text_add(&folder, ".");
     struct chapter c = {d, &page, e};
-    page_open(&page, d->title, figures_folder);
-    bool ok = chapters(&c);
+    page.figures = figures_folder;
+    bool ok = page_open(&page, d->title, e) && chapters(&c);
     /* Half a report is none: the files of an earlier one stay. */
     ok = page_close(&page, folder.s, d->name, ok, e) && ok;
     text_free(&folder);

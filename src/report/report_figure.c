@@ -12,7 +12,6 @@
  * A database may come from a stranger. Its texts go into data files alone, NAME.csv and
  * NAME.provenance, never into a script; of a name that one gives to a drawing, what has a meaning
  * to a shell, to gnuplot or in a path is replaced. */
-#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +29,7 @@
 #include "report/gnuplot.h"
 #include "report/images.h"
 #include "report/report.h"
+#include "report/svg.h"
 
 /* One figure in the making. */
 struct figure {
@@ -50,63 +50,6 @@ static char *joined(const char *a, const char *b, const char *c)
     struct text t = {0};
     text_add(&t, "%s%s%s", a, b, c);
     return t.s;
-}
-
-/* Stem of a file in plots/ that is a figure: it has both parts. NULL otherwise. */
-static char *figure_stem(const char *plots, const char *file)
-{
-    size_t n = strlen(file);
-    if (n < 5 || strcmp(file + n - 4, ".sql") != 0) return NULL;
-    struct text script = {0};
-    text_add(&script, "%s/%.*s.gp", plots, (int)(n - 4), file);
-    bool drawn = access(script.s, R_OK) == 0;
-    text_free(&script);
-    return drawn ? memory_text_part(file, n - 4) : NULL;
-}
-
-/* For qsort. */
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* Every pair of NAME.sql and NAME.gp: adding a figure is adding two files. */
-int report_figures(const char *data_dir, char ***name)
-{
-    char *plots = joined(data_dir, "/plots", "");
-    struct dirent **entry = NULL;
-    int nentry = scandir(plots, &entry, NULL, alphasort), n = 0;
-    *name = memory_zeroed((size_t)(nentry > 0 ? nentry : 0) + 1, sizeof **name);
-    for (int i = 0; i < nentry; i++) {
-        /* What begins with _ draws what a verb computed (plot.h): no figure by itself. */
-        char *stem = entry[i]->d_name[0] != '_' ? figure_stem(plots, entry[i]->d_name) : NULL;
-        if (stem != NULL) (*name)[n++] = stem;
-        free(entry[i]);
-    }
-    free(entry);
-    free(plots);
-    qsort(*name, (size_t)n, sizeof **name,
-          compare_names); /* without their endings they sort otherwise */
-    return n;
-}
-
-/* The nearest name, or all of them. Returns false, for the caller's return. */
-static bool no_such_figure(const char *data_dir, const char *wanted, struct err *e)
-{
-    char **name;
-    int n = report_figures(data_dir, &name);
-    const char *nearest = text_nearest(wanted, (const char *const *)name, n);
-    struct text all = {0};
-    for (int i = 0; i < n; i++) text_add(&all, "%s%s", i ? ", " : "", name[i]);
-    if (nearest != NULL)
-        err_set(e, ERR_NO_INPUT, "there is no figure '%s'; did you mean '%s'?", wanted, nearest);
-    else
-        err_set(e, ERR_NO_INPUT, "there is no figure '%s'; known: %s", wanted,
-                n > 0 ? all.s : "none");
-    for (int i = 0; i < n; i++) free(name[i]);
-    free(name);
-    text_free(&all);
-    return false;
 }
 
 /* JSON, as SQLite's json_each takes it back. Called for every row that has a run_id; a run may come
@@ -296,6 +239,28 @@ static bool no_rows(const struct figure *f, const char *sql, struct err *e)
                    f->name, *needs ? "; first: " : "", needs);
 }
 
+/* gnuplot's SVG as it may stand in a page: with a title, tooltips without a script, and nothing
+ * but shapes and texts. */
+static bool clean_svg(const struct figure *f, struct err *e)
+{
+    struct text path = {0}, svg = {0}, clean = {0};
+    text_add(&path, "%s/%s.svg", f->dir, f->as);
+    /* A script may draw a PNG alone. */
+    if (access(path.s, F_OK) != 0) {
+        text_free(&path);
+        return true;
+    }
+    FILE *out = text_stream(&clean);
+    bool ok = text_read_file(&svg, path.s, e) && svg_clean(&svg, NULL, out, e);
+    text_stream_end(out);
+    if (!ok) err_in(e, path.s);
+    ok = ok && beside_write(path.s, clean.s, clean.length, e);
+    text_free(&clean);
+    text_free(&path);
+    text_free(&svg);
+    return ok;
+}
+
 /* Tables, then the script, then gnuplot. If that fails, no image is left: data and script stay,
  * to be drawn elsewhere. */
 static bool draw(struct figure *f, const char *sql, struct err *e)
@@ -306,25 +271,9 @@ static bool draw(struct figure *f, const char *sql, struct err *e)
     images_remove(f->dir, f->as);
     text_add(&script, "%s.gp", f->as);
     ok = ok && write_provenance(f, e) && write_script(f, e) && gnuplot_run(f->dir, script.s, e) &&
-         images_check(f->dir, f->as, e);
+         images_check(f->dir, f->as, e) && clean_svg(f, e);
     if (!ok) images_remove(f->dir, f->as);
     text_free(&script);
-    return ok;
-}
-
-/* The text of figure `name`. False: there is no such figure; a name with a slash is none, so
- * that no path leads out of plots/. */
-static bool read_description(const char *data_dir, const char *name, struct text *sql,
-                             struct err *e)
-{
-    char *plots = joined(data_dir, "/plots", ""), *file = joined(name, ".sql", "");
-    char *stem = strchr(name, '/') == NULL ? figure_stem(plots, file) : NULL;
-    char *path = joined(plots, "/", file);
-    bool ok = stem != NULL && text_read_file(sql, path, e);
-    free(stem);
-    free(plots);
-    free(file);
-    free(path);
     return ok;
 }
 
@@ -333,7 +282,7 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
                         const char *as, const char *dir, struct err *e)
 {
     struct text sql = {0};
-    if (!read_description(data_dir, name, &sql, e)) return no_such_figure(data_dir, name, e);
+    if (!figure_description(data_dir, name, &sql, e)) return figure_unknown(data_dir, name, e);
     char *plots = joined(data_dir, "/plots", "");
     struct figure f = {.s = s, .plots = plots, .name = name, .as = as, .run = run, .dir = dir};
     f.folder_made = access(dir, F_OK) != 0;
@@ -341,98 +290,6 @@ static bool make_figure(struct store *s, const char *data_dir, const char *name,
     text_free(&f.run_ids);
     text_free(&sql);
     free(plots);
-    return ok;
-}
-
-/* --- figures with a drawing for each of several rows ------------------------------------------ */
-
-/* A row of -- each: what ?1 is bound to, and what the drawing is called after. */
-static bool add_drawing(void *context, int ncolumn, const char *const *name,
-                        const char *const *value)
-{
-    struct report_drawings *d = context;
-    (void)name;
-    CHECK(ncolumn == 2);
-    if (value[0] == NULL || value[1] == NULL)
-        return true; /* a row that was left without its name */
-    d->which = memory_resize(d->which, (size_t)d->n + 1, sizeof *d->which);
-    d->as = memory_resize(d->as, (size_t)d->n + 1, sizeof *d->as);
-    d->which[d->n] = memory_text(value[0]);
-    d->as[d->n++] = figure_file_name(d->figure, value[1]);
-    return true;
-}
-
-void report_drawings_free(struct report_drawings *d)
-{
-    for (int i = 0; i < d->n; i++) {
-        free(d->which[i]);
-        free(d->as[i]);
-    }
-    free(d->which);
-    free(d->as);
-    *d = (struct report_drawings){0};
-}
-
-/* Only the drawing called `as` stays, the first of that name. */
-static void keep_drawing(struct report_drawings *d, const char *as)
-{
-    int n = 0;
-    for (int i = 0; i < d->n; i++) {
-        char *which = d->which[i], *its_name = d->as[i];
-        if (strcmp(its_name, as) == 0 && n == 0) {
-            d->which[n] = which;
-            d->as[n++] = its_name;
-        } else {
-            free(which);
-            free(its_name);
-        }
-    }
-    d->n = n;
-}
-
-/* The figure that `name` is a drawing of: NAME itself, or what stands before one of its hyphens,
- * the last one first. */
-static bool find_description(const char *data_dir, const char *name, struct report_drawings *d,
-                             struct text *sql, struct err *e)
-{
-    char each[1000];
-    text_copy(d->figure, sizeof d->figure, name);
-    if (read_description(data_dir, name, sql, e)) return true;
-    for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
-        *hyphen = '\0';
-        /* Without a line -- each: a figure has no drawings of its own. */
-        if (read_description(data_dir, d->figure, sql, e) &&
-            figure_line(sql->s, "-- each: ", each, sizeof each))
-            return true;
-        text_free(sql);
-    }
-    return no_such_figure(data_dir, name, e);
-}
-
-bool report_drawings_find(struct store *s, const char *data_dir, const char *name,
-                          struct report_drawings *d, struct err *e)
-{
-    struct text sql = {0};
-    char each[1000], needs[200] = "";
-    *d = (struct report_drawings){0};
-    if (!find_description(data_dir, name, d, &sql, e)) return false;
-    bool ok = true;
-    /* A figure with several drawings: as many as rows; one of them if it was asked for by its
-     * own name. */
-    if (figure_line(sql.s, "-- each: ", each, sizeof each)) {
-        ok = store_select(s, each, 0, NULL, add_drawing, d, e);
-        if (ok && strcmp(d->figure, name) != 0) keep_drawing(d, name);
-        figure_line(sql.s, "-- needs: ", needs, sizeof needs);
-        if (ok && d->n == 0)
-            ok = err_set(e, ERR_NO_INPUT, "database %s has no rows for figure '%s'%s%s",
-                         store_path(s), name, *needs ? "; first: " : "", needs);
-    /* A figure without: a single drawing that needs no row. */
-    } else {
-        const char *const alone[] = {"", name};
-        add_drawing(d, 2, NULL, alone);
-    }
-    text_free(&sql);
-    if (!ok) report_drawings_free(d);
     return ok;
 }
 

@@ -17,8 +17,10 @@ scenario() {
     sql_is mimdsim.db "SELECT count(*) FROM ladder WHERE ladder = 'network' AND method = 'flit' AND relative_error <> 0" 0
     sql_is mimdsim.db "SELECT count(*) > 0 FROM ladder WHERE status = 'failed' AND text <> ''" 1
     sql_is mimdsim.db 'SELECT count(*) FROM ladder_choice WHERE relative_error <= tolerance AND cost_ratio > 0' 4
-    [ -s figures/accuracy-small.png ]
-    [ -s figures/accuracy-small.csv ]
+    for ladder in network arithmetic integration; do
+        [ -s figures/accuracy-small-$ladder.png ] && [ -s figures/accuracy-small-$ladder.csv ]
+        stderr_says "figure figures/accuracy-small-$ladder.png"
+    done
 }
 
 @test "a scene in which nothing can move has ladders and grades all the same" {
@@ -37,7 +39,7 @@ scenario() {
     stdout_says 'integration (state within 1e-06): no method has a result'
     sql_is mimdsim.db "SELECT count(*), max(status), max(text) FROM ladder WHERE ladder = 'integration'" \
         "1|failed|integrator 'rk8pd' produced a value that is not a finite number"
-    [ -s figures/accuracy-small.png ]
+    [ -s figures/accuracy-small-integration.png ]
 }
 
 @test "accuracy answers in JSON and refuses what is no tolerance" {
@@ -56,12 +58,12 @@ scenario() {
     stdout_says ' ok, '
     sql_is mimdsim.db "SELECT status, relative_error < 1e-13 FROM stability WHERE algorithm = 'aba' AND precision = 'double'" 'ok|1'
     sql_is mimdsim.db "SELECT count(*) > 10, count(residual) > 10 FROM stability" '1|1'
-    [ -s figures/stability-small.png ]
+    [ -s figures/stability-small-cases.png ]
     works mimdsim stability small.yaml --json
     json_is_valid
     # scenes are told apart by their n, which a comma would cut off in the figure
     works mimdsim stability small.yaml --set n=2,3 -o two.db --dir two
-    grep -q 'small point 2: n = 3' two/stability-small.cases.csv
+    grep -q 'small point 2: n = 3' two/stability-small-cases.cases.csv
 }
 
 @test "what is left out is stored with the row, and keeping it answers the same" {
@@ -202,13 +204,13 @@ scenario() {
     [ -s mimdsim.html ]
     for section in 'Error against run time' 'Stability' 'Omissions'; do grep -q "^## $section" mimdsim.md; done
     ! grep -q '^## The claims' mimdsim.md
-    for figure in accuracy stability omissions; do
-        [ -s "figures/$figure-small.png" ] && [ "$(wc -l <figures/$figure-small.csv)" -gt 2 ]
-        grep -q "(figures/$figure-small.svg)" mimdsim.md
+    for figure in accuracy-small-network accuracy-small-arithmetic accuracy-small-integration stability-small-cases omissions-small; do
+        [ -s "figures/$figure.png" ] && [ "$(wc -l <figures/$figure.csv)" -gt 2 ]
+        grep -q "(figures/$figure.svg)" mimdsim.md
     done
     grep -q 'rkck | tolerance 1e-05 | planted, on purpose' mimdsim.md
     grep -q 'rkck | tolerance 1e-07 | error 2.5e-01 |' mimdsim.md
-    grep -q 'rkck: 1e-05' figures/accuracy-small.failed.csv
+    grep -q 'rkck: 1e-05' figures/accuracy-small-integration.failed.csv
     grep -q '| crba | double | 0 | 0 | 1 | 1.2e+03 |' mimdsim.md
     cheapest=$(sql mimdsim.db "SELECT method FROM ladder_choice WHERE ladder = 'network'")
     grep -q "cheapest is $cheapest" mimdsim.md
@@ -216,7 +218,7 @@ scenario() {
     grep -q "^$counts" mimdsim.md
     saved=$(sql mimdsim.db "SELECT format('%.4g us', machine_saved_ps / 1e6) FROM omission WHERE what = 'external forces'")
     grep -q "external forces .* $saved" mimdsim.md
-    grep -q '^mimdsim ' figures/stability-small.provenance
+    grep -q '^mimdsim ' figures/stability-small-cases.provenance
     works mimdsim report --json
     json_is_valid
     json_is '$[0]' mimdsim.md
@@ -224,13 +226,15 @@ scenario() {
     sqlite3 mimdsim.db "UPDATE omission SET scenario = 'other' WHERE what = 'timeline'"
     rm -r figures
     MIMDSIM_GNUPLOT=/nonexistent fails_with 69 mimdsim report
+    stderr_says 'the report mimdsim.html has no pictures, or not all of them'
+    stdout_says mimdsim.html
     [ -s figures/omissions-small.csv ] && [ -s figures/omissions-other.csv ] && [ ! -e figures/omissions-other.png ]
     grep -q 'This figure was not drawn' mimdsim.md
     # a database without rows for a figure leaves alone what another's report shows
     works mimdsim report
     works mimdsim run speedup-t3e --set n=4 -o other.db --quiet
     works mimdsim report other.db
-    [ -s figures/fig6.svg ] && [ -s figures/stability-small.svg ]
+    [ -s figures/fig6.svg ] && [ -s figures/stability-small-cases.svg ]
     grep -q '| runs that do not add up |' other.md
     works mimdsim report
     [ -s figures/fig6.svg ] && [ -s figures/fig6.csv ]
@@ -244,16 +248,19 @@ scenario() {
                             relative_error, host_s, machine_ps, status, text) SELECT 'other', ladder, at, family, method, rung, ordinal, quantity, reference,
                             relative_error, host_s, machine_ps, status, text FROM ladder"
     works mimdsim plot mimdsim.db accuracy --dir both
-    stdout_says both/accuracy-other.png
-    [ -s both/accuracy-small.svg ] && [ -s both/accuracy-other.svg ]
+    stdout_says both/accuracy-other-network.png
+    [ -s both/accuracy-small-network.svg ] && [ -s both/accuracy-other-network.svg ]
     works mimdsim plot mimdsim.db accuracy-other --dir one
-    [ -s one/accuracy-other.svg ] && [ ! -e one/accuracy-small.svg ]
-    grep -q '>exact<' one/accuracy-other.svg
+    [ -s one/accuracy-other-network.svg ] && [ ! -e one/accuracy-small-network.svg ]
+    grep -q '>exact<' one/accuracy-other-network.svg
+    # one ladder alone, too
+    works mimdsim plot mimdsim.db accuracy-other-arithmetic --dir alone
+    [ "$(ls alone/*.svg)" = alone/accuracy-other-arithmetic.svg ]
     # what is exact has no other error in the numbers beside the picture
-    sqlite3 :memory: ".import --csv one/accuracy-other.csv t" "SELECT count(*) FROM t WHERE method = 'flit' AND relative_error + 0 <> 0" | grep -qx 0
+    sqlite3 :memory: ".import --csv one/accuracy-other-network.csv t" "SELECT count(*) FROM t WHERE method = 'flit' AND relative_error + 0 <> 0" | grep -qx 0
     # the rung that a ring marks is the one that was chosen
     chosen=$(sql mimdsim.db "SELECT method || rung FROM ladder_choice WHERE ladder = 'arithmetic'")
-    sqlite3 :memory: ".import --csv both/accuracy-small.csv t" "SELECT method || rung FROM t WHERE chosen = 1 AND block = 2" | grep -qxF "$chosen"
+    sqlite3 :memory: ".import --csv both/accuracy-small-arithmetic.csv t" "SELECT method || rung FROM t WHERE chosen = 1 AND block = 2" | grep -qxF "$chosen"
     fails_with 66 mimdsim plot mimdsim.db accuracy-nobody
 }
 
@@ -283,7 +290,7 @@ scenario() {
                         UPDATE stability SET status = 'failed' WHERE algorithm = 'paper pcr'"
     works mimdsim report
     grep -q "the paper's formulation gives 2 of 3 answers ok, 0 degraded and 1 failed; the direct formulation 3 of 3, 0 and 0" mimdsim.md
-    [ -s figures/stability.png ]
+    [ -s figures/stability-suite-sizes.png ]
 }
 
 @test "stability carries a stiff polymer to rest by implicit steppers alone" {

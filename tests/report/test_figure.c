@@ -37,7 +37,7 @@ static const char *const script =
     "set encoding utf8\n"
     "do for [format in \"png svg\"] {\n"
     "set terminal (format eq 'png' ? 'pngcairo' : 'svg'); set output figure.'.'.format\n"
-    "set title 'A curve'; plot figure.'.csv' using 'P':'speedup' with linespoints; unset output }\n";
+    "set title 'A curve' font ',20'; plot figure.'.csv' using 'P':'speedup' with linespoints; unset output }\n";
 
 static int make_fixture(void **state)
 {
@@ -154,7 +154,11 @@ static void the_script_redraws_without_this_program(void **state)
     text_add(&command, "cd '%s' && rm curve.svg && gnuplot -d curve.gp", f->out);
     assert_int_equal(system(command.s), 0);
     struct text again = read_out(f, "curve.svg");
-    assert_string_equal(again.s, first.s);
+    /* gnuplot's own picture: without what this program makes of it, a title for a start */
+    assert_non_null(strstr(first.s, "<title>A curve</title>"));
+    assert_non_null(strstr(again.s, "<title>Gnuplot</title>"));
+    const char *path = strstr(first.s, " d=\"M");
+    assert_true(path != NULL && strlen(path) > 20);
     text_free(&first);
     text_free(&again);
     text_free(&command);
@@ -432,19 +436,24 @@ static void every_shipped_figure_can_be_drawn(void **state)
     assert_true(n >= 9);
     for (int i = 0; i < n; i++) {
         struct report_drawings drawings;
-        char svg[80];
+        char svg[160];
         /* made runs have no loads of links, measured nothing, explain no claim (explain.bats draws that) and are of no
          * program of one's own (examples.bats); their paths were not looked for (why.bats) */
         if (strncmp(name[i], "link", 4) != 0 && strcmp(name[i], "pingpong") != 0 &&
             strcmp(name[i], "explain") != 0 && strcmp(name[i], "speedup") != 0 && strcmp(name[i], "why") != 0) {
             draw(f, MIMDSIM_SRCDIR, name[i]);
             assert_true(report_drawings_find(f->s, MIMDSIM_SRCDIR, name[i], &drawings, &f->e));
-            assert_int_equal(drawings.n, 1);
-            snprintf(svg, sizeof svg, "%s.svg", drawings.as[0]);
+            assert_true(drawings.n >= 1);
+            for (int k = 0; k < drawings.n; k++) {
+                snprintf(svg, sizeof svg, "%s.svg", drawings.as[k]);
+                struct text drawn = read_out(f, svg);
+                assert_non_null(strstr(drawn.s, "</svg>"));
+                /* a title of its own, and nothing that needs a script */
+                assert_null(strstr(drawn.s, "Gnuplot"));
+                assert_null(strstr(drawn.s, "gnuplot_svg"));
+                text_free(&drawn);
+            }
             report_drawings_free(&drawings);
-            struct text drawn = read_out(f, svg);
-            assert_non_null(strstr(drawn.s, "</svg>"));
-            text_free(&drawn);
         }
         free(name[i]);
     }
