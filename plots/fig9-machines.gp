@@ -11,9 +11,9 @@ do for [i=1:panels] { note[i] = "" }
 do for [i=1:lines] { pmin[i] = 1e30; pmax[i] = 0; smin[i] = 1e30; smax[i] = 0 }
 array most[panels]; do for [i=1:panels] { most[i] = 0 }
 # two machines a row, whose axes are the same
-stats data using (m = int(column("panel")), l = int((m + 1)/2), p = column("P"), s = column("speedup"), \
-    pmin[l] = p < pmin[l] ? p : pmin[l], pmax[l] = p > pmax[l] ? p : pmax[l], smin[l] = s < smin[l] ? s : smin[l], \
-    smax[l] = s > smax[l] ? s : smax[l], most[m] = p > most[m] ? p : most[m], \
+stats data using (m = int(column("panel")), line = int((m + 1)/2), p = column("P"), s = column("speedup"), \
+    pmin[line] = p < pmin[line] ? p : pmin[line], pmax[line] = p > pmax[line] ? p : pmax[line], smin[line] = s < smin[line] ? s : smin[line], \
+    smax[line] = s > smax[line] ? s : smax[line], most[m] = p > most[m] ? p : most[m], \
     ratio[int(column("series"))] = column("bodies_per_processor"), \
     machine[m] = strcol("machine").", level ".strcol("level"), \
     headline = sprintf("Speedup with n/P bodies per processor, on %d machines", panels), \
@@ -49,12 +49,12 @@ do for [format in formats] {
     set xtics (2, 3, 4, 6, 8, 12, 16, 32, 64, 128, 256, 512, 1024) offset 0,tick_lift(format)
     set xlabel "number of processors P" offset 0,name_lift(format)
     do for [m=1:panels] {
-        left = m % 2 == 1; l = int((m + 1)/2)
+        left = m % 2 == 1; line = int((m + 1)/2)
         set lmargin at screen (left ? 0.1 : 0.59); set rmargin at screen (left ? 0.49 : 0.985)
-        set tmargin at screen 1.0 - (88 + 300*(l - 1) + 24)/high; set bmargin at screen 1.0 - (88 + 300*l - 42)/high
-        set xrange [pmin[l]*0.94:pmax[l]*1.06]; set yrange [smin[l]*0.8:smax[l]*1.3]
+        set tmargin at screen 1.0 - (88 + 300*(line - 1) + 24)/high; set bmargin at screen 1.0 - (88 + 300*line - 42)/high
+        set xrange [pmin[line]*0.94:pmax[line]*1.06]; set yrange [smin[line]*0.8:smax[line]*1.3]
         set ylabel (left ? "speedup S" : "")
-        set title machine[m].(most[m] < pmax[l] ? sprintf(", %d processors at most", most[m]) : "") noenhanced offset 0,-0.7
+        set title machine[m].(most[m] < pmax[line] ? sprintf(", %d processors at most", most[m]) : "") noenhanced offset 0,-0.7
         set label 1 note[m] at graph 0.99,0.04 right noenhanced font small(format) textcolor rgb grey
         plot x with lines linewidth 1.2 dashtype 3 linecolor rgb "#000000", \
              1 with lines linewidth 0.6 linecolor rgb grey, \

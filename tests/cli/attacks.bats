@@ -203,7 +203,8 @@ draw_all() {
         sqlite3 bad.db "UPDATE omission SET scenario = '${name//\'/\'\'}'; UPDATE ladder SET scenario = '${name//\'/\'\'}'"
         rm -rf drawn
         works mimdsim plot bad.db omissions accuracy --dir drawn
-        [ "$(find drawn -name '*.svg' -size +0 | wc -l)" -eq 2 ]
+        # omissions, and three ladders
+        [ "$(find drawn -name '*.svg' -size +0 | wc -l)" -eq 4 ]
         [ -z "$(find "$BATS_TEST_TMPDIR" -name 'PWNED?' -o -name 'gone*' -o -path './x*')" ]
     done
     # names that a path cannot tell apart stay two drawings
@@ -212,6 +213,22 @@ draw_all() {
     rm -rf drawn
     works mimdsim plot bad.db omissions --dir drawn
     [ "$(find drawn -name '*.svg' | wc -l)" -eq 2 ]
+}
+
+@test "a text of a database becomes no markup of a picture or a page" {
+    if ! command -v gnuplot >/dev/null; then skip; fi
+    every_figure
+    printf '%s' "</text><script>alert(1)</script><img src=x onerror=alert(2)>'\"&lt;" >text
+    add_to text "run.label run.machine omission.what ladder.method stability.subject claim.statement critical_path.stage"
+    run --separate-stderr -- mimdsim report bad.db --dir drawn
+    ! grep -lE '<(script|img|foreignObject)|onmouse|onerror=.?alert.2.>' drawn/*.svg
+    # the page has one script, its own, and says so to the browser
+    [ "$(grep -o '<script' bad.html | wc -l)" -eq 1 ]
+    grep -q '<script>// report.js' bad.html
+    ! grep -q '<img' bad.html
+    grep -q "Content-Security-Policy.*default-src 'none'.*script-src 'sha256-" bad.html
+    # where the text is drawn, it is drawn as it is
+    grep -q '&lt;script&gt;alert(1)&lt;/script&gt;' bad.html
 }
 
 @test "no script of a figure evaluates, includes or starts anything" {

@@ -153,12 +153,8 @@ static void the_script_redraws_without_this_program(void **state)
     struct text first = read_out(f, "curve.svg"), command = {0};
     text_add(&command, "cd '%s' && rm curve.svg && gnuplot -d curve.gp", f->out);
     assert_int_equal(system(command.s), 0);
-    struct text again = read_out(f, "curve.svg");
-    /* gnuplot's own picture: without what this program makes of it, a title for a start */
-    assert_non_null(strstr(first.s, "<title>A curve</title>"));
-    assert_non_null(strstr(again.s, "<title>Gnuplot</title>"));
-    const char *path = strstr(first.s, " d=\"M");
-    assert_true(path != NULL && strlen(path) > 20);
+    struct text again = read_out(f, "curve.svg"); /* gnuplot's own: without what this program makes of it */
+    assert_true(strstr(first.s, "<title>A curve</title>") && strstr(again.s, "<title>Gnuplot</title>"));
     text_free(&first);
     text_free(&again);
     text_free(&command);
@@ -443,14 +439,12 @@ static void every_shipped_figure_can_be_drawn(void **state)
             strcmp(name[i], "explain") != 0 && strcmp(name[i], "speedup") != 0 && strcmp(name[i], "why") != 0) {
             draw(f, MIMDSIM_SRCDIR, name[i]);
             assert_true(report_drawings_find(f->s, MIMDSIM_SRCDIR, name[i], &drawings, &f->e));
-            assert_true(drawings.n >= 1);
             for (int k = 0; k < drawings.n; k++) {
                 snprintf(svg, sizeof svg, "%s.svg", drawings.as[k]);
                 struct text drawn = read_out(f, svg);
                 assert_non_null(strstr(drawn.s, "</svg>"));
                 /* a title of its own, and nothing that needs a script */
-                assert_null(strstr(drawn.s, "Gnuplot"));
-                assert_null(strstr(drawn.s, "gnuplot_svg"));
+                assert_false(strstr(drawn.s, "Gnuplot") || strstr(drawn.s, "gnuplot_svg"));
                 text_free(&drawn);
             }
             report_drawings_free(&drawings);
