@@ -32,8 +32,8 @@ left = 0.03 + 0.0082*(longest_x > 52 ? 52 : longest_x) + 0.02
 y_of(i, k) = i + (k - 0.5*(curves + 1))*bar_high/group_high
 
 do for [format in formats] {
-    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 enhanced } \
-    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     tiny = small(format)
     set multiplot
@@ -46,7 +46,7 @@ do for [format in formats] {
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     if (legend) { set key at screen 0.5,at_y(54 + (strlen(bands) > 0 ? 18 : 0)) center top horizontal maxcols legend_columns samplen 2 noenhanced } \
     else { unset key }
-    plot NaN notitle, for [k=1:curves] keyentry with boxes fillcolor rgb colour[k] title name[k]
+    plot NaN notitle, for [k=1:curves] keyentry with boxes fillcolor rgb colour[turn(k)] title name[k]
     unset key; unset label 96; unset label 97; unset label 98; unset label 99
     set border 3 linewidth 0.8; set grid x linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
     if (vlog > 0) { set logscale x 10 }
@@ -61,7 +61,7 @@ do for [format in formats] {
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         set ytics () scale 0
         plot for [k=1:curves] data using (of(m, k, column("value")*vscale)):(y_of(column("xi"), k)):(base):(of(m, k, column("value")*vscale)):(y_of(column("xi"), k) - 0.42*bar_high/group_high):(y_of(column("xi"), k) + 0.42*bar_high/group_high) \
-                with boxxyerror fillcolor rgb colour[k] linewidth 0.3 notitle, \
+                with boxxyerror fillcolor rgb colour[turn(k)] linewidth 0.3 notitle, \
              for [k=1:curves] data using (column("rows") > 1 ? of(m, k, column("value")*vscale) : NaN):(y_of(column("xi"), k)):(column("low")*vscale):(column("high")*vscale) \
                 with xerrorbars linewidth 1 pointsize 0 linecolor rgb "#303030" notitle, \
              for [k=1:curves] data using (of(m, k, (column("high") > column("value") ? column("high") : column("value"))*vscale)):(y_of(column("xi"), k)):(sprintf("  %.4g", column("value")*vscale)) \

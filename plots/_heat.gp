@@ -29,8 +29,8 @@ shift = (wide - columns*panel_wide)/2
 at_x(px) = (px + shift)/wide; at_y(px) = 1.0 - px/high
 
 do for [format in formats] {
-    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 enhanced } \
-    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel; unset key
     tiny = small(format)
     set multiplot

@@ -33,8 +33,8 @@ pad_low(v, log) = log > 0 ? v/1.12 : v
 pad_high(v, log) = log > 0 ? v*1.12 : v
 
 do for [format in formats] {
-    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 enhanced } \
-    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1.2 enhanced }
+    if (format eq "png") { set terminal pngcairo size int(2*wide),int(2*high) font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
+    else { set terminal svg size int(wide),int(high) font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
     set multiplot
     set lmargin at screen 0.03; set rmargin at screen 0.985
@@ -46,8 +46,8 @@ do for [format in formats] {
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
     if (legend) { set key at screen 0.5,at_y(54 + (strlen(bands) > 0 ? 18 : 0)) center top horizontal maxcols legend_columns samplen 3 noenhanced } \
     else { unset key }
-    plot NaN notitle, for [k=1:curves] keyentry with linespoints linewidth 1.8 dashtype dash[k] pointtype point[k] pointsize 0.9 \
-        linecolor rgb colour[k] title name[k]
+    plot NaN notitle, for [k=1:curves] keyentry with linespoints linewidth 1.8 dashtype dash[turn(k)] pointtype point[turn(k)] pointsize 0.9 \
+        linecolor rgb colour[turn(k)] title name[k]
     unset key; unset label 96; unset label 97; unset label 98; unset label 99
     set border 3 linewidth 0.8; set grid linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
     if (xlog > 0) { set logscale x xlog }
@@ -57,6 +57,10 @@ do for [format in formats] {
     set yrange [(vlog > 0 ? pad_low(vmin, vlog) : (vmin > 0 ? 0 : vmin - 0.05*(vmax - vmin))):(vlog > 0 ? pad_high(vmax, vlog) : vmax + 0.05*(vmax - vmin) + (vmax == vmin))]
     set format x "%.6g"; set format y "%.6g"
     set xtics nomirror out scale 0.6 autofreq offset 0,tick_lift(format); set ytics nomirror out scale 0.6 autofreq
+    if (xlog > 0 && x_number) { # so many labels as have room
+        apart = xlog**ceil(log(xmax/xmin)/log(xlog)/(columns == 1 ? 9.0 : 4.0))
+        if (apart > xlog) { set xtics xlog**floor(log(xmin)/log(xlog)),apart }
+    }
     do for [m=1:panels] {
         c = (m - 1) % columns; r = (m - 1)/columns
         left = 0.09*800.0/wide + c*(0.985 - 0.02)/columns
@@ -67,11 +71,11 @@ do for [format in formats] {
         set ylabel (c == 0 ? vlabel : "") noenhanced
         if (panels > 1) { set title panel_name[m] noenhanced offset 0,-0.6 }
         plot for [k=1:curves] data using (column("rows") > 1 ? at_x(column("xi"), column("x")) : NaN):(of(m, k, column("low")*vscale)):(of(m, k, column("high")*vscale)) \
-                with filledcurves fillcolor rgb colour[k] fillstyle transparent solid 0.15 noborder notitle, \
+                with filledcurves fillcolor rgb colour[turn(k)] fillstyle transparent solid 0.15 noborder notitle, \
              for [k=1:curves] data using (column("rows") > 1 ? at_x(column("xi"), column("x")) : NaN):(of(m, k, column("value")*vscale)):(column("low")*vscale):(column("high")*vscale) \
-                with yerrorbars linewidth 1 pointsize 0 linecolor rgb colour[k] notitle, \
+                with yerrorbars linewidth 1 pointsize 0 linecolor rgb colour[turn(k)] notitle, \
              for [k=1:curves] data using (at_x(column("xi"), column("x"))):(of(m, k, column("value")*vscale)) with linespoints linewidth 1.8 \
-                dashtype dash[k] pointtype point[k] pointsize (nx > 40 ? 0.4 : 0.9) linecolor rgb colour[k] notitle, \
+                dashtype dash[turn(k)] pointtype point[turn(k)] pointsize (nx > 40 ? 0.4 : 0.9) linecolor rgb colour[turn(k)] notitle, \
              figure.".x.csv" using "xi":(vmin):xticlabels(strcol("x_text")) with points pointsize 0 notitle
     }
     unset multiplot

@@ -17,6 +17,7 @@ static bool add_drawing(void *context, int ncolumn, const char *const *name,
                         const char *const *value)
 {
     struct report_drawings *d = context;
+    /* Three arrays that grow together. */
     const size_t n = (size_t)d->n + 1;
     (void)name;
     CHECK(ncolumn == 2 || ncolumn == 3);

@@ -52,6 +52,7 @@ bool runs_section(struct page *p, struct store *s, struct err *e)
     bool any;
     if (!findings_any(s, "SELECT 1 FROM run LIMIT 1", &any, e)) return false;
     if (!any) return true;
+    /* Kernels with most runs first: they are what the database is about. */
     page_heading(p, 2, "Runs by kernel and machine");
     page_paragraph(p, "All runs of the database. A machine that was changed has a name of its own, "
                       "and the table says what was changed.");

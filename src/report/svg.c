@@ -91,6 +91,7 @@ static void put_attribute(struct cleaner *c, const char *name, const char *value
         "shape-rendering", NULL};
     const bool reference = strcmp(name, "xlink:href") == 0 || strcmp(name, "href") == 0;
     const bool identifier = strcmp(name, "id") == 0;
+    /* references may point into the picture alone */
     if (reference ? *value != '#' : !identifier && !is_one_of(name, allowed)) return;
     /* A colour could be fetched from elsewhere. */
     if (strstr(value, "url(")) return;
@@ -105,6 +106,7 @@ static void take_tip(struct cleaner *c, const char **pair)
 {
     const char *call = attribute(pair, "onmousemove"), *from = call ? strchr(call, '\'') : NULL;
     const char *to = from ? strrchr(call, '\'') : NULL;
+    /* A group without a call has no tip, whatever the one around it has. */
     text_free(&c->tip);
     if (to > from) text_add_bytes(&c->tip, from + 1, (size_t)(to - from - 1));
 }
@@ -128,6 +130,7 @@ static void put_element(void *context, const char *name, const char **pair)
         return;
     }
     if (strcmp(name, "g") == 0) take_tip(c, pair);
+    /* The root gets its own names of spaces: those of the document are not copied. */
     const bool root = c->depth == 1;
     fprintf(c->out, "<%s", name);
     /* Groups need no identifiers: nothing refers to them. */
@@ -164,6 +167,7 @@ static void put_title(struct cleaner *c)
 static void put_end(void *context, const char *name)
 {
     struct cleaner *c = context;
+    /* What is left out ends where it began, with all in it. */
     if (c->skipped_from == 0) {
         if (c->in_title) put_title(c);
         else fprintf(c->out, "</%s>", name);
