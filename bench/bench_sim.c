@@ -46,7 +46,7 @@ static double hold_ns(int pending, uint64_t spread)
     event_queue_init(&q);
     struct random r = random_make(1, 0, 0);
     for (int i = 0; i < pending; i++) {
-        struct event e = {(sim_ps)random_below(&r, spread), (uint64_t)i, 0, NULL, NULL, 0};
+        struct event e = {(sim_ps)random_below(&r, spread), (uint64_t)i, NULL, NULL, 0};
         event_queue_push(&q, &e);
     }
     uint64_t *later = malloc(4096 * sizeof *later);

@@ -1,9 +1,14 @@
 /* event_queue.c - a wheel of wheels for the future, a sorted run and a heap for the present; see
  * event_queue.h.
  *
- * Example: now = 0, events at 5, 70 and 5000 ps. Level 0 holds 5; level 1 (64 ps a bucket) holds 70
- * in bucket 1; level 2 (4096 ps a bucket) holds 5000 in bucket 1. When 5 is done, bucket 1 of level
- * 1 is spread from 64 ps on: 70 moves to level 0. An event is moved at most once a level. */
+ * Example, in windows: the present is window 0, events lie in windows 5, 70 and 5000. Level 0 holds
+ * 5; level 1 (64 windows a bucket) holds 70 in bucket 1; level 2 (4096 windows a bucket) holds 5000
+ * in bucket 1. When 5 is done, bucket 1 of level 1 is spread from window 64 on: 70 moves to level 0.
+ * An event is moved at most once a level.
+ *
+ * Events of one time stay in the order of posting wherever they are, since they are always in the
+ * same bucket and buckets are appended to and read in order. So no event carries its age, and
+ * sorting is stable. */
 #include "sim/event_queue.h"
 
 #include <stdlib.h>
@@ -12,7 +17,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 
-/* INSERTION_MOST: up to this many keys insertion sort is used, beyond it merge sort. Most instants
+/* INSERTION_MOST: up to this many keys insertion sort is used, beyond it merge sort. Most windows
  * hold only a few events. */
 enum { FIRST_CAPACITY = 8, INSERTION_MOST = 12 };
 
@@ -20,8 +25,8 @@ void event_queue_init(struct event_queue *q) { memset(q, 0, sizeof *q); }
 
 void event_queue_done(struct event_queue *q)
 {
-    free(q->run.event);
-    free(q->heap.event);
+    free(q->run);
+    free(q->heap);
     free(q->key);
     free(q->scratch);
     while (q->slab) {
@@ -33,59 +38,54 @@ void event_queue_done(struct event_queue *q)
     memset(q, 0, sizeof *q);
 }
 
-/* Doubling: n events cost O(n) copies in total. The CHECK ends the process, so the old pointer need
- * not be kept when realloc fails. */
-static void bucket_grow(struct event_bucket *b)
-{
-    b->capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
-    b->event = memory_resize(b->event, b->capacity, sizeof *b->event);
-}
+static inline uint64_t window_of(sim_ps time) { return (uint64_t)time >> WINDOW_BITS; }
 
-static inline void bucket_add(struct event_bucket *b, const struct event *e)
+/* The total order: time, lane and key in one integer, then the order of posting. Ages are unique,
+ * so that no two are equal. */
+static inline bool late_before(const struct event_late *a, const struct event_late *b)
 {
-    if (b->count == b->capacity) bucket_grow(b);
-    b->event[b->count++] = *e;
-}
-
-/* The total order within one instant: lane and key in one integer, then the order of posting. Ages
- * are unique, so that no two events are equal and every sort gives the same sequence. */
-static inline bool event_before(const struct event *a, const struct event *b)
-{
-    return a->order != b->order ? a->order < b->order : a->age < b->age;
+    if (a->event.time != b->event.time) return a->event.time < b->event.time;
+    return a->event.order != b->event.order ? a->event.order < b->event.order : a->age < b->age;
 }
 
 static inline bool key_before(const struct event_key *a, const struct event_key *b)
 {
-    return a->order != b->order ? a->order < b->order : a->age < b->age;
+    return a->after != b->after ? a->after < b->after : a->order < b->order;
 }
 
-/* --- the heap of events posted at the present instant --- */
+/* --- the heap of events posted within the present window --- */
 
-/* Sift up: parents that come later move down until the place of e is found. O(log n). The hole is
- * moved, not the event, so that each level costs one copy instead of three. */
-static void heap_add(struct event_bucket *h, const struct event *e)
+/* Sift up: parents that come later move down until the place of the event is found. O(log n). The
+ * hole is moved, not the event, so that each level costs one copy instead of three. */
+static void heap_add(struct event_queue *q, const struct event *e)
 {
-    bucket_add(h, e);
-    uint32_t i = h->count - 1;
-    for (; i > 0 && event_before(e, &h->event[(i - 1) / 2]); i = (i - 1) / 2)
-        h->event[i] = h->event[(i - 1) / 2];
-    h->event[i] = *e;
+    if (q->heap_count == q->heap_capacity) {
+        q->heap_capacity = q->heap_capacity ? 2 * q->heap_capacity : FIRST_CAPACITY;
+        q->heap = memory_resize(q->heap, q->heap_capacity, sizeof *q->heap);
+    }
+    const struct event_late late = {*e, q->next_age++};
+    struct event_late *h = q->heap;
+    uint32_t i = q->heap_count++;
+    for (; i > 0 && late_before(&late, &h[(i - 1) / 2]); i = (i - 1) / 2) h[i] = h[(i - 1) / 2];
+    h[i] = late;
 }
 
 /* Sift down: the last event of the array is put where the first was, and sinks along the earlier of
  * each pair of children. O(log n). */
-static void heap_take(struct event_bucket *h, struct event *first)
+static void heap_take(struct event_queue *q, struct event *first)
 {
-    *first = h->event[0];
-    struct event last = h->event[--h->count];
+    struct event_late *h = q->heap;
+    *first = h[0].event;
+    const uint32_t n = --q->heap_count;
+    const struct event_late last = h[n];
     uint32_t i = 0;
-    for (uint32_t child = 1; child < h->count; child = 2 * i + 1) {
-        if (child + 1 < h->count && event_before(&h->event[child + 1], &h->event[child])) child++;
-        if (!event_before(&h->event[child], &last)) break;
-        h->event[i] = h->event[child];
+    for (uint32_t child = 1; child < n; child = 2 * i + 1) {
+        if (child + 1 < n && late_before(&h[child + 1], &h[child])) child++;
+        if (!late_before(&h[child], &last)) break;
+        h[i] = h[child];
         i = child;
     }
-    if (h->count) h->event[i] = last;
+    if (n) h[i] = last;
 }
 
 /* --- the wheels --- */
@@ -142,14 +142,14 @@ static struct event_chain wheel_cut(struct event_queue *q, int level, int slot)
     return chain;
 }
 
-/* The level is given by the highest bit in which the event's time differs from the present, the
- * bucket by the WHEEL_BITS bits of its time at that level. All events of a bucket of level l > 0
- * therefore lie in one aligned interval of 2^(6 l) ps that does not contain the present. O(1). */
+/* The level is given by the highest bit in which the event's window differs from the present one,
+ * the bucket by the WHEEL_BITS bits of its window at that level. All events of a bucket of level
+ * l > 0 therefore lie in one aligned interval of 2^(6 l) windows without the present one. O(1). */
 static inline void wheel_add(struct event_queue *q, const struct event *e)
 {
-    uint64_t differs = (uint64_t)e->time ^ (uint64_t)q->now;
-    int level = differs ? (63 - __builtin_clzll(differs)) / WHEEL_BITS : 0;
-    unsigned slot = (unsigned)(e->time >> (level * WHEEL_BITS)) & (WHEEL_SLOTS - 1);
+    const uint64_t window = window_of(e->time), differs = window ^ q->window;
+    const int level = differs ? (63 - __builtin_clzll(differs)) / WHEEL_BITS : 0;
+    const unsigned slot = (unsigned)(window >> (level * WHEEL_BITS)) & (WHEEL_SLOTS - 1);
     q->full[level] |= UINT64_C(1) << slot;
     chain_add(q, &q->wheel[level][slot], e);
 }
@@ -167,16 +167,21 @@ static inline bool wheel_first(const struct event_queue *q, int *level, int *slo
     return false;
 }
 
-/* Spread a bucket over the levels below, from the first moment that it covers. The present moves
- * there without an event being dispatched; no event lies between. */
+/* The present moves to the first window of a bucket; no event lies between. The bits above the
+ * bucket's level stay, those below become 0. */
+static inline void move_to(struct event_queue *q, int level, int slot)
+{
+    const int shift = level * WHEEL_BITS;
+    const uint64_t above = ~UINT64_C(0) << (shift + WHEEL_BITS);
+    q->window = (q->window & above) | (uint64_t)slot << shift;
+}
+_Static_assert(WHEEL_LEVELS * WHEEL_BITS < 64, "the shift by a level and its bits is defined");
+
+/* Spread a bucket over the levels below, from the first window that it covers. */
 static void wheel_spread(struct event_queue *q, int level, int slot)
 {
     struct event_chain chain = wheel_cut(q, level, slot);
-    int shift = level * WHEEL_BITS;
-    /* The bits of the present above this level stay; those below become 0. From level 10 on nothing
-     * is above, and a shift by 64 or more would be undefined. */
-    uint64_t above = shift + WHEEL_BITS > 62 ? 0 : ~UINT64_C(0) << (shift + WHEEL_BITS);
-    q->now = (sim_ps)(((uint64_t)q->now & above) | (uint64_t)slot << shift);
+    move_to(q, level, slot);
     for (struct event_chunk *c = chain.first, *next; c; c = next) {
         next = c->next;
         for (uint32_t i = 0; i < c->count; i++) wheel_add(q, &c->event[i]);
@@ -184,9 +189,10 @@ static void wheel_spread(struct event_queue *q, int level, int slot)
     }
 }
 
-/* --- the sorted events of one instant --- */
+/* --- the sorted events of one window --- */
 
-/* Keys are sorted, not events: half the bytes to move, and the index tells where the event is. */
+/* Keys are sorted, not events: less than half of the bytes to move, and the index tells where the
+ * event is. */
 static void keys_insertion(struct event_key *k, uint32_t n)
 {
     for (uint32_t i = 1; i < n; i++) {
@@ -197,9 +203,9 @@ static void keys_insertion(struct event_key *k, uint32_t n)
     }
 }
 
-/* Merge sort, O(n log n) also in the worst case; scratch has room for n / 2 keys at least. Only the
- * left half is copied out: the merge never writes over keys of the right half that it has not
- * read. */
+/* Merge sort, stable, O(n log n) also in the worst case; scratch has room for n / 2 keys at least.
+ * Only the left half is copied out: the merge never writes over keys of the right half that it has
+ * not read. */
 static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n)
 {
     if (n <= INSERTION_MOST) {
@@ -215,79 +221,112 @@ static void keys_sort(struct event_key *k, struct event_key *scratch, uint32_t n
         k[out] = j < n && key_before(&k[j], &scratch[i]) ? k[j++] : scratch[i++];
 }
 
-/* The old keys are those of an instant that is over, so they are freed and not copied. */
-static void keys_room(struct event_queue *q, uint32_t n)
+/* The old keys and chunks are those of a window that is over, so they are freed and not copied. */
+static void run_room(struct event_queue *q, uint32_t chunks)
 {
-    if (n <= q->key_capacity) return;
-    q->key_capacity = n * 2;
+    if (chunks <= q->chunk_capacity) return;
+    q->chunk_capacity = chunks * 2;
+    q->key_capacity = q->chunk_capacity * CHUNK_EVENTS;
+    free(q->run);
     free(q->key);
     free(q->scratch);
+    q->run = memory_take(q->chunk_capacity, sizeof *q->run);
     q->key = memory_take(q->key_capacity, sizeof *q->key);
     q->scratch = memory_take(q->key_capacity, sizeof *q->scratch);
 }
 
-/* Make the bucket of the next instant the run. */
+/* Make a bucket of level 0 the run: its events stay where they are. */
 static void run_begin(struct event_queue *q, int slot)
 {
-    struct event_chain chain = wheel_cut(q, 0, slot);
-    q->run.count = q->run_at = 0;
-    for (struct event_chunk *c = chain.first, *next; c; c = next) {
-        next = c->next;
-        for (uint32_t i = 0; i < c->count; i++) bucket_add(&q->run, &c->event[i]);
-        chunk_give(q, c);
+    const struct event_chain chain = wheel_cut(q, 0, slot);
+    uint32_t chunks = 0, n = 0;
+    move_to(q, 0, slot);
+    for (const struct event_chunk *c = chain.first; c; c = c->next) chunks++;
+    run_room(q, chunks);
+    q->run_chunks = 0;
+    for (struct event_chunk *c = chain.first; c; c = c->next) {
+        const uint32_t index = q->run_chunks * CHUNK_EVENTS;
+        for (uint32_t i = 0; i < c->count; i++) {
+            const struct event *e = &c->event[i];
+            const uint32_t after = (uint32_t)e->time & ((UINT32_C(1) << WINDOW_BITS) - 1);
+            q->key[n++] = (struct event_key){e->order, after, index + i};
+        }
+        q->run[q->run_chunks++] = c;
     }
-    /* Level 0 has one bucket per picosecond: all events of the bucket are due at the same time. */
-    q->now = q->run.event[0].time;
-    keys_room(q, q->run.count);
-    for (uint32_t i = 0; i < q->run.count; i++)
-        q->key[i] = (struct event_key){q->run.event[i].order, q->run.event[i].age, i};
-    keys_sort(q->key, q->scratch, q->run.count);
+    q->run_at = 0;
+    q->run_count = n;
+    keys_sort(q->key, q->scratch, n);
+}
+
+/* The chunks of a run that is over go back. */
+static void run_end(struct event_queue *q)
+{
+    for (uint32_t i = 0; i < q->run_chunks; i++) chunk_give(q, q->run[i]);
+    q->run_chunks = q->run_at = q->run_count = 0;
+}
+
+static inline const struct event *run_event(const struct event_queue *q, uint32_t at)
+{
+    const uint32_t index = q->key[at].index;
+    return &q->run[index / CHUNK_EVENTS]->event[index % CHUNK_EVENTS];
 }
 
 void event_queue_push(struct event_queue *q, const struct event *e)
 {
     /* An event in the past would break the wheels' order, not only the meaning of time. */
     CHECK(e->time >= q->now);
-    struct event aged = *e;
-    aged.age = q->next_age++;
     q->count++;
-    /* An event of the present instant would otherwise have to be inserted into the sorted run,
-     * which costs O(n); the heap takes O(log n). */
-    if (e->time == q->now) heap_add(&q->heap, &aged);
-    else wheel_add(q, &aged);
+    /* An event of the present window would otherwise have to be inserted into the sorted run, which
+     * costs O(n); the heap takes O(log n). */
+    if (window_of(e->time) == q->window) heap_add(q, e);
+    else wheel_add(q, e);
+}
+
+/* Nothing is left of this window: the next one that has events. Each round empties one bucket; an
+ * event passes at most WHEEL_LEVELS of them. */
+static void advance(struct event_queue *q)
+{
+    int level = 0, slot = 0;
+    run_end(q);
+    for (;;) {
+        CHECK(wheel_first(q, &level, &slot));
+        if (level == 0) break;
+        wheel_spread(q, level, slot);
+    }
+    run_begin(q, slot);
+}
+
+/* Whether the first of the run comes before the first of the heap. Of two with one time and order
+ * that of the run does: it was posted before the window began. */
+static inline bool run_first(const struct event_queue *q)
+{
+    if (q->heap_count == 0) return true;
+    const struct event_key *k = &q->key[q->run_at];
+    const struct event *h = &q->heap[0].event;
+    const sim_ps time = (sim_ps)(q->window << WINDOW_BITS | k->after);
+    return time != h->time ? time < h->time : k->order <= h->order;
 }
 
 bool event_queue_pop(struct event_queue *q, struct event *e)
 {
     if (q->count == 0) return false;
     q->count--;
-    /* Nothing left at this instant: advance. Each round empties one bucket; an event passes at most
-     * WHEEL_LEVELS of them. */
-    while (q->run_at == q->run.count && q->heap.count == 0) {
-        int level, slot;
-        CHECK(wheel_first(q, &level, &slot));
-        if (level == 0) run_begin(q, slot);
-        else wheel_spread(q, level, slot);
-    }
-    /* The run and the heap are both sorted: the earlier of their first events is next. */
-    bool from_run = q->run_at < q->run.count;
-    if (from_run) {
-        *e = q->run.event[q->key[q->run_at].index];
-        from_run = !q->heap.count || event_before(e, &q->heap.event[0]);
-    }
-    if (from_run) q->run_at++;
-    else heap_take(&q->heap, e);
+    if (q->run_at == q->run_count && q->heap_count == 0) advance(q);
+    if (q->run_at < q->run_count && run_first(q)) *e = *run_event(q, q->run_at++);
+    else heap_take(q, e);
+    q->now = e->time;
     return true;
 }
 
 sim_ps event_queue_next_time(const struct event_queue *q)
 {
     if (q->count == 0) return SIM_NEVER;
-    if (q->run_at < q->run.count || q->heap.count) return q->now;
+    if (q->run_at < q->run_count && run_first(q)) return run_event(q, q->run_at)->time;
+    if (q->heap_count) return q->heap[0].event.time;
     int level, slot;
     CHECK(wheel_first(q, &level, &slot));
-    /* A bucket of level > 0 is unordered and must be searched. Spreading it here would be wrong: it
-     * moves the present, and the caller may still post events before that bucket. */
+    /* A bucket is unordered and must be searched. Beginning it here would be wrong: it moves the
+     * present, and the caller may still post events before it. */
     sim_ps first = SIM_NEVER;
     for (const struct event_chunk *c = q->wheel[level][slot].first; c; c = c->next)
         for (uint32_t i = 0; i < c->count; i++)

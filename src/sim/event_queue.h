@@ -1,10 +1,11 @@
-/* event_queue.h - what happens next, in the total order (time, lane and key, age).
+/* event_queue.h - what happens next, in the total order (time, lane and key, order of posting).
  *
  * Simulated time never goes back, and most events are posted a short while ahead: a wheel of wheels (Varghese and
- * Lauck, 1987). Level l holds the events whose time first differs from the present in bits 6 l .. 6 l + 5, one bucket
- * per value of these bits; a bucket is spread over the lower levels when its turn comes. So an event is moved two or
- * three times, whatever the number pending. The events of one instant are sorted when it comes; those posted at the
- * present instant wait in a small heap. */
+ * Lauck, 1987). Time is cut into windows of 2^WINDOW_BITS ps. Level l holds the events whose window first differs from
+ * the present one in bits 6 l .. 6 l + 5 of its number, one bucket per value of these bits; a bucket is spread over the
+ * lower levels when its turn comes. A window is shorter than the latency of any link, so an event is moved once or
+ * twice, whatever the number pending. The events of a window are sorted when it comes; those posted within the present
+ * window wait in a heap. */
 #ifndef SIM_EVENT_QUEUE_H
 #define SIM_EVENT_QUEUE_H
 
@@ -16,19 +17,18 @@
 struct event {
     sim_ps time;
     uint64_t order; /* lane in the upper 16 bits, key in the lower 48 */
-    uint64_t age;   /* order of posting, set by event_queue_push */
     sim_action *action;
     void *subject;
     uint64_t argument;
 };
 
-/* A growing array, for the events of the present instant. */
-struct event_bucket {
-    struct event *event; /* owned, (capacity) */
-    uint32_t count, capacity;
+/* An event of the present window that was posted within it. */
+struct event_late {
+    struct event event;
+    uint64_t age; /* order of posting */
 };
 
-enum { CHUNK_EVENTS = 31 };
+enum { CHUNK_EVENTS = 32 };
 
 /* Buckets of the future are chains of chunks from one pool, so that memory follows the number pending. */
 struct event_chunk {
@@ -41,23 +41,31 @@ struct event_chain {
     struct event_chunk *first, *last;
 };
 
-enum { WHEEL_BITS = 6, WHEEL_SLOTS = 1 << WHEEL_BITS, WHEEL_LEVELS = (63 + WHEEL_BITS - 1) / WHEEL_BITS };
+enum {
+    WINDOW_BITS = 12, /* 4 ns */
+    WHEEL_BITS = 6,
+    WHEEL_SLOTS = 1 << WHEEL_BITS,
+    WHEEL_LEVELS = (63 - WINDOW_BITS + WHEEL_BITS - 1) / WHEEL_BITS
+};
 
-/* Where an event of the present instant stands in its order. */
+/* Where an event of the present window stands in its order. */
 struct event_key {
-    uint64_t order, age;
-    uint32_t index;
+    uint64_t order;
+    uint32_t after; /* the window's beginning [ps] */
+    uint32_t index; /* chunk of the run times CHUNK_EVENTS, and place there */
 };
 
 struct event_queue {
-    sim_ps now; /* no event is earlier */
+    sim_ps now;                   /* no event is earlier */
+    uint64_t window;              /* number of the present window */
     uint64_t next_age;
-    uint64_t count;            /* pending, all together */
-    struct event_bucket run;   /* the events of this instant, */
-    struct event_key *key;     /* (run.capacity) sorted; */
-    struct event_key *scratch; /* (run.capacity) for sorting */
-    uint32_t run_at, key_capacity;
-    struct event_bucket heap;    /* posted at this instant since it began */
+    uint64_t count;               /* pending, all together */
+    struct event_chunk **run;     /* (run_chunks) owned: the events of this window that were posted before it, */
+    struct event_key *key;        /* (run_count) owned: sorted; */
+    struct event_key *scratch;    /* (key_capacity) owned: for sorting */
+    uint32_t run_at, run_count, run_chunks, chunk_capacity, key_capacity;
+    struct event_late *heap;      /* (heap_count) owned: posted since */
+    uint32_t heap_count, heap_capacity;
     uint64_t full[WHEEL_LEVELS]; /* bit per bucket that is not empty */
     struct event_chain wheel[WHEEL_LEVELS][WHEEL_SLOTS];
     struct event_chunk *pool; /* chunks not in use */
@@ -68,7 +76,7 @@ struct event_queue {
 void event_queue_init(struct event_queue *q);
 void event_queue_done(struct event_queue *q);
 
-/* event_queue_push: add an event, not earlier than the last one taken (CHECK); sets its age in the queue. */
+/* event_queue_push: add an event, not earlier than the last one taken (CHECK). */
 void event_queue_push(struct event_queue *q, const struct event *e);
 
 /* event_queue_pop: the first event into *e; false when there is none. */

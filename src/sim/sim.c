@@ -46,7 +46,7 @@ void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action 
 {
     CHECK(time >= s->now);
     CHECK(lane < 65536 && key >> KEY_BITS == 0);
-    struct event e = {time, (uint64_t)lane << KEY_BITS | key, 0, action, subject, argument};
+    struct event e = {time, (uint64_t)lane << KEY_BITS | key, action, subject, argument};
     event_queue_push(&s->queue, &e);
 }
 

@@ -35,7 +35,7 @@ static void against_the_list(uint64_t spread)
     sim_ps now = 0;
     for (uint64_t step = 0; step < 8000; step++) {
         if (n < MOST && (n == 0 || random_below(&r, 5) < 3)) {
-            struct event e = {now + (sim_ps)random_below(&r, spread), random_below(&r, 4), 0, NULL, NULL, step};
+            struct event e = {now + (sim_ps)random_below(&r, spread), random_below(&r, 4), NULL, NULL, step};
             event_queue_push(&q, &e);
             twin[n++] = e;
             continue;
@@ -57,7 +57,7 @@ static void against_the_list(uint64_t spread)
 static void events_come_out_as_from_a_list(void **state)
 {
     (void)state;
-    static const uint64_t spread[] = {1, 3, 50, 64, 65, 4096, 1000000, UINT64_C(1) << 40, UINT64_C(1) << 55};
+    static const uint64_t spread[] = {1, 3, 50, 64, 65, 4095, 4096, 4097, 300000, 1000000, UINT64_C(1) << 40, UINT64_C(1) << 55};
     for (size_t i = 0; i < sizeof spread / sizeof *spread; i++) against_the_list(spread[i]);
 }
 
