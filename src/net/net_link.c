@@ -9,19 +9,26 @@
  *
  * Events: one per link and one for the ejection port, which already knows the arrival. The
  * injection port of a node with one sender needs none. */
+#include <stddef.h>
+
 #include "net/net_path.h"
 
-/* A message on its way. */
+/* A message on its way: all that its head needs at a resource in one line of the cache, since the
+ * message itself lies elsewhere, cold, until it arrives. */
 struct flight {
     struct net_message *m;
+    int64_t bytes, flits; /* of m */
     struct route_cursor cursor;
     int resource; /* where the head arrives next */
     int port;     /* through which it arrives there */
-    int64_t flits;
+    uint32_t key; /* of m, in the order of events */
+    /* At the end of the way: */
     struct net_rate slow; /* slowest rate of the route */
-    uint32_t path;        /* node at which the head was last, where critical paths are recorded */
     struct flight *next;  /* in the pool of unused ones */
-};
+    uint32_t path;        /* node at which the head was last, where critical paths are recorded */
+    int ejection;         /* the last resource */
+} __attribute__((aligned(64)));
+_Static_assert(offsetof(struct flight, slow) == 64, "a head touches one line");
 
 struct link_level {
     sim_ps *free;     /* (nresource) from when on */
@@ -69,8 +76,7 @@ static void flight_return(struct net *n, struct flight *f)
 }
 
 /* the message takes `resource` at `now` or when it is free; returns when */
-static sim_ps resource_take(struct net *n, int resource, const struct net_message *m, sim_ps now,
-                            sim_ps busy)
+static sim_ps resource_take(struct net *n, int resource, int64_t bytes, sim_ps now, sim_ps busy)
 {
     struct link_level *g = n->state;
     /* Others' messages go by links alone; those that came since a link was last taken are served
@@ -82,7 +88,7 @@ static sim_ps resource_take(struct net *n, int resource, const struct net_messag
     }
     sim_ps at = now > g->free[resource] ? now : g->free[resource];
     g->free[resource] = ps_later(at, busy);
-    net_account(n, resource, 1, m->bytes, busy, at - now);
+    net_account(n, resource, 1, bytes, busy, at - now);
     return at;
 }
 
@@ -93,15 +99,17 @@ static void head_sent(struct net *n, struct flight *f, sim_ps x)
 {
     struct hop h;
     int port = f->port;
-    if (n->path) f->path = net_path_take(n, f->resource, f->path, x, f->m->bytes);
+    if (n->path) f->path = net_path_take(n, f->resource, f->path, x, f->bytes);
     if (topology_next(n->topology, &f->cursor, &h)) {
         f->resource = net_resource(n, h.link);
         f->port = h.port;
     } else {
-        f->resource = net_ejection(n, f->m->dst);
+        /* The message is needed next: it was last touched when it was sent. */
+        f->resource = f->ejection;
+        for (int line = 0; line < 3; line++) __builtin_prefetch((const char *)f->m + 64 * line);
     }
     /* The key is the port through which the head entered the resource it leaves. */
-    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->m->id), head_arrives, n,
+    sim_at(n->sim, x + n->tau, NET_LANE_HEAD, net_event_key(port, f->key), head_arrives, n,
            (uintptr_t)f);
 }
 
@@ -109,8 +117,8 @@ static void head_arrives(void *subject, uint64_t argument, sim_ps now)
 {
     struct net *n = subject;
     struct flight *f = (struct flight *)(uintptr_t)argument;
-    sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->m->bytes), f->flits);
-    sim_ps x = resource_take(n, f->resource, f->m, now, busy);
+    sim_ps busy = net_rate_time(net_resource_rate(n, f->resource, f->bytes), f->flits);
+    sim_ps x = resource_take(n, f->resource, f->bytes, now, busy);
     if (n->path) f->path = net_path_hops(n, f->path, 1, f->resource);
     if (!net_is_ejection(n, f->resource)) {
         head_sent(n, f, x);
@@ -132,7 +140,10 @@ static void link_inject(struct net *n, struct net_message *m)
     struct flight *f = flight_take(n);
     int nhop;
     f->m = m;
+    f->bytes = m->bytes;
     f->flits = net_flits(n, m->bytes);
+    f->key = (uint32_t)(m->id & 0xffffff);
+    f->ejection = net_ejection(n, m->dst);
     f->slow = net_slowest(n, m, &nhop);
     f->cursor = topology_start(n->topology, m->src, m->dst, net_choice(m));
     f->port = topology_injection_port(n->topology, m->src);
@@ -145,7 +156,7 @@ static void link_inject(struct net *n, struct net_message *m)
         own = m->ready > *port ? m->ready : *port;
         *port = ps_later(own, busy);
     }
-    m->injected = resource_take(n, net_injection(n, m->src), m, m->ready, busy);
+    m->injected = resource_take(n, net_injection(n, m->src), m->bytes, m->ready, busy);
     if (g->nprocessor == 1) own = m->injected;
     /* The closed form of the empty network from there on. */
     m->uncontended =
