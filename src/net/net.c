@@ -166,6 +166,12 @@ void net_set_in_order(struct net *n, bool in_order)
     n->port_private = in_order && n->topology->spec->processors_per_node == 1;
 }
 
+void net_foresee(struct net *n, net_early_fn *early)
+{
+    n->early = early;
+    if (n->type == &net_link) net_link_foresee(n);
+}
+
 struct net *net_share(const struct net *n, void *context, struct arena *a)
 {
     CHECK(n->type == &net_loggp && n->port_private && !n->path);

@@ -76,6 +76,11 @@ void net_set_in_order(struct net *n, bool in_order);
  * `a`. */
 struct net *net_share(const struct net *n, void *context, struct arena *a);
 
+/* net_foresee: call early(m, step) shortly before m is delivered, with the meaning of sim_foresee. Not every message is
+ * announced, and not on every level. Call it before any message is sent. */
+typedef void net_early_fn(const struct net_message *m, int step);
+void net_foresee(struct net *n, net_early_fn *early);
+
 /* net_set_path: record what binds on each message's way in `log` (borrowed; measure/path.h); NULL: do not. Call it
  * before any message is sent. */
 void net_set_path(struct net *n, struct path_log *log);

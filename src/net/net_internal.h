@@ -46,6 +46,7 @@ struct net {
     net_deliver_fn *deliver;
     void *context, *others_context;
     net_others_fn *others; /* NULL: nobody is asked (net_ask_others) */
+    net_early_fn *early;   /* NULL: nobody is told (net_foresee) */
     sim_ps tau, credit, allocation, setup; /* latencies: hop, credit, channel of a head, route and channel [ps] */
     int64_t flit_bytes;                        /* >= 1 */
     struct net_rate ejection, link;
@@ -66,6 +67,9 @@ struct net {
 #define X(constant, word, stem, cost, fineness) extern const struct net_type net_##stem;
 LEVEL_LIST(X)
 #undef X
+
+/* net_link_foresee (net_link.c): announce arrivals at level link to n->early. */
+void net_link_foresee(struct net *n);
 
 /* Resources are numbered: injection ports of nodes, then links, then ejection ports. */
 static inline int net_injection(const struct net *n, int node) { return (void)n, node; }

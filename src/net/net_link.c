@@ -177,6 +177,17 @@ static void link_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
+/* The event queue has asked for the flight before; the message is asked for when its head leaves the
+ * last link. */
+static void head_early(void *subject, uint64_t argument, int step)
+{
+    const struct net *n = subject;
+    const struct flight *f = (const struct flight *)(uintptr_t)argument;
+    if (f->resource == f->ejection) n->early(f->m, step);
+}
+
+void net_link_foresee(struct net *n) { sim_foresee(n->sim, head_arrives, head_early); }
+
 /* Others' traffic queues like a message, without one. */
 static void link_occupy(struct net *n, int link, sim_ps now, sim_ps busy)
 {

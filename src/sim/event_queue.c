@@ -307,13 +307,20 @@ static inline bool run_first(const struct event_queue *q)
     return time != h->time ? time < h->time : k->order <= h->order;
 }
 
-/* Records that events are about lie anywhere in memory: the one that is AHEAD events away is asked
- * for now. */
+/* Records that events are about lie anywhere in memory, each reached through the one before: what an
+ * event's argument points to is asked for FAR events ahead, the rest in two more steps. */
 static inline void warm_up(const struct event_queue *q)
 {
-    enum { AHEAD = 4 };
-    if (q->run_at + AHEAD < q->run_count)
-        __builtin_prefetch((const void *)(uintptr_t)run_event(q, q->run_at + AHEAD)->argument);
+    enum { FAR = 8, STEPS = 2, STEP = 3 };
+    if (q->run_at + FAR < q->run_count)
+        __builtin_prefetch((const void *)(uintptr_t)run_event(q, q->run_at + FAR)->argument);
+    if (!q->foreseen) return;
+    for (int step = 0; step < STEPS; step++) {
+        const uint32_t ahead = q->run_at + FAR - (uint32_t)(step + 1) * STEP;
+        if (ahead >= q->run_count) continue;
+        const struct event *e = run_event(q, ahead);
+        if (e->action == q->foreseen) q->early(e->subject, e->argument, step);
+    }
 }
 
 bool event_queue_pop(struct event_queue *q, struct event *e)

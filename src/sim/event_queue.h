@@ -66,6 +66,8 @@ struct event_queue {
     uint32_t run_at, run_count, run_chunks, chunk_capacity, key_capacity;
     struct event_late *heap;      /* (heap_count) owned: posted since */
     uint32_t heap_count, heap_capacity;
+    sim_action *foreseen;         /* see sim_foresee; NULL: none */
+    sim_early *early;
     uint64_t full[WHEEL_LEVELS]; /* bit per bucket that is not empty */
     struct event_chain wheel[WHEEL_LEVELS][WHEEL_SLOTS];
     struct event_chunk *pool; /* chunks not in use */

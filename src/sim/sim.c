@@ -50,6 +50,12 @@ void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action 
     event_queue_push(&s->queue, &e);
 }
 
+void sim_foresee(struct sim *s, sim_action *action, sim_early *early)
+{
+    s->queue.foreseen = action;
+    s->queue.early = early;
+}
+
 bool sim_step(struct sim *s)
 {
     struct event e;

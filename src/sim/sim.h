@@ -28,6 +28,12 @@ void sim_destroy(struct sim *s);
 void sim_at(struct sim *s, sim_ps time, unsigned lane, uint64_t key, sim_action *action, void *subject,
             uint64_t argument);
 
+/* sim_foresee: from now on call early(subject, argument, step) for events with `action` shortly before they are due:
+ * step 0 a few events ahead, step 1 one or two events ahead. It may ask for memory that the event will need, and must
+ * change nothing. Not every event is announced. */
+typedef void sim_early(void *subject, uint64_t argument, int step);
+void sim_foresee(struct sim *s, sim_action *action, sim_early *early);
+
 /* sim_step: dispatch the earliest event; false when there is none, or none that is due by PS_LAST (picoseconds.h). */
 bool sim_step(struct sim *s);
 

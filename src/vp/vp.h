@@ -39,6 +39,7 @@ struct vp {
     struct comm comm; /* first: a kernel's comm is its vp */
     struct world *world;
     sim_ps clock;
+    /* What the delivery of a message needs, in one line of the cache: */
     struct stage_time *stages; /* (nstage + 1) this rank's row in the result */
     int stage;
     enum waiting_for waiting_for;
@@ -54,7 +55,7 @@ struct vp {
     struct fiber *fiber;
     struct random noise;
     uint32_t path; /* node of `clock`, where critical paths are recorded */
-};
+} __attribute__((aligned(64)));
 
 struct world {
     const struct machine_spec *machine;

@@ -155,6 +155,19 @@ static void copy_links(struct world *w)
     w->result->nlink = n;
 }
 
+/* A message is about to arrive: where its receiver keeps what it waits for, then the first of that.
+ * Otherwise each arrival among many ranks waits for memory twice. */
+static void foresee(const struct net_message *m, int step)
+{
+    const struct vp *to = ((const struct message *)m)->to;
+    if (step == 0) {
+        __builtin_prefetch(&to->stages);
+    } else if (to->posted) {
+        __builtin_prefetch(to->posted);
+        __builtin_prefetch((const char *)to->posted + 64);
+    }
+}
+
 static void name_stages(struct run_result *r, int nstage, const char *const *name)
 {
     CHECK(nstage >= 1 && nstage < RUN_MAX_STAGES);
@@ -174,6 +187,7 @@ static bool build(struct world *w, struct err *e)
     w->net = net_create(m, w->topology, w->sim, w->scratch, deliver, w, w->record->links, e);
     if (!w->net) return false;
     net_set_in_order(w->net, w->eager_only);
+    net_foresee(w->net, foresee);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
     w->fibers = fiber_pool_create(w->nrank, w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES, e);
