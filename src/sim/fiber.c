@@ -14,6 +14,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "base/size.h"
+#include "sim/guard.h"
 
 #ifdef SANITIZERS
 #include <sanitizer/asan_interface.h>
@@ -70,17 +71,6 @@ struct fiber_pool {
     size_t stack_bytes, page;
     int n, nguard;
 };
-
-/* The limit on mappings per process; 65530 is the default of Linux. */
-static int mapping_limit(void)
-{
-    int limit = 65530;
-    FILE *f = fopen("/proc/sys/vm/max_map_count", "r");
-    if (!f) return limit;
-    if (fscanf(f, "%d", &limit) != 1) limit = 65530;
-    fclose(f);
-    return limit;
-}
 
 /* The address sanitizer keeps a shadow of the current stack. Each switch is announced before, with
  * the bounds of the stack to come, and confirmed after it, on the new stack. NULL instead of the
@@ -158,12 +148,8 @@ struct fiber_pool *fiber_pool_create(int n, int64_t stack_bytes, struct err *e)
     p->stack_bytes = stack;
     p->page = page;
     p->n = n;
-    /* Each guard splits the mapping in two more; leave half of the system's limit to everybody
-     * else. A failed mprotect is no error: fiber_pool_stack_peak looks at the spare pages
-     * instead. */
-    int most = mapping_limit() / 4;
-    for (p->nguard = 0; p->nguard < n && p->nguard < most; p->nguard++)
-        if (mprotect(base + stride * (size_t)p->nguard, page, PROT_NONE) != 0) break;
+    /* Where not all can be had, fiber_pool_stack_peak looks at the spare pages instead. */
+    p->nguard = guard_pages(base, stride, page, n);
     return p;
 }
 

@@ -1,7 +1,8 @@
 /* fiber.h - functions that can be left and entered again: stackful coroutines on one host thread.
  *
  * Stacks come from one mapping, reserved and not committed: only touched pages cost memory. Below each stack lies a
- * guard page as long as the system allows more mappings, and beyond that a spare page that must stay untouched. */
+ * guard page as long as the system allows more of them (guard.h), and beyond that a spare page that must stay
+ * untouched. */
 #ifndef SIM_FIBER_H
 #define SIM_FIBER_H
 

@@ -3,10 +3,15 @@
 #include <stddef.h>
 #include <setjmp.h>
 #include <cmocka.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "sim/fiber.h"
+#include "sim/guard.h"
 
 struct counter {
     struct fiber *fiber;
@@ -85,11 +90,48 @@ static void too_many_stacks_are_refused_with_a_message(void **state)
     assert_non_null(strstr(e.text, "virtual processors"));
 }
 
+/* The signal that ends a process which writes to this byte, 0: none. */
+static int signal_of_writing(char *at)
+{
+    int status;
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        signal(SIGSEGV, SIG_DFL);
+        *(volatile char *)at = 1;
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+/* More than one system call can take. */
+static void every_guard_ends_who_touches_it(void **state)
+{
+    (void)state;
+    enum { N = 2500 };
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), stride = 3 * page;
+    char *base = mmap(NULL, N * stride, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(base != MAP_FAILED);
+    const int n = guard_pages(base, stride, page, N);
+    assert_int_equal(n, N);
+    static const int place[] = {0, 1, 1023, 1024, 1025, 2047, 2048, N - 1};
+    for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
+        char *guard = base + stride * (size_t)place[i];
+        assert_int_equal(signal_of_writing(guard), SIGSEGV);
+        assert_int_equal(signal_of_writing(guard + page - 1), SIGSEGV);
+        assert_int_equal(signal_of_writing(guard + page), 0);
+        assert_int_equal(signal_of_writing(guard + stride - 1), 0);
+    }
+    munmap(base, N * stride);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fibers_interleave_and_keep_their_stacks),
         cmocka_unit_test(the_peak_sees_what_was_used),
+        cmocka_unit_test(every_guard_ends_who_touches_it),
         cmocka_unit_test(too_many_stacks_are_refused_with_a_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
