@@ -177,8 +177,8 @@ static void link_send(struct net *n, struct net_message *m)
         sim_at(n->sim, m->ready, NET_LANE_START, net_start_key(m->id), link_start, n, (uintptr_t)m);
 }
 
-/* The event queue has asked for the flight before; the message is asked for when its head leaves the
- * last link. */
+/* The event queue has asked for the flight before; the message is asked for when its head leaves
+ * the last link. */
 static void head_early(void *subject, uint64_t argument, int step)
 {
     const struct net *n = subject;

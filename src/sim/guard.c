@@ -1,8 +1,8 @@
 /* guard.c - see guard.h.
  *
  * Since Linux 6.13 a page table can hold marks for pages that must not be touched (madvise(2),
- * MADV_GUARD_INSTALL): a thousand of them are set by one call and split no mapping. Before that each
- * guard is a mapping of its own: mprotect took 4 us a stack, a tenth of a run on 1024 ranks. */
+ * MADV_GUARD_INSTALL): a thousand of them are set by one call and split no mapping. Before that
+ * each guard is a mapping of its own: mprotect took 4 us a stack, a tenth of a run on 1024 ranks. */
 #include "sim/guard.h"
 
 #include <stdio.h>
@@ -65,5 +65,6 @@ static int protect(char *base, size_t stride, size_t page, int n)
 int guard_pages(char *base, size_t stride, size_t page, int n)
 {
     const int marked = set_marks(base, stride, page, n);
-    return marked == n ? n : marked + protect(base + stride * (size_t)marked, stride, page, n - marked);
+    if (marked == n) return n;
+    return marked + protect(base + stride * (size_t)marked, stride, page, n - marked);
 }
