@@ -57,7 +57,8 @@ static void against_the_list(uint64_t spread)
 static void events_come_out_as_from_a_list(void **state)
 {
     (void)state;
-    static const uint64_t spread[] = {1, 3, 50, 64, 65, 4095, 4096, 4097, 300000, 1000000, UINT64_C(1) << 40, UINT64_C(1) << 55};
+    static const uint64_t spread[] = {1, 3, 50, 64, 65, 4095, 4096, 4097, 300000, 1000000,
+                                      UINT64_C(1) << 40, UINT64_C(1) << 55};
     for (size_t i = 0; i < sizeof spread / sizeof *spread; i++) against_the_list(spread[i]);
 }
 
