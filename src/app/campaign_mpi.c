@@ -12,11 +12,12 @@
 #include "base/check.h"
 #include "base/digest.h"
 #include "base/text.h"
+#include "hosts/hosts_copy.h"
 #include "run/campaign_hosts.h"
 #include "store/build.h"
 #include "study/level_choice.h"
 
-enum { TAG_LEVELS = 100 }; /* apart from those of run/campaign_hosts.c */
+enum { TAG_LEVELS = 100, TAG_RUNS }; /* apart from those of run/campaign_hosts.c */
 
 /* A wrong option would be told once by each process. */
 static int silence(void)
@@ -132,6 +133,55 @@ bool job_run(struct job *j, const struct plan *p, struct run_spec *run,
     return share_levels(j, p, run, e) &&
            run_campaign_hosts(&j->h, run, order, p->nrun, skip, c->jobs > 0 ? c->jobs : 1, c->quiet,
                               done, context, &j->gone, e);
+}
+
+/* One run on all processes. *gone: one of them does not answer. */
+static bool spread_one(const struct job *j, const struct run_spec *run, const struct run_order *order,
+                       int number, struct run_cache *cache, run_done_fn *done, void *context,
+                       bool *gone)
+{
+    struct arena *arena = arena_create();
+    struct run_result result;
+    struct run_order own = *order;
+    struct err why;
+    err_clear(&why);
+    own.hosts = &j->h;
+    own.job_run = number;
+    /* What cannot be made is refused by all in the same words. */
+    if (!run_sharing(run, &own, cache, arena, &result, &why)) {
+        result = run_refused(&why);
+        result.nrank = run->nrank;
+    }
+    *gone = result.job_broken;
+    const bool ok = j->h.rank > 0 || done(context, run, &result);
+    arena_destroy(arena);
+    return ok;
+}
+
+bool job_spread(struct job *j, const struct plan *p, struct run_spec *run,
+                const struct run_order *order, const bool *skip, job_begin_fn *begin,
+                run_done_fn *done, void *context, struct err *e)
+{
+    bool *wanted = calloc((size_t)p->nrun, sizeof *wanted), ok = true, gone = false;
+    CHECK(wanted != NULL);
+    j->started = true;
+    for (int i = 0; i < p->nrun; i++) wanted[i] = skip == NULL || !skip[i];
+    if (!share_levels(j, p, run, e) ||
+        !hosts_tell(&j->h, TAG_RUNS, wanted, (size_t)p->nrun * sizeof *wanted)) {
+        free(wanted);
+        return false;
+    }
+    struct run_cache *cache = run_cache_create();
+    for (int i = 0; i < p->nrun && ok && !gone; i++) {
+        if (!wanted[i]) continue;
+        ok = j->h.rank > 0 || begin(context, &run[i]);
+        ok = ok && spread_one(j, &run[i], &order[i], i, cache, done, context, &gone);
+    }
+    run_cache_destroy(cache);
+    free(wanted);
+    /* Those that do not know would wait for ever. */
+    if (gone || !ok) j->gone++;
+    return ok;
 }
 
 int job_end(struct job *j, int status)

@@ -29,6 +29,12 @@ bool job_agree(struct job *j, const struct plan *p, bool ok, struct err *e);
 bool job_run(struct job *j, const struct plan *p, struct run_spec *run, const struct run_order *order,
              const bool *skip, const struct common *c, run_done_fn *done, void *context, struct err *e);
 
+/* job_spread: the runs of the plan one after the other, each on all processes together (docs/parallel.md): rank 0 hands
+ * over results. `begin`, on rank 0, is told of each run before it is made; false ends the job. Called by all. */
+typedef bool job_begin_fn(void *context, const struct run_spec *spec);
+bool job_spread(struct job *j, const struct plan *p, struct run_spec *run, const struct run_order *order,
+                const bool *skip, job_begin_fn *begin, run_done_fn *done, void *context, struct err *e);
+
 /* job_end: leave the job. Returns the exit status of this process; `status`: of what it did. */
 int job_end(struct job *j, int status);
 

@@ -39,9 +39,13 @@ static const char doc[] =
     "failed when it takes more processor time than this (default 600 s).\n\n"
     "--campaign mpi: the processes that mpirun has started share the plan, and the first one stores "
     "the results: mpirun -n 8 mimdsim run fig6 --campaign mpi. Each makes --jobs runs at a time (default 1).\n\n"
-    "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level loggp, every message "
-    "eager, one processor a node; docs/parallel.md), several run its ranks at once, with the same results to the bit. "
+    "--threads N|auto: host threads for each run. Where the order of ranks acts on nothing (level loggp, every "
+    "message eager, one processor a node; docs/parallel.md), several run its ranks at once, with the same results "
+    "to the bit. "
     "auto, the default: as many as help, on the processors that --jobs leaves.\n\n"
+    "--spread mpi: the processes that mpirun has started share the ranks of each run, so that its memory is divided "
+    "among them: mpirun -n 2 mimdsim run SCENARIO --spread mpi. Runs that need the order of time (see --threads) stay "
+    "in the first process.\n\n"
     "--uncertainty N: draw the uncertain parameters of the machine from their ranges, run each point again with them, "
     "and tell the band that 90 % of the predicted times lie in, and which parameter it comes from: "
     "N (k + 2) runs for k parameters, or 2 N with --bands-only (docs/studies.md).\n\n"
@@ -68,6 +72,7 @@ struct keep {
     double limit;          /* of people's own programs [s], 0: as usual */
     int threads;           /* of each run, as in run_order */
     bool quiet, keep_all;
+    bool spread;           /* each run is shared by the processes of a job */
 };
 
 /* How many more runs ended for the reason that was told last. */
@@ -108,8 +113,8 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
         fprintf(stderr, "mimdsim: %d of %d loop constraints are redundant: solved with least norm\n",
                 r->loop_rows - r->loop_rank, r->loop_rows);
     if (r->alone[0] && k->alone++ == 0 && !k->quiet)
-        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: on one thread: %s\n", spec->kernel.name, spec->model.nbody,
-                spec->nrank, r->alone);
+        fprintf(stderr, "mimdsim: %s, n = %d, P = %d: %s: %s\n", spec->kernel.name, spec->model.nbody, spec->nrank,
+                k->spread ? "in one process" : "on one thread", r->alone);
     if (run_result_refined(r) && k->refined++ == 0 && !k->quiet)
         fprintf(stderr,
                 "mimdsim: %s, n = %d, P = %d: refinement switched on (%d inner, %d outer%s), the residual was %.2g\n",
@@ -117,6 +122,19 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
     return store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
+}
+
+/* A launcher ends all processes when one has died, without a word from this one. So the run is stored as failed before
+ * it begins, and its result takes the place of that. */
+static bool begin_spread(void *context, const struct run_spec *spec)
+{
+    struct keep *k = context;
+    struct err why;
+    err_clear(&why);
+    err_set(&why, ERR_INTERNAL, "the job ended while its processes made this run: one of them died, or it was stopped");
+    struct run_result r = run_refused(&why);
+    r.nrank = spec->nrank;
+    return store_put(k->store, spec, &k->order[spec - k->run], &r, k->error);
 }
 
 /* Which part of the plan is asked for. */
@@ -226,7 +244,8 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     if (!levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e)) return false;
     bool *skip = skipped(k->store, p, settled.run, &asked->part, c->force);
     bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
-    if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
+    if (ok && k->spread) ok = job_spread(job, p, run, k->order, skip, begin_spread, keep_result, k, e);
+    else if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
     else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
     free(skip);
     say_rest(k);
@@ -248,6 +267,7 @@ static bool help_out(struct job *job, const struct common *c, const struct plan 
 {
     struct plan settled = *p;
     struct run_spec *run = orders_usual(p, k, &settled);
+    if (k->spread) return job_spread(job, p, run, k->order, NULL, begin_spread, keep_result, k, e);
     return job_run(job, p, run, k->order, NULL, c, keep_result, k, e);
 }
 
@@ -263,17 +283,25 @@ static int exit_status(bool ok, const struct keep *k, bool none, const struct co
     return k->invalid ? err_exit_status(ERR_CHECK) : 0;
 }
 
+/* --spread mpi: each run on all processes; --campaign mpi: whole runs on each. */
+static bool spread_parse(const char *spread, const char *campaign, struct err *e)
+{
+    if (spread == NULL) return true;
+    if (strcmp(spread, "mpi") != 0) return err_set(e, ERR_USAGE, "--spread '%.40s': expected mpi", spread);
+    return campaign == NULL || err_set(e, ERR_USAGE, "--spread and --campaign: a job does one or the other");
+}
+
 /* The whole of it, on one process or on several. */
 int cmd_run(int argc, char **argv)
 {
     struct common c;
     struct asked asked = {0};
-    struct job job;
+    struct job job = {.kept = -1};
     struct err e;
     err_clear(&e);
-    const char *campaign = take_value(&argc, argv, "--campaign");
+    const char *campaign = take_value(&argc, argv, "--campaign"), *spread = take_value(&argc, argv, "--spread");
     const bool understood = take_options(&argc, argv, &asked, &e);
-    bool ok = job_open(&job, campaign, &e) && understood;
+    bool ok = spread_parse(spread, campaign, &e) && job_open(&job, spread ? spread : campaign, &e) && understood;
     /* The processes of a job share the processors already. */
     if (job.on && asked.threads == RUN_THREADS_AUTO) asked.threads = 1;
     common_parse(&c, argc, argv, TAKES_PLAN | TAKES_STORE | TAKES_JOBS, "SCENARIO|PROGRAM", doc, 1, 1);
@@ -282,7 +310,7 @@ int cmd_run(int argc, char **argv)
     struct plan p = {0};
     struct plan_options o = common_plan(&c);
     struct keep k = {.error = &e, .quiet = c.quiet, .limit = asked.limit, .keep_all = asked.keep_all,
-                     .threads = asked.threads};
+                     .threads = asked.threads, .spread = spread != NULL};
     ok = ok && plan_read(&p, c.arg[0], &o, &e) && check_point(asked.part.point, &p, &e) &&
          uncertainty_count(&p, &asked.uncertainty, &e) && search_check(&p, &e);
     ok = job_agree(&job, &p, ok, &e);

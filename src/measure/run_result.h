@@ -72,6 +72,8 @@ struct run_result {
     char text[2048];        /* why a run is not RUN_OK: the wait-for cycle, the wrong number */
     int refusal;            /* err_kind of a run that could not be made, which is RUN_FAILED; 0 (ERR_NONE): it was */
 
+    bool job_broken;        /* it was shared by processes, and one of them does not answer */
+
     int nbody, nu;             /* bodies and degrees of freedom of the model that was built; 0: no model */
     int64_t makespan_ps;
     int nrank, nstage;

@@ -26,7 +26,6 @@
 #include "spec/run_spec.h"
 
 enum { PROGRAM_OUTPUTS = 12 };
-
 /* What every rank executes. `job` is the program's own, shared by all ranks and read-only to them. */
 struct rank_program {
     int nstage;
@@ -49,7 +48,8 @@ struct program_run {
     struct run_spec spec;        /* the settings in force, a copy: `again` may change those of the program, so it may
                                     be another run than the one that its config_hash names */
     struct run_heartbeat *heartbeat; /* where the run tells how far it is, NULL: nowhere */
-    int threads, cores; /* of the host, as in run_order */
+    const struct hosts *hosts; /* as in run_order, as the next ones */
+    int threads, cores, job_run;
     struct program_cache *cache; /* what runs share; NULL: nothing */
     struct arena *arena;         /* memory of open: lives as long as this struct */
 

@@ -26,10 +26,12 @@ static void program(struct comm *c, void *context)
 }
 
 /* Taken one by one: all of it will be touched, so the arena may use large pages. */
-static char **make_workspaces(const struct program_run *r, struct arena *a)
+static char **make_workspaces(const struct program_run *r, const struct world_load *load, struct arena *a)
 {
+    int first, end;
     char **w = TAKE(a, r->spec.nrank, char *);
-    for (int i = 0; i < r->spec.nrank; i++) w[i] = arena_take(a, r->rank->workspace_bytes(r->job, i));
+    world_part(load, &first, &end);
+    for (int i = first; i < end; i++) w[i] = arena_take(a, r->rank->workspace_bytes(r->job, i));
     return w;
 }
 
@@ -80,22 +82,27 @@ bool launch_run(const struct program_run *r, const struct machine_spec *m, const
                 struct err *e)
 {
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
-    struct launch l = {r->rank, r->job, make_workspaces(r, scratch)};
     struct world_load load = load_of(r, largest);
-    load.context = &l;
     const char *alone = world_alone(m, &load, record);
     load.threads = alone ? 1 : launch_threads(r->threads, r->cores, load.nrank);
     out->threads = load.threads;
-    if (alone && r->threads > 1) text_copy(out->alone, sizeof out->alone, alone);
+    if (alone && (r->threads > 1 || r->hosts)) text_copy(out->alone, sizeof out->alone, alone);
+    /* What processes cannot share, the first one does. */
+    if (alone && r->hosts && r->hosts->rank > 0) return true;
+    if (!alone) load.hosts = r->hosts, load.job_run = r->job_run;
+    struct launch l = {r->rank, r->job, make_workspaces(r, &load, scratch)};
+    load.context = &l;
     if (!world_run(m, &load, record, seed, a, out, e)) return false;
-    if (out->status != RUN_FAILED || load.threads <= 1) return true;
+    if (out->status != RUN_FAILED || out->job_broken || (load.threads <= 1 && !load.hosts)) return true;
+    if (load.hosts && load.hosts->rank > 0) return true;
     /* Of several ranks that fail, one is told: the first on one thread. Which one is first on several depends on the
      * host, so such a run is made again on one. */
     arena_release(a, results);
     arena_release(scratch, work);
     memset(out, 0, sizeof *out);
     out->threads = 1;
-    l.workspace = make_workspaces(r, scratch);
+    load.hosts = NULL;
     load.threads = 1;
+    l.workspace = make_workspaces(r, &load, scratch);
     return world_run(m, &load, record, seed, a, out, e);
 }

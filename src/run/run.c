@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "guest/guest_program.h"
+#include "hosts/hosts_copy.h"
 #include "kernel/programs.h"
 #include "machine/node_cost.h"
 #include "run/launch.h"
@@ -20,7 +21,8 @@
 
 /* --- what runs share ---------------------------------------------------------------------------------------------- */
 
-enum { MOST_CACHES = 8 };
+/* MOST_ATTEMPTS: no program asks for as many (kernel/trust.c). */
+enum { MOST_CACHES = 8, MOST_ATTEMPTS = 16, TAG_VERDICT = 400 };
 
 /* One cache for all programs that make theirs with the same function. */
 struct run_cache {
@@ -70,6 +72,7 @@ bool run_open(const struct run_spec *spec, const struct run_order *order, struct
      * settings only. */
     if (order) r->spec.keep = order->keep, r->heartbeat = order->heartbeat;
     if (order) r->threads = order->threads, r->cores = order->cores;
+    if (order) r->hosts = order->hosts, r->job_run = order->job_run * MOST_ATTEMPTS;
     if (order) r->spec.program.host_limit = order->host_limit, r->spec.program.output = order->output;
     if (!r->type && spec->kernel.own)
         return err_set(e, ERR_CONFIG, "program '%s' is not at hand: only a scenario says where it is",
@@ -86,6 +89,9 @@ void run_close(struct program_run *r)
     if (r->type && r->type->close) r->type->close(r);
 }
 
+/* Whether this process has the whole result: only one of those that share a run does. */
+static bool chief(const struct program_run *r) { return !r->hosts || r->hosts->rank == 0; }
+
 /* The ranks once, with the settings that are in force now. */
 static bool attempt(struct program_run *r, struct arena *scratch, struct arena *a, struct run_result *out,
                     struct err *e)
@@ -99,8 +105,26 @@ static bool attempt(struct program_run *r, struct arena *scratch, struct arena *
     if (!launch_run(r, &machine, &record, run_spec_seed(&r->spec), omission_largest_message(r), scratch, a, out, e))
         return false;
     out->residual = out->measured_s = NAN;
-    if (out->status == RUN_OK && r->type->judge) r->type->judge(r, out);
+    if (out->status == RUN_OK && chief(r) && r->type->judge) r->type->judge(r, out);
     return true;
+}
+
+/* Whether the program asks for one more attempt. Processes that share a run learn it from the one that has the answers,
+ * with the settings that the program has changed. */
+static bool once_more(struct program_run *r, struct run_result *out)
+{
+    struct {
+        bool more;
+        struct kernel_spec kernel;
+    } verdict = {.more = chief(r) && r->type->again && r->type->again(r, out), .kernel = r->spec.kernel};
+    if (!r->hosts || out->job_broken) return verdict.more;
+    if (!hosts_tell(r->hosts, TAG_VERDICT, &verdict, sizeof verdict)) {
+        out->job_broken = true;
+        return false;
+    }
+    r->spec.kernel = verdict.kernel;
+    r->job_run++;
+    return verdict.more;
 }
 
 /* Attempts until the program asks for no more; only the last leaves anything in the arenas. */
@@ -110,7 +134,7 @@ static bool attempts(struct program_run *r, struct arena *scratch, struct arena 
     /* A program asks again when its residual is too large: the next attempt has more refinement. */
     const struct arena_mark work = arena_mark(scratch), results = arena_mark(a);
     bool ok = attempt(r, scratch, a, out, e);
-    while (ok && r->type->again && r->type->again(r, out)) {
+    while (ok && once_more(r, out)) {
         arena_release(scratch, work);
         arena_release(a, results);
         ok = attempt(r, scratch, a, out, e);
@@ -191,7 +215,7 @@ bool run_sharing(const struct run_spec *spec, const struct run_order *order, str
     struct program_run r = {.spec = *spec};
     check_note_set(describe, &r.spec);
     const bool ok = run_open(spec, order, cache, own, &r, e) && attempts(&r, scratch, a, out, e);
-    if (ok) {
+    if (ok && chief(&r)) {
         out->nomission = omission_listing(&r, out->omission);
         out->nbody = r.nbody;
         out->nu = r.nu;

@@ -37,6 +37,7 @@ struct level_choice {
 };
 
 struct run_heartbeat;
+struct hosts;
 
 /* run_order.threads: as many host threads as help, on `cores` processors. */
 enum { RUN_THREADS_AUTO = -1 };
@@ -51,6 +52,8 @@ struct run_order {
     struct level_choice level_choice;
     int threads;                     /* host threads of the one run, RUN_THREADS_AUTO, or 0: one */
     int cores;                       /* processors that it may use; 0: all that there are */
+    const struct hosts *hosts;       /* processes that share the run, NULL: this one alone; borrowed */
+    int job_run;                     /* its number among those of the processes */
 };
 
 struct run_spec {

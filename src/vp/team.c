@@ -1,4 +1,4 @@
-/* team.c - shares of ranks, the threads that run them, and the messages between them (team.h).
+/* team.c - the threads of a run, and their turns with the shares of its ranks (team.h).
  *
  * A share is an actor: a ring of ready ranks and an inbox of messages from other shares. It is idle,
  * queued at a thread, or run by one. Threads take shares from the front of their own queue and, when
@@ -6,280 +6,18 @@
  * of the queue: so no share runs far ahead of those that read what it sends, and messages in flight
  * stay about as many as on one thread. The run is over when every share is idle: nobody can go on,
  * and nothing is on its way. */
-#include "vp/team.h"
-
-#include <pthread.h>
-#include <sched.h>
-#include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "measure/run_heartbeat.h"
 #include "spec/topology_list.h"
-
-/* Shares for each thread: enough to divide the work evenly, and few enough that most neighbours are
- * in one's own. TURN: how often each rank of a share may go on in one turn, on average. */
-enum { SHARES_PER_THREAD = 8, TURN = 4, BATCH = 62, MOST_THREADS = 1024 };
-
-/* Messages for one share, in the order sent. */
-struct batch {
-    struct batch *next;
-    int n;
-    struct message *message[BATCH];
-};
-
-/* AGAIN: something came for it while a thread ran it. */
-enum { IDLE, QUEUED, RUNNING, AGAIN };
-
-struct share {
-    struct world world; /* first: a rank's world is its share */
-    _Atomic(struct batch *) inbox; /* the newest first */
-    _Atomic int state;
-    struct batch **out; /* (nshare) being filled for other shares, NULL: none */
-    int *touched;       /* (ntouched) shares for which there is one */
-    int ntouched, home; /* home: the thread at which it queues */
-    int barriers;       /* of the machine's, whose end it has seen */
-    int told;           /* ranks that the heartbeat knows to have ended */
-    bool made;
-};
-
-/* A host thread. */
-struct worker {
-    struct team *team;
-    pthread_t thread;
-    struct message_pool pool;
-    pthread_mutex_t lock; /* of the queue */
-    struct share **queue; /* (nshare) ring */
-    int head, count, number;
-    struct random random; /* of delays in tests */
-};
-
-struct team {
-    struct world *world; /* of the whole run */
-    struct share *share; /* (nshare) */
-    struct worker *worker; /* (nworker) */
-    struct message_depot *depot;
-    int nshare, nworker, shift; /* rank r is in share r >> shift */
-    uint64_t seed;
-    struct check_note note;
-    _Atomic int active;  /* shares that are not idle; 0: the run is over */
-    _Atomic int waiting; /* shares in queues */
-    _Atomic bool stop;   /* a rank has failed */
-    _Atomic int sleepers;
-    pthread_mutex_t lock; /* of what follows */
-    pthread_cond_t news;
-    int inside; /* ranks in the machine's barrier whose shares are in it as a whole */
-    sim_ps latest;
-    _Atomic sim_ps release;
-    _Atomic int barriers;
-};
-
-/* --- queues ------------------------------------------------------------------------------------ */
-
-/* A thread that sleeps has counted itself before it looked at the queues for the last time, and this
- * one looks for sleepers after it has queued: one of the two sees the other. */
-static void enqueue(struct team *t, struct share *s)
-{
-    struct worker *k = &t->worker[s->home];
-    pthread_mutex_lock(&k->lock);
-    int at = k->head + k->count++;
-    k->queue[at >= t->nshare ? at - t->nshare : at] = s;
-    pthread_mutex_unlock(&k->lock);
-    atomic_fetch_add(&t->waiting, 1);
-    if (atomic_load(&t->sleepers) == 0) return;
-    pthread_mutex_lock(&t->lock);
-    pthread_cond_signal(&t->news);
-    pthread_mutex_unlock(&t->lock);
-}
-
-/* The longest queued of one's own; of another's the one that came last, which that one would reach
- * last. NULL: nothing there. */
-static struct share *dequeue(struct team *t, struct worker *k, bool own)
-{
-    struct share *s = NULL;
-    pthread_mutex_lock(&k->lock);
-    if (k->count > 0) {
-        int at = own ? k->head : k->head + k->count - 1;
-        s = k->queue[at >= t->nshare ? at - t->nshare : at];
-        if (own && ++k->head == t->nshare) k->head = 0;
-        k->count--;
-    }
-    pthread_mutex_unlock(&k->lock);
-    if (s) atomic_fetch_sub(&t->waiting, 1);
-    return s;
-}
-
-static struct share *look_around(struct worker *k)
-{
-    struct team *t = k->team;
-    struct share *s = dequeue(t, k, true);
-    for (int i = 1; !s && i < t->nworker; i++) {
-        s = dequeue(t, &t->worker[(k->number + i) % t->nworker], false);
-        /* It stays where it was taken: its memory is now in that processor's caches. */
-        if (s) s->home = k->number;
-    }
-    return s;
-}
-
-static bool over(struct team *t) { return atomic_load(&t->active) == 0 || atomic_load(&t->stop); }
-
-/* The next share to run, NULL: the run is over. A short look for something new first: it comes within
- * microseconds, and going to sleep takes as long. */
-static struct share *next_share(struct worker *k)
-{
-    enum { LOOKS = 400 };
-    struct team *t = k->team;
-    for (;;) {
-        for (int i = 0; i < LOOKS && !over(t); i++) {
-            struct share *s = atomic_load(&t->waiting) > 0 ? look_around(k) : NULL;
-            if (s) return s;
-            if (i % 8 == 7) sched_yield();
-        }
-        pthread_mutex_lock(&t->lock);
-        atomic_fetch_add(&t->sleepers, 1);
-        while (!over(t) && atomic_load(&t->waiting) == 0) pthread_cond_wait(&t->news, &t->lock);
-        atomic_fetch_sub(&t->sleepers, 1);
-        pthread_mutex_unlock(&t->lock);
-        if (over(t)) return NULL;
-    }
-}
-
-static void wake_all(struct team *t)
-{
-    pthread_mutex_lock(&t->lock);
-    pthread_cond_broadcast(&t->news);
-    pthread_mutex_unlock(&t->lock);
-}
-
-/* Something has come for s. Whoever calls this runs a share, so that `active` is not 0 meanwhile. */
-static void notify(struct team *t, struct share *s)
-{
-    int state = atomic_load(&s->state);
-    for (;;) {
-        if (state == QUEUED || state == AGAIN) return;
-        const int next = state == IDLE ? QUEUED : AGAIN;
-        if (!atomic_compare_exchange_weak(&s->state, &state, next)) continue;
-        if (next == AGAIN) return;
-        atomic_fetch_add(&t->active, 1);
-        enqueue(t, s);
-        return;
-    }
-}
-
-/* --- messages ---------------------------------------------------------------------------------- */
-
-/* Batches of one sender's share are pushed by one thread at a time, in their order. */
-static void push(struct team *t, struct share *to, struct batch *b)
-{
-    b->next = atomic_load(&to->inbox);
-    while (!atomic_compare_exchange_weak(&to->inbox, &b->next, b)) {}
-    notify(t, to);
-}
-
-/* One batch at a time is filled for each share; most go when the turn ends. */
-void team_post(struct world *w, struct message *m)
-{
-    struct share *s = (struct share *)w;
-    struct team *t = w->team;
-    const int to = (int)(m->to - w->vp) >> t->shift;
-    struct batch *b = s->out[to];
-    if (!b) {
-        b = s->out[to] = malloc(sizeof *b);
-        CHECK(b);
-        b->n = 0;
-        s->touched[s->ntouched++] = to;
-    }
-    b->message[b->n++] = m;
-    if (b->n < BATCH) return;
-    push(t, &t->share[to], b);
-    /* The share stays in the list of touched ones, with nothing to send: it is asked for once. */
-    s->out[to] = malloc(sizeof *b);
-    CHECK(s->out[to]);
-    s->out[to]->n = 0;
-}
-
-static void send_out(struct team *t, struct share *s)
-{
-    for (int i = 0; i < s->ntouched; i++) {
-        const int to = s->touched[i];
-        struct batch *b = s->out[to];
-        s->out[to] = NULL;
-        if (b->n > 0) push(t, &t->share[to], b);
-        else free(b);
-    }
-    s->ntouched = 0;
-}
-
-/* Messages, their receivers and the receives lie cold in memory: each is asked for early enough. */
-static void deliver_batch(const struct world *w, const struct batch *b)
-{
-    for (int i = 0; i < b->n; i++) {
-        if (i + 8 < b->n) __builtin_prefetch(b->message[i + 8]);
-        if (i + 5 < b->n) __builtin_prefetch(&b->message[i + 5]->to->posted);
-        if (i + 2 < b->n) __builtin_prefetch(b->message[i + 2]->to->posted);
-        w->arrived(b->message[i]);
-    }
-}
-
-/* The oldest first: matching goes by the order of sending. */
-static void take_in(struct share *s)
-{
-    struct batch *new = atomic_exchange(&s->inbox, NULL), *old = NULL;
-    while (new) {
-        struct batch *next = new->next;
-        new->next = old;
-        old = new;
-        new = next;
-    }
-    while (old) {
-        struct batch *next = old->next;
-        deliver_batch(&s->world, old);
-        free(old);
-        old = next;
-    }
-}
-
-/* --- the machine's barrier --------------------------------------------------------------------- */
-
-/* It is left at the latest time at which a rank entered: a maximum, first within each share. The
- * release stays valid until the next barrier is complete, for which every rank must have left this
- * one. */
-static void barrier(struct vp *v)
-{
-    struct world *w = v->world;
-    struct team *t = w->team;
-    if (v->clock > w->barrier_latest) w->barrier_latest = v->clock;
-    if (++w->barrier_count == w->nown) {
-        pthread_mutex_lock(&t->lock);
-        if (w->barrier_latest > t->latest) t->latest = w->barrier_latest;
-        t->inside += w->nown;
-        const bool complete = t->inside == w->nrank;
-        if (complete) {
-            atomic_store(&t->release, t->latest + w->software.barrier);
-            t->latest = 0;
-            t->inside = 0;
-            atomic_fetch_add(&t->barriers, 1);
-        }
-        pthread_mutex_unlock(&t->lock);
-        w->barrier_count = 0;
-        w->barrier_latest = 0;
-        for (int i = 0; complete && i < t->nshare; i++) notify(t, &t->share[i]);
-    }
-    vp_block(v, WAITING_BARRIER, NULL);
-}
-
-static void leave_barrier(struct team *t, struct share *s)
-{
-    struct world *w = &s->world;
-    const int barriers = atomic_load(&t->barriers);
-    if (barriers == s->barriers) return;
-    s->barriers = barriers;
-    w->barrier_release = atomic_load(&t->release);
-    for (int i = 0; i < w->nown; i++) vp_wake(w, &w->vp[w->first + i]);
-}
+#include "vp/team_parts.h"
 
 /* --- threads ----------------------------------------------------------------------------------- */
 
+/* Every thread adds what its turns have ended; whoever shows it reads the sum. */
 static void tell_heartbeat(struct share *s)
 {
     struct run_heartbeat *p = s->world.load->heartbeat;
@@ -307,14 +45,14 @@ static void run_share(struct worker *k, struct share *s)
     /* Its ranks are made by the thread that begins with them, which brings their memory. */
     if (!s->made) world_make_ranks(w, t->seed);
     s->made = true;
-    take_in(s);
-    leave_barrier(t, s);
+    team_take_in(s);
+    team_leave_barrier(t, s);
     world_resume(w, (int64_t)TURN * w->nown);
-    send_out(t, s);
+    team_send_out(t, s);
     tell_heartbeat(s);
     if (w->stopped) {
         atomic_store(&t->stop, true);
-        wake_all(t);
+        team_wake_all(t);
         return;
     }
     delay(k);
@@ -323,10 +61,70 @@ static void run_share(struct worker *k, struct share *s)
     int running = RUNNING;
     if (w->ready_count > 0 || !atomic_compare_exchange_strong(&s->state, &running, IDLE)) {
         atomic_store(&s->state, QUEUED);
-        enqueue(t, s);
+        team_enqueue(t, s);
     } else if (atomic_fetch_sub(&t->active, 1) == 1) {
-        wake_all(t);
+        team_wake_all(t);
     }
+}
+
+/* ---- several processes ---- */
+
+/* A letter from another process becomes a message, or ends a barrier. */
+static void take_letter(void *context, const struct letter *l, const void *data)
+{
+    struct team *t = context;
+    struct world *w = t->world;
+    if (l->to == LETTER_ENTERS) team_enter_process(t, l->arrival);
+    if (l->to == LETTER_LEAVES) team_release(t, l->arrival);
+    if (l->to < 0) return;
+    struct message *m = message_take(&t->worker[0].pool, l->hollow ? 0 : l->bytes);
+    if (!l->hollow && l->bytes > 0) memcpy(m->data, data, (size_t)l->bytes);
+    m->hollow = l->hollow != 0;
+    m->bytes = l->bytes;
+    m->tag = l->tag;
+    m->sent = l->sent;
+    m->kind = MESSAGE_EAGER;
+    m->net.id = l->id;
+    m->net.arrival = l->arrival;
+    m->net.uncontended = l->uncontended;
+    m->to = &w->vp[l->to];
+    m->from = &w->vp[message_source(m)];
+    const int share = l->to >> t->shift;
+    struct batch *b = t->in[share];
+    if (b && b->n == BATCH) {
+        team_push(t, &t->share[share], b);
+        b = NULL;
+    }
+    if (!b) b = t->in[share] = batch_new();
+    b->message[b->n++] = m;
+}
+
+/* After each look at the post: a batch that waits for more letters would wait for ever. */
+static void hand_letters_over(struct team *t)
+{
+    for (int i = t->first; i < t->end; i++) {
+        if (t->in[i]) team_push(t, &t->share[i], t->in[i]);
+        t->in[i] = NULL;
+    }
+}
+
+/* The thread that serves the post runs shares in between. It never sleeps for long: letters come
+ * without a signal. */
+static void work_and_post(struct worker *k)
+{
+    enum { PAUSE_US = 20 };
+    struct team *t = k->team;
+    while (t->state == POST_GOES_ON) {
+        bool busy;
+        const bool failed = atomic_load(&t->stop), idle = failed || atomic_load(&t->active) == 0;
+        t->state = post_serve(t->post, idle, failed, take_letter, t, &busy);
+        hand_letters_over(t);
+        struct share *s = failed || t->state != POST_GOES_ON ? NULL : team_look_around(k);
+        if (s) run_share(k, s);
+        else if (!busy) usleep(PAUSE_US);
+    }
+    atomic_store(&t->over, true);
+    team_wake_all(t);
 }
 
 /* The first worker is the caller's own thread, which alone may show how far the run is. */
@@ -336,7 +134,8 @@ static void *work(void *argument)
     struct team *t = k->team;
     const struct run_heartbeat *p = t->world->load->heartbeat;
     check_note_set(t->note.describe, t->note.context);
-    for (struct share *s; (s = next_share(k)) != NULL;) {
+    if (k->number == 0 && t->post) work_and_post(k);
+    for (struct share *s; (s = team_next_share(k)) != NULL;) {
         run_share(k, s);
         if (k->number == 0 && p && p->beat) p->beat(p->context);
     }
@@ -346,18 +145,47 @@ static void *work(void *argument)
 /* --- one run ----------------------------------------------------------------------------------- */
 
 /* Shares of 2^shift ranks, so that a rank's share is found by a shift. */
+static int shift_of(int nrank, int parts)
+{
+    int shift = 0;
+    while ((int64_t)parts * SHARES_PER_THREAD << shift < nrank) shift++;
+    return shift;
+}
+
+/* Processes may have different numbers of threads, but must agree on the shares. */
+enum { THREADS_OF_A_PROCESS = 4 };
+
+/* Blocks of whole shares, as even as they go. */
+void team_part(const struct world_load *load, int process, int *first, int *end)
+{
+    *first = 0;
+    *end = load->nrank;
+    if (!load->hosts) return;
+    const int64_t size = load->hosts->size;
+    const int shift = shift_of(load->nrank, (int)size * THREADS_OF_A_PROCESS);
+    const int64_t nshare = ((load->nrank - 1) >> shift) + 1;
+    *first = (int)(process * nshare / size) << shift;
+    if (process + 1 < size) *end = (int)((process + 1) * nshare / size) << shift;
+}
+
+/* Each share is the whole world but for its own ring of ready ranks, pool, and account of what ended. Tables of the
+ * network are common: what is written in them belongs to one node, and so to one rank. */
 static void make_shares(struct team *t)
 {
     struct world *w = t->world;
-    while ((int64_t)t->nworker * SHARES_PER_THREAD << t->shift < w->nrank) t->shift++;
+    const struct hosts *h = w->load->hosts;
+    t->shift = shift_of(w->nrank, h ? h->size * THREADS_OF_A_PROCESS : t->nworker);
     t->nshare = ((w->nrank - 1) >> t->shift) + 1;
+    t->first = h ? (int)((int64_t)h->rank * t->nshare / h->size) : 0;
+    t->end = h ? (int)((int64_t)(h->rank + 1) * t->nshare / h->size) : t->nshare;
     t->share = TAKE(w->scratch, t->nshare, struct share);
-    for (int i = 0; i < t->nshare; i++) {
+    t->in = TAKE(w->scratch, t->nshare, struct batch *);
+    for (int i = t->first; i < t->end; i++) {
         struct share *s = &t->share[i];
         const int first = i << t->shift, left = w->nrank - first;
         s->world = *w;
         s->world.team = t;
-        s->world.share_barrier = barrier;
+        s->world.share_barrier = team_barrier;
         s->world.first = first;
         s->world.nown = left < 1 << t->shift ? left : 1 << t->shift;
         s->world.ready = w->ready + first;
@@ -365,10 +193,11 @@ static void make_shares(struct team *t)
         s->out = TAKE(w->scratch, t->nshare, struct batch *);
         s->touched = TAKE(w->scratch, t->nshare, int);
         /* Neighbours to one thread: most messages stay near. */
-        s->home = (int)((int64_t)i * t->nworker / t->nshare);
+        s->home = (int)((int64_t)(i - t->first) * t->nworker / (t->end - t->first));
     }
 }
 
+/* Messages are made in an arena of the thread, so that no two threads ask for memory at once. */
 static void make_workers(struct team *t)
 {
     t->worker = TAKE(t->world->scratch, t->nworker, struct worker);
@@ -399,9 +228,10 @@ static void go(struct team *t)
 static void gather(struct team *t)
 {
     struct world *w = t->world;
-    int inside = t->inside;
-    for (int i = 0; i < t->nshare; i++) inside += t->share[i].world.barrier_count;
-    for (int i = 0; i < t->nshare; i++) {
+    int inside = t->inside + (atomic_load(&t->whole) ? w->nown : 0);
+    for (int i = t->first; i < t->end; i++) inside += t->share[i].world.barrier_count;
+    w->barrier_count = inside;
+    for (int i = t->first; i < t->end; i++) {
         struct world *s = &t->share[i].world;
         w->nfinished += s->nfinished;
         w->failed = w->failed || s->failed;
@@ -414,8 +244,9 @@ static void gather(struct team *t)
 /* Batches are left only where the run was stopped. */
 static void destroy(struct team *t)
 {
-    for (int i = 0; i < t->nshare; i++) {
+    for (int i = t->first; i < t->end; i++) {
         struct share *s = &t->share[i];
+        free(t->in[i]);
         for (int k = 0; k < s->ntouched; k++) free(s->out[s->touched[k]]);
         for (struct batch *b = atomic_load(&s->inbox), *next; b; b = next) {
             next = b->next;
@@ -427,10 +258,13 @@ static void destroy(struct team *t)
         arena_destroy(t->worker[i].pool.arena);
     }
     message_depot_destroy(t->depot);
+    post_close(t->post);
     pthread_mutex_destroy(&t->lock);
     pthread_cond_destroy(&t->news);
 }
 
+/* In the order in which a user would change it: the program, the machine, what is recorded. The conditions are those
+ * under which the ranks are a Kahn network (team.h), and what keeps its records in the order of events. */
 const char *world_alone(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record)
 {
     if (load->foreign) return "the program is not a built-in one";
@@ -445,6 +279,8 @@ const char *world_alone(const struct machine_spec *m, const struct world_load *l
     return record->path ? "a critical path is recorded" : NULL;
 }
 
+/* From the outside in, and back: shares, threads, post. Every own share is queued once, since all ranks are ready at
+ * time 0; from then on only what comes queues it. */
 void team_run(struct world *w, uint64_t seed)
 {
     const int most = w->nrank < MOST_THREADS ? w->nrank : MOST_THREADS;
@@ -457,12 +293,15 @@ void team_run(struct world *w, uint64_t seed)
     CHECK(pthread_mutex_init(&t->lock, NULL) == 0 && pthread_cond_init(&t->news, NULL) == 0);
     make_shares(t);
     make_workers(t);
-    atomic_store(&t->active, t->nshare);
-    for (int i = 0; i < t->nshare; i++) {
+    if (w->load->hosts) t->post = post_open(w->load->hosts, w->load->job_run);
+    atomic_store(&t->active, t->end - t->first);
+    for (int i = t->first; i < t->end; i++) {
         atomic_store(&t->share[i].state, QUEUED);
-        enqueue(t, &t->share[i]);
+        team_enqueue(t, &t->share[i]);
     }
     go(t);
     gather(t);
+    w->failed = w->failed || t->state == POST_FAILED;
+    w->broken = t->state == POST_BROKEN;
     destroy(t);
 }

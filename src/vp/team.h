@@ -24,6 +24,10 @@ void world_resume(struct world *w, int64_t most);
  * w->load->threads threads until none can go on. For loads that world_alone lets pass. */
 void team_run(struct world *w, uint64_t seed);
 
+/* team_part: the ranks *first .. *end - 1 of such a load that `process` of load->hosts runs; without
+ * hosts, all. */
+void team_part(const struct world_load *load, int process, int *first, int *end);
+
 /* team_elsewhere: whether m, sent by a rank of share w, ends in another share. team_post: hand it
  * over. */
 static inline bool team_elsewhere(const struct world *w, const struct message *m)

@@ -74,6 +74,8 @@ struct world {
     struct node_cost node_cost;
     bool shared_channel, eager_only, noisy;
     bool stopped, failed; /* a rank went beyond the end of time, or failed: nobody goes on */
+    bool broken; /* a process of the job does not answer */
+    struct published *published; /* by its ranks, where processes share the run (shared.h); NULL: not kept */
     int *ready; /* (nown) ring of ranks that can go on */
     int ready_head, ready_count;
     struct message_pool *pool; /* of the host thread */
@@ -94,7 +96,6 @@ struct world {
     int served_rank, served_stage;
     int64_t server_bytes;
     int64_t span_capacity;
-
     const struct world_load *load;
 };
 

@@ -9,6 +9,7 @@
 #include "base/picoseconds.h"
 #include "comm/collectives.h"
 #include "vp/explain.h"
+#include "vp/shared.h"
 #include "vp/matching.h"
 #include "vp/path.h"
 #include "vp/vp.h"
@@ -321,6 +322,8 @@ static void vp_publish(struct comm *c, int output, int64_t first, int64_t n, con
         vp_misuse((struct vp *)c, "elements %lld .. %lld of output %d, which has %lld", (long long)first,
                   (long long)(first + n - 1), output, o ? (long long)o->n : 0LL);
     comm_publish_here(c, output, first, n, data);
+    struct world *w = ((struct vp *)c)->world;
+    if (w->published && o) shared_published(w, output, first, n);
 }
 
 const struct comm_type vp_comm_type = {

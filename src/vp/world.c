@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "measure/run_heartbeat.h"
 #include "vp/explain.h"
+#include "vp/shared.h"
 #include "vp/matching.h"
 #include "vp/path.h"
 #include "vp/team.h"
@@ -194,6 +195,23 @@ static bool build(struct world *w, struct err *e)
     return w->fibers != NULL;
 }
 
+/* A run that processes share: process 0 gets what a run on one has. */
+static void end_shared(struct world *w)
+{
+    struct run_result *r = w->result;
+    enum shared_end end = shared_end(w);
+    const bool chief = w->load->hosts->rank == 0;
+    if (end == SHARED_FINISHED && !shared_collect(w)) end = SHARED_BROKEN;
+    if (end == SHARED_FINISHED && chief) copy_links(w);
+    if (end == SHARED_DEADLOCK && !shared_gather_waiting(w)) end = SHARED_BROKEN;
+    if (end == SHARED_DEADLOCK && chief) deadlock_explain(w);
+    if (end == SHARED_FINISHED) return;
+    if (end != SHARED_DEADLOCK) forget_parts(w);
+    r->status = end == SHARED_DEADLOCK ? RUN_DEADLOCK : RUN_FAILED;
+    r->job_broken = end == SHARED_BROKEN;
+    if (r->job_broken) text_copy(r->text, sizeof r->text, "a process of the job has ended, or does not answer");
+}
+
 /* Host time covers ranks and events, not building. */
 static void run(struct world *w, uint64_t seed)
 {
@@ -201,7 +219,7 @@ static void run(struct world *w, uint64_t seed)
     double begin = host_seconds();
     begin_heartbeat(w, begin);
     make_tables(w);
-    if (w->load->threads > 1 && !world_alone(w->machine, w->load, w->record)) {
+    if ((w->load->threads > 1 || w->load->hosts) && !world_alone(w->machine, w->load, w->record)) {
         team_run(w, seed);
     } else {
         world_make_ranks(w, seed);
@@ -209,6 +227,10 @@ static void run(struct world *w, uint64_t seed)
         loop(w);
     }
     r->host_s = host_seconds() - begin;
+    if (w->load->hosts) {
+        end_shared(w);
+        return;
+    }
     if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
     if (w->nfinished == w->nrank && !w->failed) {
         collect(w);
@@ -250,7 +272,15 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
         .eager_only = (!load->timed || load->no_synchronous) && software_all_eager(&m->software, load->largest_message),
         .noisy = m->noise.compute_cv > 0,
     };
+    struct published published = {.lock = PTHREAD_MUTEX_INITIALIZER};
     pool.arena = w.scratch;
+    if (load->hosts) {
+        int end;
+        CHECK(!world_alone(m, load, record));
+        team_part(load, load->hosts->rank, &w.first, &end);
+        w.nown = end - w.first;
+        if (load->hosts->rank > 0) w.published = &published;
+    }
     out->nrank = load->nrank;
     name_stages(out, load->nstage, load->stage_name);
     bool ok = build(&w, e);
@@ -259,5 +289,11 @@ bool world_run(const struct machine_spec *m, const struct world_load *load, cons
     fiber_pool_destroy(w.fibers);
     sim_destroy(w.sim);
     arena_destroy(w.scratch);
+    free(published.interval);
     return ok;
+}
+
+void world_part(const struct world_load *load, int *first, int *end)
+{
+    team_part(load, load->hosts ? load->hosts->rank : 0, first, end);
 }

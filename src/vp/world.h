@@ -8,6 +8,7 @@
 #include "base/arena.h"
 #include "base/err.h"
 #include "comm/comm.h"
+#include "hosts/hosts.h"
 #include "measure/run_result.h"
 #include "spec/machine_spec.h"
 #include "spec/run_spec.h"
@@ -32,6 +33,8 @@ struct world_load {
     bool foreign;   /* what the program does wrong ends the run RUN_FAILED and is no CHECK */
     bool leftovers; /* of a foreign program: messages that nobody has received at its end are no failure */
     int threads;     /* host threads; 0: one. More act where world_alone lets them, and on no result */
+    const struct hosts *hosts; /* processes that share the run, each with a part of the ranks; NULL: only this one */
+    int job_run;               /* number of the run among those of these processes */
     uint64_t delays; /* for tests: threads stop for a while at random, by this seed; 0: they do not */
     const int *order; /* (nrank) in which order ranks first go on the host, NULL: by number; acts on no result */
 };
@@ -47,6 +50,10 @@ struct world_load {
  *   Returns false only for ERR_CONFIG or ERR_INTERNAL (the machine cannot hold the ranks, no memory). */
 bool world_run(const struct machine_spec *m, const struct world_load *load, const struct record_spec *record,
                uint64_t seed, struct arena *a, struct run_result *out, struct err *e);
+
+/* world_part: the ranks *first .. *end - 1 that this process runs: all, unless load->hosts. Only process 0 then gets
+ * the whole result; the others' has the status and their own ranks' part. */
+void world_part(const struct world_load *load, int *first, int *end);
 
 /* world_alone: why world_run would use one host thread for such a run, whatever load->threads says; NULL: it may use
  * several. A constant text. */

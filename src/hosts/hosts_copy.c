@@ -1,0 +1,66 @@
+/* hosts_copy.c - see hosts_copy.h. Large arrays go in pieces, whose size fits an int.
+ *
+ * No collective operations of MPI: they wait by spinning, which takes the processor from a process
+ * of the same host that still computes, and a process that has gone would hold the others for
+ * ever. */
+#include "hosts/hosts_copy.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "base/check.h"
+
+enum { PIECE = 1 << 26, PAUSE_US = 200, MOST_SUMS = 16 };
+
+/* Messages of one sender with one tag come in the order sent: pieces need no numbers. */
+bool hosts_copy_out(const struct hosts *h, int to, int tag, const void *data, size_t bytes)
+{
+    for (const char *p = data; bytes > 0;) {
+        const size_t n = bytes < PIECE ? bytes : PIECE;
+        if (!h->call->send(to, tag, p, n)) return false;
+        p += n;
+        bytes -= n;
+    }
+    return true;
+}
+
+/* Each piece tells its size; together they are what was asked for, or the sender has another mind. */
+bool hosts_copy_in(const struct hosts *h, int from, int tag, void *data, size_t bytes)
+{
+    for (char *p = data; bytes > 0;) {
+        struct hosts_message m;
+        bool there;
+        if (!h->call->look(from, tag, false, &there, &m)) return false;
+        if (!there) {
+            usleep(PAUSE_US);
+            continue;
+        }
+        if (m.bytes > bytes || !h->call->receive(&m, p)) return false;
+        p += m.bytes;
+        bytes -= m.bytes;
+    }
+    return true;
+}
+
+/* One after the other: what all are told is small, and told a few times a run. */
+bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes)
+{
+    bool ok = true;
+    if (h->rank > 0) return hosts_copy_in(h, 0, tag, data, bytes);
+    for (int i = 1; i < h->size; i++) ok = hosts_copy_out(h, i, tag, data, bytes) && ok;
+    return ok;
+}
+
+/* On process 0 alone, which tells the others what follows from it. */
+bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n)
+{
+    int64_t other[MOST_SUMS];
+    CHECK(n <= MOST_SUMS);
+    const size_t bytes = (size_t)n * sizeof *value;
+    if (h->rank > 0) return hosts_copy_out(h, 0, tag, value, bytes);
+    for (int i = 1; i < h->size; i++) {
+        if (!hosts_copy_in(h, i, tag, other, bytes)) return false;
+        for (int k = 0; k < n; k++) value[k] += other[k];
+    }
+    return true;
+}

@@ -1,0 +1,18 @@
+/* hosts_copy.h - arrays of any size from one process of a job to others. */
+#ifndef HOSTS_HOSTS_COPY_H
+#define HOSTS_HOSTS_COPY_H
+
+#include "hosts/hosts.h"
+
+/* hosts_copy_out: send `bytes` of `data` to process `to`; hosts_copy_in: receive as many from `from`, which must send
+ * as many. Whoever waits sleeps in between: MPI's own waiting would take a processor. */
+bool hosts_copy_out(const struct hosts *h, int to, int tag, const void *data, size_t bytes);
+bool hosts_copy_in(const struct hosts *h, int from, int tag, void *data, size_t bytes);
+
+/* hosts_tell: process 0's `data` to all; called by all. */
+bool hosts_tell(const struct hosts *h, int tag, void *data, size_t bytes);
+
+/* hosts_sum: value (n) summed over the processes, on process 0; called by all. */
+bool hosts_sum(const struct hosts *h, int tag, int64_t *value, int n);
+
+#endif

@@ -1,0 +1,203 @@
+/* shared.c - see shared.h.
+ *
+ * Nothing here is in the way of the simulation: each process has kept what its own ranks left, and
+ * sends it once, in blocks. Process 0 alone has room for all, as far as it is touched. */
+#include "vp/shared.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/digest.h"
+#include "hosts/hosts_copy.h"
+#include "vp/matching.h"
+#include "vp/team.h"
+
+enum tag { TAG_END = 300, TAG_SIZES, TAG_TIMES, TAG_STAGES, TAG_DIGESTS, TAG_LOADS, TAG_OUTPUT, TAG_WAITING };
+
+/* Sums decide, so that all processes come to the same end. */
+enum shared_end shared_end(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    if (w->broken) return SHARED_BROKEN;
+    int64_t v[2] = {w->nfinished, w->failed || w->late};
+    if (!hosts_sum(h, TAG_END, v, 2) || !hosts_tell(h, TAG_END, v, sizeof v)) return SHARED_BROKEN;
+    return v[1] ? SHARED_FAILED : v[0] == w->nrank ? SHARED_FINISHED : SHARED_DEADLOCK;
+}
+
+/* --- outputs ----------------------------------------------------------------------------------- */
+
+/* Which elements, then the elements themselves as one array. */
+static bool send_outputs(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    const struct published *p = w->published;
+    int64_t total = 0, at = 0;
+    for (int64_t i = 0; i < p->n; i++) total += p->interval[i].count;
+    double *x = calloc((size_t)total + 1, sizeof *x);
+    CHECK(x);
+    for (int64_t i = 0; i < p->n; at += p->interval[i++].count)
+        memcpy(x + at, w->load->output[p->interval[i].output].x + p->interval[i].first,
+               (size_t)p->interval[i].count * sizeof *x);
+    int64_t sizes[2] = {p->n, total};
+    const bool ok = hosts_copy_out(h, 0, TAG_SIZES, sizes, sizeof sizes) &&
+                    hosts_copy_out(h, 0, TAG_OUTPUT, p->interval, (size_t)p->n * sizeof *p->interval) &&
+                    hosts_copy_out(h, 0, TAG_OUTPUT, x, (size_t)total * sizeof *x);
+    free(x);
+    return ok;
+}
+
+/* Elements that several processes published would be equal (comm.h: one rank each). */
+static bool receive_outputs(struct world *w, int from)
+{
+    const struct hosts *h = w->load->hosts;
+    int64_t sizes[2], at = 0;
+    if (!hosts_copy_in(h, from, TAG_SIZES, sizes, sizeof sizes)) return false;
+    struct interval *interval = calloc((size_t)sizes[0] + 1, sizeof *interval);
+    double *x = calloc((size_t)sizes[1] + 1, sizeof *x);
+    CHECK(interval && x);
+    const bool ok = hosts_copy_in(h, from, TAG_OUTPUT, interval, (size_t)sizes[0] * sizeof *interval) &&
+                    hosts_copy_in(h, from, TAG_OUTPUT, x, (size_t)sizes[1] * sizeof *x);
+    for (int64_t i = 0; ok && i < sizes[0]; at += interval[i++].count)
+        memcpy(w->load->output[interval[i].output].x + interval[i].first, x + at,
+               (size_t)interval[i].count * sizeof *x);
+    free(x);
+    free(interval);
+    return ok;
+}
+
+/* --- times and accounts ------------------------------------------------------------------------ */
+
+/* Node i's injection port is resource i; at the level that processes share, nothing else is loaded. */
+static bool send_part(struct world *w, const uint64_t *digest)
+{
+    const struct hosts *h = w->load->hosts;
+    const size_t n = (size_t)w->nown, row = (size_t)w->nstage + 1;
+    int nlink;
+    const struct link_load *load = net_links(w->net, &nlink);
+    bool ok = hosts_copy_out(h, 0, TAG_TIMES, w->result->finish_ps + w->first, n * sizeof(int64_t)) &&
+              hosts_copy_out(h, 0, TAG_DIGESTS, digest, n * sizeof *digest) &&
+              hosts_copy_out(h, 0, TAG_STAGES, w->result->stage + (size_t)w->first * row,
+                             n * row * sizeof *w->result->stage);
+    for (int i = w->first; ok && nlink > 0 && i < w->first + w->nown; i++)
+        ok = hosts_copy_out(h, 0, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
+    return ok && send_outputs(w);
+}
+
+/* The other end of send_part, in its order. */
+static bool receive_part(struct world *w, int from, uint64_t *digest)
+{
+    const struct hosts *h = w->load->hosts;
+    const size_t row = (size_t)w->nstage + 1;
+    int first, end, nlink;
+    team_part(w->load, from, &first, &end);
+    const size_t n = (size_t)(end - first);
+    /* The world's own loads, which copy_links copies later. */
+    struct link_load *load = (struct link_load *)net_links(w->net, &nlink);
+    bool ok = hosts_copy_in(h, from, TAG_TIMES, w->result->finish_ps + first, n * sizeof(int64_t)) &&
+              hosts_copy_in(h, from, TAG_DIGESTS, digest + first, n * sizeof *digest) &&
+              hosts_copy_in(h, from, TAG_STAGES, w->result->stage + (size_t)first * row,
+                            n * row * sizeof *w->result->stage);
+    for (int i = first; ok && nlink > 0 && i < end; i++)
+        ok = hosts_copy_in(h, from, TAG_LOADS, &load[w->placement.node[i]], sizeof *load);
+    return ok && receive_outputs(w, from);
+}
+
+/* In rank order, as collect in world.c does: the same bits. */
+static void add_up(struct world *w, const uint64_t *digest)
+{
+    struct run_result *r = w->result;
+    r->digest = digest_mix(DIGEST_START, sim_digest(w->sim));
+    for (int i = 0; i < w->nrank; i++) {
+        if (r->finish_ps[i] > r->makespan_ps) r->makespan_ps = r->finish_ps[i];
+        r->digest = digest_mix(digest_mix(r->digest, digest[i]), (uint64_t)r->finish_ps[i]);
+    }
+    for (int i = 0; i < w->nrank; i++) {
+        struct stage_time *row = r->stage + (size_t)i * ((size_t)w->nstage + 1);
+        row[w->nstage].wait_ps += r->makespan_ps - r->finish_ps[i];
+        for (int k = 0; k < w->nstage; k++) r->messages += row[k].messages, r->bytes += row[k].bytes;
+    }
+}
+
+/* One process after the other: process 0 has room for one more part at a time beside the result. */
+bool shared_collect(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    struct run_result *r = w->result;
+    int64_t switches = fiber_pool_switches(w->fibers);
+    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
+    /* By number of the rank; only its own part on processes but 0. */
+    uint64_t *digest = TAKE(w->scratch, w->nrank, uint64_t);
+    for (int i = w->first; i < w->first + w->nown; i++) {
+        r->finish_ps[i] = w->vp[i].finish;
+        digest[i] = w->vp[i].digest;
+    }
+    /* Stacks are no longer needed, and make room for what comes. */
+    fiber_pool_destroy(w->fibers);
+    w->fibers = NULL;
+    if (!hosts_sum(h, TAG_SIZES, &switches, 1)) return false;
+    r->switches = switches;
+    if (h->rank > 0) return send_part(w, digest + w->first);
+    for (int i = 1; i < h->size; i++)
+        if (!receive_part(w, i, digest)) return false;
+    add_up(w, digest);
+    return true;
+}
+
+/* --- deadlocks --------------------------------------------------------------------------------- */
+
+/* What deadlock_explain says of a rank that waits. */
+struct waiting {
+    struct comm_request request;
+    int32_t rank, stage, what, line;
+    char file[64], request_file[64];
+};
+
+/* Texts are copied: addresses of one process mean nothing in another. */
+static void describe(const struct vp *v, struct waiting *x)
+{
+    *x = (struct waiting){.rank = v->comm.rank, .stage = v->stage, .what = v->waiting_for, .line = v->comm.line};
+    if (v->comm.file) strncpy(x->file, v->comm.file, sizeof x->file - 1);
+    if (!v->waiting) return;
+    x->request = *v->waiting;
+    if (v->waiting->file) strncpy(x->request_file, v->waiting->file, sizeof x->request_file - 1);
+}
+
+/* As if it were a rank of this process. */
+static void put_in_place(struct world *w, const struct waiting *x)
+{
+    struct vp *v = &w->vp[x->rank];
+    struct comm_request *r = TAKE(w->scratch, 1, struct comm_request);
+    *r = x->request;
+    r->file = arena_text(w->scratch, x->request_file);
+    v->comm.rank = x->rank;
+    v->comm.file = arena_text(w->scratch, x->file);
+    v->comm.line = x->line;
+    v->stage = x->stage;
+    v->waiting_for = (enum waiting_for)x->what;
+    v->waiting = r;
+    v->world = w;
+}
+
+/* Ranks that have finished are not sent: in fresh memory they wait for nothing, which is what they are asked for. */
+bool shared_gather_waiting(struct world *w)
+{
+    const struct hosts *h = w->load->hosts;
+    int64_t inside = w->barrier_count;
+    bool ok = hosts_sum(h, TAG_WAITING, &inside, 1);
+    w->barrier_count = (int)inside;
+    struct waiting x = {.rank = -1};
+    if (h->rank > 0) {
+        for (int i = w->first; ok && i < w->first + w->nown; i++) {
+            if (w->vp[i].waiting_for == WAITING_NOTHING) continue;
+            describe(&w->vp[i], &x);
+            ok = hosts_copy_out(h, 0, TAG_WAITING, &x, sizeof x);
+        }
+        x.rank = -1; /* no more */
+        return ok && hosts_copy_out(h, 0, TAG_WAITING, &x, sizeof x);
+    }
+    /* Every rank here tells the same count of a barrier. */
+    for (int i = w->first; i < w->first + w->nown; i++) w->vp[i].world->barrier_count = (int)inside;
+    for (int from = 1; ok && from < h->size; from++)
+        while ((ok = hosts_copy_in(h, from, TAG_WAITING, &x, sizeof x)) && x.rank >= 0) put_in_place(w, &x);
+    return ok;
+}

@@ -1,0 +1,111 @@
+#!/usr/bin/env bats
+# spread.bats - one run on the processes of an MPI job, with Open MPI and with MPICH.
+
+load helper
+
+# start FAMILY N COMMAND...: N processes of a job; as root, on fewer processors than processes.
+start() {
+    local family=$1 n=$2
+    shift 2
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+    # What MPI's libraries keep to their end is no leak of ours.
+    ASAN_OPTIONS=detect_leaks=0 timeout -k 5 120 "mpirun.$family" -n "$n" "$@"
+}
+
+# needs FAMILY: skip the test where this build or this host does not have it.
+needs() {
+    [ -e "$(dirname "$MIMDSIM")/mimdsim-hosts-$1.so" ] || skip "built without $1"
+    command -v "mpirun.$1" >/dev/null || skip "no mpirun.$1"
+}
+
+scenario() {
+    printf '%s\n' 'schema_version: 1' 'question: Processes?' 'machine: t3e-300' 'model: {generator: serial-chain}' \
+        'ranks: n' 'level: loggp' 'sweep: {kernel: [dynamics, alltoall], n: [2, 64, 100]}' 'record: {links: true}' >t.yaml
+}
+
+# All that a run left but what the host had to do with it.
+rows() {
+    sql "$1" "SELECT config_hash, kernel, n, P, status, text, makespan_ps, messages, sent_bytes, events, residual, digest
+              FROM run ORDER BY config_hash"
+    for table in rank_stage error_check baseline link_load stage; do
+        sql "$1" "SELECT r.config_hash, t.* FROM $table t JOIN run r ON r.id = t.run_id" | cut -d'|' -f1,3- | sort
+    done
+}
+
+is_spread() {
+    needs "$1"
+    scenario
+    works mimdsim run t.yaml -o one.db --quiet
+    table=$output
+    for n in 1 2 3; do
+        rm -f all.db
+        works start "$1" $n "$MIMDSIM" run t.yaml --spread mpi -o all.db --quiet
+        stdout_is "$table"
+        diff <(rows one.db) <(rows all.db)
+    done
+    [ "$(rows all.db | wc -l)" -gt 1000 ]
+    # Several threads in each process; what is stored is not made again.
+    works start "$1" 2 "$MIMDSIM" run t.yaml --spread mpi --threads 2 --force -o all.db --quiet
+    diff <(rows one.db) <(rows all.db)
+    works start "$1" 2 "$MIMDSIM" run t.yaml --spread mpi -o all.db --quiet
+    sql_is all.db 'SELECT max(id) = count(*) OR max(id) = 2 * count(*) FROM run' 1
+}
+
+@test "processes of Open MPI share a run" { is_spread openmpi; }
+@test "processes of MPICH share a run" { is_spread mpich; }
+
+stays_in_one_process() {
+    needs "$1"
+    scenario
+    works mimdsim run t.yaml --set level=link --set n=8 -o one.db --quiet
+    works start "$1" 2 "$MIMDSIM" run t.yaml --set level=link --set n=8 --spread mpi -o all.db
+    stderr_says 'in one process: messages wait for each other at links'
+    diff <(rows one.db) <(rows all.db)
+    # a failure is told in the words of one process
+    late=(--set machine.node.flop_rate='1 flop/s' --set kernel.steps=300 --set n=64 --set kernel=dynamics)
+    fails_with 1 mimdsim run t.yaml -q -o one.db "${late[@]}"
+    fails_with 1 start "$1" 3 "$MIMDSIM" run t.yaml -q --spread mpi -o all.db "${late[@]}"
+    sql_is all.db "SELECT count(*) FROM run WHERE status = 'failed' AND text LIKE 'simulated time ends%'" 1
+    diff <(rows one.db) <(rows all.db)
+}
+
+@test "what needs the order of time stays in one process, with Open MPI" { stays_in_one_process openmpi; }
+@test "what needs the order of time stays in one process, with MPICH" { stays_in_one_process mpich; }
+
+# A process of the job is killed while a run of several seconds is made.
+leaves_a_row() {
+    needs "$1"
+    scenario
+    printf '%s\n' '#!/bin/sh' 'echo $$ >>pids' 'exec "$@"' >noted
+    chmod +x noted
+    start "$1" 2 ./noted "$MIMDSIM" run t.yaml --spread mpi -q -o all.db --set kernel=dynamics --set n=64 \
+        --set kernel.steps=3000 --set kernel.refinement=as-given >/dev/null 2>&1 3>&- &
+    job=$!
+    for ((i = 0; i < 300; i++)); do
+        [ "$(sqlite3 -readonly all.db "SELECT count(*) FROM run" 2>/dev/null)" != 1 ] || break
+        sleep 0.1
+    done
+    kill -9 "$(tail -n 1 pids)"
+    ! wait $job
+    sql_is all.db "SELECT status, text LIKE '%one of them died%' FROM run" 'failed|1'
+}
+
+@test "a process that dies leaves a row that says so, with Open MPI" { leaves_a_row openmpi; }
+@test "a process that dies leaves a row that says so, with MPICH" { leaves_a_row mpich; }
+
+@test "--spread and what it does not go with" {
+    scenario
+    fails_with 64 mimdsim run t.yaml --spread pvm
+    stderr_says "--spread 'pvm': expected mpi"
+    fails_with 64 mimdsim run t.yaml --spread mpi --campaign mpi
+    stderr_says 'a job does one or the other'
+    [ ! -e mimdsim.db ]
+}
+
+@test "a build without that MPI says so" {
+    cp "$MIMDSIM" lonely
+    export MIMDSIM_DATA
+    scenario
+    PMI_RANK=0 fails_with 69 ./lonely run t.yaml --spread mpi
+    stderr_says 'built without MPICH'
+}

@@ -1,0 +1,294 @@
+/* test_shared.c - one run shared by the processes of a job: whatever their number, process 0 has every number and every
+ * word of a run on one. The processes are threads here, and their messages queues in memory (a table of hosts.h). */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/random.h"
+#include "vp/world.h"
+
+enum { RANKS = 97, MOST = 8 };
+
+/* --- a job of threads --- */
+
+struct parcel {
+    struct parcel *next;
+    int from, tag;
+    size_t bytes;
+    char data[];
+};
+
+static struct mailbox {
+    pthread_mutex_t lock;
+    struct parcel *first, **end;
+} box[MOST];
+static _Thread_local int me;
+
+static bool send(int to, int tag, const void *data, size_t bytes)
+{
+    struct parcel *p = malloc(sizeof *p + bytes);
+    assert_non_null(p);
+    *p = (struct parcel){.from = me, .tag = tag, .bytes = bytes};
+    if (bytes > 0) memcpy(p->data, data, bytes);
+    pthread_mutex_lock(&box[to].lock);
+    *box[to].end = p;
+    box[to].end = &p->next;
+    pthread_mutex_unlock(&box[to].lock);
+    return true;
+}
+
+/* It is through at once, or so it seems only later. */
+static bool send_begin(int to, int tag, const void *data, size_t bytes, struct hosts_request *r)
+{
+    r->word[0] = 3;
+    return send(to, tag, data, bytes);
+}
+
+static bool send_done(struct hosts_request *r, bool *done)
+{
+    *done = r->word[0]-- <= 1;
+    return true;
+}
+
+static struct parcel **find(int from, int tag)
+{
+    struct parcel **p = &box[me].first;
+    while (*p && ((from != HOSTS_ANY && (*p)->from != from) || (tag != HOSTS_ANY && (*p)->tag != tag)))
+        p = &(*p)->next;
+    return p;
+}
+
+static bool look(int from, int tag, bool wait, bool *there, struct hosts_message *m)
+{
+    assert_false(wait);
+    pthread_mutex_lock(&box[me].lock);
+    const struct parcel *p = *find(from, tag);
+    *there = p != NULL;
+    if (p) *m = (struct hosts_message){p->from, p->tag, p->bytes};
+    pthread_mutex_unlock(&box[me].lock);
+    return true;
+}
+
+static bool receive(const struct hosts_message *m, void *data)
+{
+    pthread_mutex_lock(&box[me].lock);
+    struct parcel **at = find(m->from, m->tag), *p = *at;
+    *at = p->next;
+    if (!p->next) box[me].end = at;
+    pthread_mutex_unlock(&box[me].lock);
+    if (p->bytes > 0) memcpy(data, p->data, p->bytes);
+    free(p);
+    return true;
+}
+
+static const struct hosts_calls calls = {.table = HOSTS_TABLE, .library = "threads", .send = send,
+                                         .send_begin = send_begin, .send_done = send_done, .look = look,
+                                         .receive = receive};
+
+/* --- runs --- */
+
+static const char *const stage_name[] = {"first", "second"};
+
+static struct machine_spec crossbar(int nodes)
+{
+    struct machine_spec m = {.name = "test"};
+    m.topology = (struct topology_spec){
+        .family = TOPOLOGY_CROSSBAR, .ndim = 1, .dims = {nodes}, .nodes_per_router = 1, .processors_per_node = 1};
+    m.node = (struct node_spec){.flop_rate = 1e9, .clock = 1e9, .copy_bandwidth = 1e9};
+    m.network = (struct network_spec){.level = LEVEL_LOGGP,
+                                      .link_bandwidth = 1e9,
+                                      .hop_latency = 100e-9,
+                                      .end_latency = 300e-9,
+                                      .virtual_channels = 1};
+    m.software = (struct software_spec){.send_overhead = 2e-6,
+                                        .recv_overhead = 3e-6,
+                                        .barrier = BARRIER_HARDWARE,
+                                        .barrier_time = 1e-6,
+                                        .eager_bytes = -1};
+    return m;
+}
+
+struct outcome {
+    struct arena *arena;
+    struct run_result r;
+    double output[RANKS * 3];
+};
+
+struct process {
+    pthread_t thread;
+    struct hosts hosts;
+    world_program *program;
+    int nrank, threads, number;
+    bool alone;
+    struct outcome out;
+};
+
+static void *execute(void *argument)
+{
+    struct process *p = argument;
+    const struct machine_spec m = crossbar(p->nrank);
+    const struct record_spec record = {.links = true};
+    const struct comm_output output = {p->out.output, RANKS * 3};
+    struct err e;
+    err_clear(&e);
+    me = p->hosts.rank;
+    p->out.arena = arena_create();
+    const struct world_load load = {.nrank = p->nrank, .program = p->program, .nstage = 2, .stage_name = stage_name,
+                                    .largest_message = -1, .threads = p->threads, .output = &output, .noutput = 1,
+                                    .hosts = p->alone ? NULL : &p->hosts, .job_run = p->number};
+    if (!world_run(&m, &load, &record, 7, p->out.arena, &p->out.r, &e)) fail_msg("%s", e.text);
+    return NULL;
+}
+
+static void job(struct process *p, int size, world_program *program, int nrank, int threads)
+{
+    static int number;
+    number++;
+    for (int i = 0; i < size; i++) {
+        pthread_mutex_init(&box[i].lock, NULL);
+        box[i].end = &box[i].first;
+    }
+    for (int i = 0; i < size; i++) {
+        p[i] = (struct process){.hosts = {i, size, &calls}, .program = program, .nrank = nrank, .threads = threads,
+                                .number = number};
+        assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
+    }
+    for (int i = 0; i < size; i++) pthread_join(p[i].thread, NULL);
+    for (int i = 0; i < size; i++) assert_null(box[i].first); /* nothing is left over */
+}
+
+static void every_number_of_processes(world_program *program, int nrank, enum run_status status)
+{
+    static struct process one, many[MOST];
+    one = (struct process){.program = program, .nrank = nrank, .alone = true};
+    execute(&one);
+    assert_int_equal(one.out.r.status, status);
+    for (int size = 1; size <= MOST; size += size < 4 ? 1 : 4)
+        for (int threads = 1; threads <= 3; threads += 2) {
+            job(many, size, program, nrank, threads);
+            const struct run_result *a = &one.out.r, *b = &many[0].out.r;
+            assert_int_equal(a->status, b->status);
+            assert_string_equal(a->text, b->text);
+            for (int i = 1; i < size; i++) assert_int_equal(many[i].out.r.status, status);
+            if (status == RUN_OK) {
+                assert_int_equal(a->digest, b->digest);
+                assert_int_equal(a->makespan_ps, b->makespan_ps);
+                assert_int_equal(a->messages, b->messages);
+                assert_int_equal(a->bytes, b->bytes);
+                assert_memory_equal(a->stage, b->stage, (size_t)a->nrank * (size_t)a->nstage * sizeof *a->stage);
+                assert_memory_equal(a->finish_ps, b->finish_ps, (size_t)a->nrank * sizeof *a->finish_ps);
+                assert_int_equal(a->nlink, b->nlink);
+                assert_memory_equal(a->link, b->link, (size_t)a->nlink * sizeof *a->link);
+                assert_memory_equal(one.out.output, many[0].out.output, sizeof one.out.output);
+            }
+            for (int i = 0; i < size; i++) arena_destroy(many[i].out.arena);
+        }
+    arena_destroy(one.out.arena);
+}
+
+/* Exchanges at all distances, barriers in between, and an output. */
+static void exchanges(struct comm *c, void *context)
+{
+    (void)context;
+    const int rank = comm_rank(c), size = comm_size(c);
+    struct random r = random_make(3, (uint64_t)rank, 0);
+    double out[40], in[40];
+    for (int step = 0; step < 12; step++) {
+        const int d = 1 + (step * step * 7 + step) % (size - 1), n = 1 + step * 3;
+        const int to = (rank + d) % size, from = (rank - d + size) % size;
+        const struct work w = {.flop = (int64_t)random_below(&r, 4000), .div = 3};
+        comm_stage(c, step > 5);
+        comm_work(c, &w);
+        for (int k = 0; k < 3; k++) {
+            for (int i = 0; i < n; i++) out[i] = rank * 1000.0 + step * 10 + k;
+            comm_send(c, to, step, out, n * (int64_t)sizeof *out);
+        }
+        if (step == 4) comm_send(c, to, 77, NULL, 1 << 20); /* a size without content */
+        if (step % 4 == 0) comm_barrier(c);
+        for (int k = 0; k < 3; k++) {
+            comm_recv(c, from, step, in, n * (int64_t)sizeof *in);
+            assert_true(in[0] == from * 1000.0 + step * 10 + k && in[n - 1] == in[0]);
+        }
+        if (step == 4) comm_recv(c, from, 77, NULL, 1 << 20);
+    }
+    comm_publish(c, 0, rank, 1, in);
+    comm_publish(c, 0, RANKS + 2 * rank, 2, in + 1);
+}
+
+static void exchanges_are_the_same(void **state)
+{
+    (void)state;
+    every_number_of_processes(exchanges, RANKS, RUN_OK);
+    every_number_of_processes(exchanges, 3, RUN_OK); /* some processes have no rank */
+}
+
+static void stuck_ring(struct comm *c, void *context)
+{
+    char data[16];
+    exchanges(c, context);
+    const int rank = comm_rank(c), size = comm_size(c);
+    if (rank % 3 == 0) comm_recv(c, (rank + 3) % size / 3 * 3, 42, data, sizeof data);
+}
+
+static void stuck_at_a_barrier(struct comm *c, void *context)
+{
+    char data[16];
+    exchanges(c, context);
+    if (comm_rank(c) == 50) comm_recv(c, 51, 9, data, sizeof data);
+    comm_barrier(c);
+}
+
+static void a_deadlock_is_explained_in_the_same_words(void **state)
+{
+    (void)state;
+    every_number_of_processes(stuck_ring, RANKS, RUN_DEADLOCK);
+    every_number_of_processes(stuck_at_a_barrier, RANKS, RUN_DEADLOCK);
+}
+
+/* Simulated time ends at one rank: the run has failed on every process. */
+static void too_long(struct comm *c, void *context)
+{
+    exchanges(c, context);
+    if (comm_rank(c) == 60)
+        for (int i = 0; i < 100; i++) comm_elapse(c, INT64_MAX);
+    exchanges(c, context);
+}
+
+static void a_failure_ends_all_processes(void **state)
+{
+    (void)state;
+    static struct process p[MOST];
+    for (int size = 2; size <= 4; size++) {
+        static int number = 5000;
+        for (int i = 0; i < size; i++) {
+            box[i].first = NULL; /* letters of a run that failed are nobody's */
+            box[i].end = &box[i].first;
+        }
+        for (int i = 0; i < size; i++) {
+            p[i] = (struct process){.hosts = {i, size, &calls}, .program = too_long, .nrank = RANKS, .threads = 1,
+                                    .number = number + size};
+            assert_int_equal(pthread_create(&p[i].thread, NULL, execute, &p[i]), 0);
+        }
+        for (int i = 0; i < size; i++) {
+            pthread_join(p[i].thread, NULL);
+            assert_int_equal(p[i].out.r.status, RUN_FAILED);
+            assert_false(p[i].out.r.job_broken);
+            arena_destroy(p[i].out.arena);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exchanges_are_the_same),
+        cmocka_unit_test(a_deadlock_is_explained_in_the_same_words),
+        cmocka_unit_test(a_failure_ends_all_processes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
