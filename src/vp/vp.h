@@ -88,14 +88,12 @@ struct world {
     uint32_t barrier_path; /* of barrier_latest, then of barrier_release */
     int barrier_count; /* hardware barrier: ranks inside */
     sim_ps barrier_latest, barrier_release;
-
     const struct vp *late; /* the rank whose clock would pass the end of time, NULL: none */
     int64_t background_events; /* of other jobs' traffic, pending */
     sim_ps server_free; /* kernel server */
     uint32_t server_path; /* of the message end that it served last: when it began; whose that was */
     int served_rank, served_stage;
-    int64_t server_bytes;
-    int64_t span_capacity;
+    int64_t server_bytes, span_capacity;
     const struct world_load *load;
 };
 
