@@ -9,7 +9,7 @@
 
 /* Fewer ranks on each thread than this, and messages between threads cost more than a thread saves
  * (bench/bench_threads). */
-enum { LEAST_RANKS = 512 };
+enum { LEAST_RANKS = 1024 };
 
 /* What all ranks share, and each rank's own memory. */
 struct launch {
