@@ -89,6 +89,7 @@ void post_put(struct post *p, int process, const struct letter *l, const void *d
 {
     struct bag *b = &p->bag[process];
     const size_t bytes = l->hollow ? 0 : (size_t)l->bytes, size = sizeof *l + whole(bytes);
+    /* Room doubles, so that a letter is copied a few times at most while its bag grows. */
     pthread_mutex_lock(&b->lock);
     if (b->used + size > b->room) {
         b->room = 2 * (b->used + size) + 4096;
@@ -131,6 +132,7 @@ static bool send_bags(struct post *p, bool *busy)
         if (used > 0) b->data = NULL, b->used = b->room = 0;
         pthread_mutex_unlock(&b->lock);
         if (used == 0) continue;
+        /* The bag goes as it is, and a new one takes its place. */
         struct sending *s = calloc(1, sizeof *s);
         CHECK(s);
         s->data = data;
@@ -240,6 +242,7 @@ static bool judge_wave(struct post *p)
 static bool count(struct post *p, bool idle, bool failed)
 {
     if (p->answers >= 0 && p->answers == p->h->size) return judge_wave(p);
+    /* A process answers between two turns. One that is silent for very long has gone, and with it its ranks. */
     if (p->answers >= 0) return host_seconds() - p->asked < PATIENCE_S;
     if (!idle && !failed) return true;
     p->wave = (struct count){.wave = p->wave.wave + 1};

@@ -132,6 +132,7 @@ bool shared_collect(struct world *w)
         digest[i] = w->vp[i].digest;
     }
     /* Stacks are no longer needed, and make room for what comes. */
+    /* (A run that did not end well is explained from them, and does not come here.) */
     fiber_pool_destroy(w->fibers);
     w->fibers = NULL;
     if (!hosts_sum(h, TAG_SIZES, &switches, 1)) return false;
@@ -186,6 +187,7 @@ bool shared_gather_waiting(struct world *w)
     bool ok = hosts_sum(h, TAG_WAITING, &inside, 1);
     w->barrier_count = (int)inside;
     struct waiting x = {.rank = -1};
+    /* A record for each rank that waits, and one that says there are no more. */
     if (h->rank > 0) {
         for (int i = w->first; ok && i < w->first + w->nown; i++) {
             if (w->vp[i].waiting_for == WAITING_NOTHING) continue;

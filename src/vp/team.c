@@ -41,6 +41,7 @@ static void run_share(struct worker *k, struct share *s)
     struct world *w = &s->world;
     atomic_store(&s->state, RUNNING);
     delay(k);
+    /* Messages are taken from and given back to this thread's own pool, whoever made them. */
     w->pool = &k->pool;
     /* Its ranks are made by the thread that begins with them, which brings their memory. */
     if (!s->made) world_make_ranks(w, t->seed);
@@ -50,6 +51,7 @@ static void run_share(struct worker *k, struct share *s)
     world_resume(w, (int64_t)TURN * w->nown);
     team_send_out(t, s);
     tell_heartbeat(s);
+    /* A rank has failed: nobody begins another turn. */
     if (w->stopped) {
         atomic_store(&t->stop, true);
         team_wake_all(t);

@@ -201,11 +201,13 @@ static void end_shared(struct world *w)
     struct run_result *r = w->result;
     enum shared_end end = shared_end(w);
     const bool chief = w->load->hosts->rank == 0;
+    /* Whatever the processes are asked for, one that does not answer breaks the job. */
     if (end == SHARED_FINISHED && !shared_collect(w)) end = SHARED_BROKEN;
     if (end == SHARED_FINISHED && chief) copy_links(w);
     if (end == SHARED_DEADLOCK && !shared_gather_waiting(w)) end = SHARED_BROKEN;
     if (end == SHARED_DEADLOCK && chief) deadlock_explain(w);
     if (end == SHARED_FINISHED) return;
+    /* As on one process: times of a deadlock are kept, those of a failure are not. */
     if (end != SHARED_DEADLOCK) forget_parts(w);
     r->status = end == SHARED_DEADLOCK ? RUN_DEADLOCK : RUN_FAILED;
     r->job_broken = end == SHARED_BROKEN;
