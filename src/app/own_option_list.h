@@ -27,6 +27,7 @@
     X("plot", "title", "TEXT", "of the figure")                                                               \
     X("plot", "as", "NAME", "name of the files (default: what is over what)")                                 \
     X("plot", "columns", NULL, "list what --x, --y, --by and --where can name in this database")              \
+    X("compare", "on", "SCENARIO", "what machines run to be compared (default speedup-t3e)")                  \
     X("accuracy", "within", "ERROR", "recommend the cheapest way within this error, such as 2%")              \
     X("netcheck", "within", "PERCENT", "require every error to be within this, such as 2%")                   \
     X("netcheck", "stated", NULL, "print the stated accuracies and run nothing")                              \

@@ -12,6 +12,7 @@
     X(cmd_claims, "claims", "judge the claims of the paper by a database")                                             \
     X(cmd_plot, "plot", "draw a figure from a database")                                                               \
     X(cmd_timeline, "timeline", "show when ranks compute, send and wait: picture, text or trace")                      \
+    X(cmd_compare, "compare", "compare machines, scenarios, runs or databases")                                        \
     X(cmd_why, "why", "explain what limits a run, and what would help")                                                \
     X(cmd_explain, "explain", "show what a scenario will run and cost")                                                \
     X(cmd_check, "check", "validate files without running")                                                            \

@@ -1,0 +1,61 @@
+#!/usr/bin/env bats
+# compare.bats - machines, databases and runs side by side: settings, ratios, where the time goes.
+
+load helper
+
+@test "two machines: what differs, times with ratios, where the time goes, a figure" {
+    works mimdsim compare t3e-300 paragon --set n=8,16 --set level=loggp -o c.db
+    stdout_says 'A  t3e-300: 2 runs'
+    stdout_says 'machine.network.link.bandwidth       480 MB/s                       175 MB/s'
+    stdout_says 'Where the time goes at n 16'
+    stdout_says figures/compare-t3e-300-paragon.png
+    [ -s figures/compare-t3e-300-paragon.svg ]
+    # the ratio is that of the stored times, and is their geometric mean in the first sentence
+    ratio=$(sql c.db "SELECT printf('%.4g', exp(avg(ln(1.0 * p.makespan_ps / t.makespan_ps)))) FROM run p JOIN run t USING (n)
+        WHERE p.machine = 'paragon' AND t.machine = 't3e-300'")
+    stdout_says "B takes $ratio times as long as A (geometric mean of 2 points"
+    # nothing is run twice
+    works mimdsim compare t3e-300 paragon --set n=8,16 --set level=loggp -o c.db --quiet
+    sql_is c.db 'SELECT count(*) FROM run' 4
+}
+
+@test "names, runs and databases are sides as well, and only common points are compared" {
+    works mimdsim run speedup-t3e --set n=8,16 --set level=loggp -o c.db --quiet
+    works mimdsim run speedup-t3e --set n=16,32 --set level=loggp --set machine.node.call='5 us' --name 'slow, calls' -o c.db --quiet
+    works mimdsim compare t3e-300 'slow, calls' --set n=8,16 --set level=loggp -o c.db
+    stdout_says 'machine.node.call                    50 ns                          5 us'
+    stdout_says 'Left out: 2 points that not all sides have.'
+    [ "$(printf '%s\n' "$output" | grep -c '^machine\.')" = 1 ]
+    works mimdsim compare 2 3 -o c.db --json
+    json_is_valid
+    json_is '$.differences[0].key' machine.node.call
+    json_is '$.points[0].sides[0].ratio' 1
+    works mimdsim run speedup-t3e --set n=16 --set level=loggp -o d.db --quiet
+    works mimdsim compare c.db d.db
+    stdout_says 'B takes 1 times as long as A'
+}
+
+@test "repeated runs have ratios with an interval" {
+    for db in a b; do
+        [ $db = a ] && cv='10 %' || cv='20 %'
+        works mimdsim run speedup-t3e --set n=16 --set level=loggp --set repetitions=4 --set machine.noise.compute="$cv" -o $db.db --quiet
+    done
+    works mimdsim compare a.db b.db
+    stdout_says ' +- '
+    stdout_says 'half of the 95 % confidence interval'
+    stdout_says 'machine.noise.compute'
+}
+
+@test "what is no side is told with the nearest name" {
+    fails_with 66 mimdsim compare t3e-300 paragn --set n=4 --set level=loggp -o c.db
+    stderr_says "did you mean 'paragon'?"
+    fails_with 66 mimdsim compare 1 99 -o c.db
+    stderr_says "'run 99' has no run that ended well"
+    fails_with 64 mimdsim compare t3e-300
+    works mimdsim run speedup-t3e --set n=4,8 --set level=loggp -o x.db --quiet
+    works mimdsim run speedup-t3e --set n=16,32 --set level=loggp -o y.db --quiet
+    fails_with 66 mimdsim compare x.db y.db
+    stderr_says 'nothing can be compared point by point'
+    MIMDSIM_GNUPLOT=/no/gnuplot fails_with 69 mimdsim compare t3e-300 paragon --set n=4 --set level=loggp -o c.db
+    stdout_says 'B takes '
+}
