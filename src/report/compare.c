@@ -284,6 +284,7 @@ bool compare_make(struct compare *c, int n, const struct compare_side *side, str
     for (int i = 0; i < n; i++) c->side[i] = side[i];
     struct reading r = {.c = c, .key = TAKE(c->arena, MOST_KEYS, struct key), .e = e};
     if (!read_settings(&r, e)) return false;
+    /* In this order: what tells points apart is no difference between the sides. */
     choose_point_keys(&r);
     list_differences(&r);
     if (!read_runs(&r, e)) return false;
@@ -297,6 +298,7 @@ bool compare_make(struct compare *c, int n, const struct compare_side *side, str
     for (int i = 0; i < c->npoint; i++) apart = apart || strstr(c->point[i].name, "ranks ") != NULL;
     const int sizes = !apart && r.npoint_key > 1 && strcmp(r.point_key[0]->name, "model.n") == 0 &&
                       strcmp(r.point_key[1]->name, "ranks") == 0 ? 2 : 1;
+    /* Only then does a curve through the points mean anything. */
     c->x_only = !r.named && r.npoint_key > 0 && r.npoint_key <= sizes && !isnan(c->point[0].x);
     const char *key = r.npoint_key > 0 ? r.point_key[0]->name : "", *dot = strrchr(key, '.');
     c->x_name = dot != NULL ? dot + 1 : key;
@@ -311,6 +313,7 @@ void compare_free(struct compare *c)
 
 double compare_ratio(const struct compare_point *p, int side, double *error)
 {
+    /* The first side is what all others are held against. */
     const struct compare_cell *a = &p->cell[0], *b = &p->cell[side];
     *error = 0;
     if (a->runs == 0 || b->runs == 0 || a->makespan == 0) return NAN;
@@ -363,6 +366,7 @@ bool compare_draw(const struct compare *c, const char *data_dir, const char *dir
     for (int i = 0; i < c->nside; i++) text_add(&title, "%s%s", i > 0 ? " and " : "", c->side[i].name);
     /* Two points make no curve, and points that differ in words have no axis. */
     const bool lines = c->x_only && c->ncommon > 2;
+    /* What the script has to know stands in one row, as for mimdsim plot. */
     const struct store_value about[] = {
         store_text(title.s), store_int(c->nside), store_int(c->ncommon < most ? c->ncommon : most),
         store_int(c->ncommon), store_int(lines), store_text(c->x_name),

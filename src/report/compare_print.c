@@ -81,6 +81,7 @@ static void print_differences(const struct compare *c, FILE *out)
 static int widest_name(const struct compare *c)
 {
     size_t n = 5;
+    /* Also of points that are left out: the width must not depend on which these are. */
     for (int i = 0; i < c->npoint; i++)
         if (strlen(c->point[i].name) > n) n = strlen(c->point[i].name);
     return (int)n;
@@ -94,6 +95,7 @@ static void print_results(const struct compare *c, FILE *out)
     char cell[48];
     bool spread = false;
     fprintf(out, "\nTimes:\n%-*s", wide, "point");
+    /* Times first, then what they are over those of A. */
     for (int s = 0; s < c->nside; s++) fprintf(out, " %12c", 'A' + s);
     for (int s = 1; s < c->nside; s++) fprintf(out, " %14c/A", 'A' + s);
     fprintf(out, "\n");

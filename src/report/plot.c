@@ -317,6 +317,7 @@ static bool put_runs(const struct plot *p, struct store *s, struct err *e)
 /* One row with all that a script has to know. */
 static bool put_about(const struct plot *p, struct store *s, struct err *e)
 {
+    /* Texts are data, too: they are shown as they are and never part of a command. */
     struct text title = {0}, subtitle = {0}, bands = {0};
     const struct plot_points *q = &p->points;
     size_t longest = 0;

@@ -69,6 +69,7 @@ static bool same(double a, double b) { return fabs(a - b) <= 1e-9 * (fabs(a) + f
 static bool is_one_of(const struct plot_cell *cell, const struct plot_column *column,
                       const char *values)
 {
+    /* A longer value than that is cut, and then equals nothing. */
     char one[256], why[160];
     for (const char *s = values;; s++) {
         /* Compared as texts first: "16" is also the name of something. */
