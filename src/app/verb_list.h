@@ -18,6 +18,7 @@
     X(cmd_check, "check", "validate files without running")                                                            \
     X(cmd_machines, "machines", "list machines, show one with its sources, or compare two")                            \
     X(cmd_scenarios, "scenarios", "list scenarios")                                                                    \
+    X(cmd_keys, "keys", "list the settings with their units, ranges and defaults")                                     \
     X(cmd_kernels, "kernels", "list built-in programs (programs lists all)")                                           \
     X(cmd_programs, "programs", "list programs: built in, examples, your own")                                         \
     X(cmd_new, "new", "write a parallel program to begin with, and its scenario")                                      \

@@ -77,6 +77,18 @@ static const char *axis_group(const char *name)
     return group ? name : NULL;
 }
 
+/* A value that stands twice in a list is a slip of the pen: its runs would be the same runs. */
+static bool check_twice(const struct scenario *s, const char *name, const struct node *n,
+                        const struct node *list, struct err *e)
+{
+    if (n->kind != NODE_TEXT) return true;
+    for (const struct node *other = list->child; other != n; other = other->next)
+        if (other->kind == NODE_TEXT && strcmp(other->text, n->text) == 0)
+            return err_set_at(e, ERR_DATA, s->path, n->line, "%s: '%.80s' stands twice in its list",
+                              name, n->text);
+    return true;
+}
+
 /* An axis from its list. It sets one key (values), or several below a group (mappings). */
 static bool add_axis(struct scenario *s, const char *name, const struct node *list,
                      struct arena *a, struct err *e)
@@ -104,7 +116,9 @@ static bool add_axis(struct scenario *s, const char *name, const struct node *li
     x->point = TAKE(a, list->count, struct setting_list);
     int i = 0;
     for (const struct node *n = list->child; n != NULL; n = n->next)
-        if (!read_point(&x->point[i++], key, group, n, s->path, a, e)) return false;
+        if (!read_point(&x->point[i++], key, group, n, s->path, a, e) ||
+            !check_twice(s, name, n, list, e))
+            return false;
     return true;
 }
 

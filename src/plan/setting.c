@@ -198,6 +198,29 @@ static int candidates(const char *group, char name[][KEY_LENGTH], const char **l
     return n;
 }
 
+/* Whole keys that end in the words of `key`: "bandwidth" and "link.bandwidth" are ends of some. As
+ * many as a message has room for; how many there are. */
+static int ends_of_keys(const char *key, struct text *out)
+{
+    enum { MOST_TOLD = 4 };
+    int ntable, n = 0;
+    const size_t m = strlen(key);
+    const struct field_table *const *tables = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++)
+        for (int j = 0; j < tables[i]->nfield; j++) {
+            const char *own = tables[i]->field[j].key;
+            const size_t length = strlen(own);
+            /* Only whole words, and only where something stands before them. */
+            if (tables[i]->prefix[0] == '\0' || m > length || strcmp(own + length - m, key) != 0 ||
+                (m < length && own[length - m - 1] != '.') || tables[i]->field[j].label)
+                continue;
+            if (n++ < MOST_TOLD)
+                text_add(out, "%s'%s.%s'", n > 1 ? " or " : "", tables[i]->prefix, own);
+        }
+    if (n > MOST_TOLD) text_add(out, " or %d others (`mimdsim keys %s`)", n - MOST_TOLD, key);
+    return n;
+}
+
 /* The message of a key that is none: what was meant, or what there is. Returns false. */
 bool setting_unknown(const char *group, const char *key, const char *file, int line, struct err *e)
 {
@@ -211,6 +234,13 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
         return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s' here: it cannot be set",
                           key);
     if (group[0] != '\0') snprintf(in, sizeof in, " in '%.240s'", group);
+    /* The end of a key is what people remember: they are told the whole. */
+    struct text whole = {0};
+    if (group[0] == '\0' && ends_of_keys(key, &whole) > 0) {
+        err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'; did you mean %s?", key, whole.s);
+        text_free(&whole);
+        return false;
+    }
     if (near != NULL)
         return err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'%s; did you mean '%s'?",
                           key, in, near);

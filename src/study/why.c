@@ -291,19 +291,15 @@ bool why_study(const struct run_spec *spec, unsigned ask, int workers, bool quie
                struct why *out, struct err *e)
 {
     *out = (struct why){0};
-    const struct run_spec run[2] = {bare(spec, false), bare(spec, true)};
-    struct run_result result[2];
-    if (!run_batch(run, 2, 1, quiet, a, result, e)) return false;
-    out->run = result[1];
-    out->host_plain_s = result[0].host_s;
-    out->host_record_s = result[1].host_s;
-    if (result[1].status > RUN_INVALID) {
-        const enum err_kind kind = result[1].refusal ? (enum err_kind)result[1].refusal
-                                   : result[1].status == RUN_DEADLOCK ? ERR_DEADLOCK
-                                                                      : ERR_CHECK;
-        return err_set(e, kind, "%s", result[1].text);
+    const struct run_spec run = bare(spec, true);
+    if (!run_batch(&run, 1, 1, quiet, a, &out->run, e)) return false;
+    const struct run_result *r = &out->run;
+    if (r->status > RUN_INVALID) {
+        const enum err_kind kind = r->refusal ? (enum err_kind)r->refusal
+                                   : r->status == RUN_DEADLOCK ? ERR_DEADLOCK
+                                                               : ERR_CHECK;
+        return err_set(e, kind, "%s", r->text);
     }
-    CHECK(result[0].digest == result[1].digest); /* recording changes nothing */
     add_shares(out, a);
     add_ranks(out, a);
     why_contributions(&spec->machine, out);

@@ -63,7 +63,6 @@ struct why {
         parameter[WHY_MOST_PARAMETERS]; /* with a contribution; the largest first */
     int nlimit;
     struct why_limit limit[WHY_MOST_LIMITS];
-    double host_plain_s, host_record_s; /* wall time of the simulation without and with recording */
 };
 
 enum { WHY_TOLERANCES = 1, WHY_LIMITS = 2 };

@@ -1,0 +1,60 @@
+#!/usr/bin/env bats
+# keys.bats - the settings there are, and what becomes of those that are written wrongly.
+
+load helper
+
+@test "keys lists settings with unit, range, default and meaning, also as JSON" {
+    works mimdsim keys hop_latency
+    stdout_says 'machine.network.hop_latency'
+    stdout_says "a time (12 us)"
+    works mimdsim keys
+    [ "$(printf '%s\n' "$output" | grep -c '^[a-z]')" -ge 100 ]
+    works mimdsim keys network.hop_latency --json
+    json_is_valid
+    json_is '$[0].key' machine.network.hop_latency
+    json_is '$[0].value' 'a time (12 us)'
+    works mimdsim keys level --json
+    json_is '$[0].default' link
+    # a pattern is looked for in the meaning, too
+    works mimdsim keys 'floating-point'
+    fails_with 65 mimdsim keys hop_latancy
+    stderr_says "did you mean"
+    stdout_is_empty
+}
+
+@test "the end of a key is answered with the whole keys" {
+    fails_with 65 mimdsim run fig6 --set bandwidth='1 GB/s' -o a.db
+    stderr_says "unknown key 'bandwidth'; did you mean 'machine.node.copy.bandwidth' or 'machine.network.link.bandwidth'"
+    fails_with 65 mimdsim run fig6 --set link.bandwidth='1 GB/s' -o a.db
+    stderr_says "unknown key 'link.bandwidth'; did you mean 'machine.network.link.bandwidth'?"
+    fails_with 65 mimdsim run fig6 --set hop_latency='1 us' -o a.db
+    stderr_says "did you mean 'machine.network.hop_latency'?"
+    fails_with 65 mimdsim run fig6 --set bandwdth='1 GB/s' -o a.db
+    nothing_left_behind
+}
+
+@test "half a list, a value twice and an error of 200 % are refused" {
+    fails_with 65 mimdsim run fig6 --set machine.topology.dims=8x4x4x -o a.db
+    stderr_says 'a number is missing at the end'
+    fails_with 65 mimdsim run fig6 --set machine.topology.dims='[8, 4, 4, ]' -o a.db
+    fails_with 65 mimdsim run fig6 --set n='[4, 4]' -o a.db
+    stderr_says "n: '4' stands twice in its list"
+    fails_with 65 mimdsim run fig6 --set n=8,16,8 -o a.db
+    fails_with 64 mimdsim accuracy four-bar --within 2
+    stderr_says "did you mean '2%'?"
+    nothing_left_behind
+}
+
+@test "the keys that the documentation of the network names exist" {
+    mimdsim keys --json >keys.json
+    missing= named=0
+    # `software.send.overhead`: words with dots in backquotes, with or without the table's name
+    for key in $(grep -o '`\(machine\.\)\?\(network\|software\|topology\|node\|placement\|noise\)\.[a-z_.]*[a-z]`' \
+        "$MIMDSIM_SRCDIR/docs/network.md" | tr -d '`' | sort -u); do
+        key=machine.${key#machine.} named=$((named + 1))
+        # a group of keys may be named as well
+        grep -q -e "\"$key\"" -e "\"$key\." keys.json || missing="$missing $key"
+    done
+    [ "$named" -ge 10 ]
+    [ -z "$missing" ] || { echo "docs/network.md names keys that do not exist:$missing"; return 1; }
+}
