@@ -61,6 +61,7 @@ static void show_kind(const struct field *f, struct shown *s)
 /* Everything that is told of one row. */
 static struct shown show(const struct field_table *t, const struct field *f)
 {
+    /* The whole key, as --set takes it. */
     struct shown s = {.fallback = f->fallback, .meaning = f->doc};
     snprintf(s.key, sizeof s.key, "%s%s%s", t->prefix, t->prefix[0] != '\0' ? "." : "", f->key);
     show_kind(f, &s);
@@ -94,6 +95,7 @@ static void print_object(struct json *j, const struct shown *s)
 /* All rows that have the pattern, printed unless `print` is false; how many these are. */
 static int matching(const struct common *c, const char *pattern, bool print, struct json *j)
 {
+    /* In the order of the manual: the run, its machine, model and program. */
     int ntable, n = 0;
     const struct field_table *const *table = field_tables(&ntable);
     for (int i = 0; i < ntable; i++)
@@ -112,6 +114,7 @@ int cmd_keys(int argc, char **argv)
 {
     struct common c;
     struct err e;
+    /* No file is read: the tables are part of the program. */
     err_clear(&e);
     common_parse(&c, argc, argv, 0, "[PATTERN]", doc, 0, 1);
     /* "n" and "level" are short for the keys that they stand for. */

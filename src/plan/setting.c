@@ -221,6 +221,21 @@ static int ends_of_keys(const char *key, struct text *out)
     return n;
 }
 
+/* The last word of a key that is nearest to that of `key`; NULL: none is near. */
+static const char *nearest_end(const char *key)
+{
+    const char *word[MAX_CANDIDATES], *dot = strrchr(key, '.');
+    int ntable, n = 0;
+    const struct field_table *const *tables = field_tables(&ntable);
+    for (int i = 0; i < ntable; i++)
+        for (int j = 0; j < tables[i]->nfield && n < MAX_CANDIDATES; j++) {
+            const char *own = tables[i]->field[j].key, *last = strrchr(own, '.');
+            /* Short words are near to everything. */
+            if (last != NULL && strlen(last + 1) > 4) word[n++] = last + 1;
+        }
+    return text_nearest(dot != NULL ? dot + 1 : key, word, n);
+}
+
 /* The message of a key that is none: what was meant, or what there is. Returns false. */
 bool setting_unknown(const char *group, const char *key, const char *file, int line, struct err *e)
 {
@@ -236,7 +251,9 @@ bool setting_unknown(const char *group, const char *key, const char *file, int l
     if (group[0] != '\0') snprintf(in, sizeof in, " in '%.240s'", group);
     /* The end of a key is what people remember: they are told the whole. */
     struct text whole = {0};
-    if (group[0] == '\0' && ends_of_keys(key, &whole) > 0) {
+    const char *end = near == NULL && group[0] == '\0' ? nearest_end(key) : NULL;
+    if (group[0] == '\0' && (ends_of_keys(key, &whole) > 0 ||
+                             (end != NULL && ends_of_keys(end, &whole) > 0))) {
         err_set_at(e, ERR_DATA, file, line, "unknown key '%.120s'; did you mean %s?", key, whole.s);
         text_free(&whole);
         return false;

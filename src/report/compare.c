@@ -156,6 +156,7 @@ static void list_differences(struct reading *r)
 static struct compare_point *point_of(struct reading *r, const char *name)
 {
     struct compare *c = r->c;
+    /* Points are found by their names: a few hundred of them at most. */
     for (int i = 0; i < c->npoint; i++)
         if (strcmp(c->point[i].name, name) == 0) return &c->point[i];
     /* Twice as many each time; the arena keeps the smaller ones until the end. */
@@ -283,6 +284,7 @@ bool compare_make(struct compare *c, int n, const struct compare_side *side, str
     /* The caller's stores stay the caller's. */
     for (int i = 0; i < n; i++) c->side[i] = side[i];
     struct reading r = {.c = c, .key = TAKE(c->arena, MOST_KEYS, struct key), .e = e};
+    /* What fails half way is given back by compare_free, which the caller calls in any case. */
     if (!read_settings(&r, e)) return false;
     /* In this order: what tells points apart is no difference between the sides. */
     choose_point_keys(&r);

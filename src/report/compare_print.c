@@ -40,6 +40,7 @@ static void print_sides(const struct compare *c, FILE *out)
 /* First the answer: how the times compare, over all common points. */
 static void print_summary(const struct compare *c, FILE *out)
 {
+    /* Against the first side, which whoever calls it has put first. */
     fprintf(out, "\n");
     for (int s = 1; s < c->nside; s++) {
         /* Ratios multiply, so that their mean is the geometric one. */
@@ -203,6 +204,7 @@ static void print_json(const struct compare *c, FILE *out)
         json_end(&j);
     }
     json_end(&j);
+    /* Names last: keys stand in the order of the alphabet. */
     json_key(&j, "sides");
     json_array(&j);
     for (int s = 0; s < c->nside; s++) json_text(&j, c->side[s].name);

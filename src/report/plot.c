@@ -197,6 +197,7 @@ static const char *figure_of(const struct plot *p)
 /* Bars that no page has room for. */
 static bool check_bars(const struct plot *p, struct err *e)
 {
+    /* Counted as if every curve had every place. */
     const int n = p->points.nx * p->points.nseries * p->points.npanel;
     return strcmp(p->figure, "_bars") != 0 || n <= MOST_BARS ||
            err_set(e, ERR_USAGE, "%d bars are more than a page holds; choose with --where, or draw "
@@ -306,6 +307,7 @@ static bool put_points(const struct plot *p, struct store *s, struct err *e)
 /* Every run that a point stands for, for the figure's provenance. */
 static bool put_runs(const struct plot *p, struct store *s, struct err *e)
 {
+    /* Also of runs that are only a part of a mean. */
     bool ok = store_temporary(s, "plot_run", "run_id INTEGER", e);
     for (int i = 0; ok && i < p->sheet.nrow; i++) {
         const struct store_value v = store_int(p->sheet.run_id[i]);
