@@ -9,7 +9,7 @@
 #include "base/progress.h"
 
 /* Tags repeat after many runs: by then no letter of an earlier one is left. */
-enum { FIRST_TAG = 1000, TAGS = 4, RUNS = 7000 };
+enum { FIRST_TAG = 1000, TAGS = 4, RUNS = 7000, MOST_TRIES = 1000 };
 enum kind { KIND_LETTERS, KIND_ASK, KIND_ANSWER, KIND_END };
 
 static const double PATIENCE_S = 60; /* how long a process may be silent */
@@ -61,15 +61,16 @@ struct post *post_open(const struct hosts *h, int run)
     return p;
 }
 
-/* What was sent last is on its way still: MPI keeps reading it until it is through, or for ever when
- * the run has failed. */
+/* What was sent last may be on its way still, and MPI reads it until it is through. When the run has
+ * failed its receiver may never take it: then its memory is left to MPI. */
 void post_close(struct post *p)
 {
     if (!p) return;
     for (struct sending *s = p->sending, *next; s; s = next) {
         bool done = false;
         next = s->next;
-        while (p->state == POST_OVER && !done && p->h->call->send_done(&s->request, &done)) {}
+        for (int tries = 0; !done && (p->state == POST_OVER || tries < MOST_TRIES); tries++)
+            if (!p->h->call->send_done(&s->request, &done)) break;
         if (done) free(s->data);
         free(s);
     }

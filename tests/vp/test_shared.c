@@ -266,7 +266,7 @@ static void a_failure_ends_all_processes(void **state)
     for (int size = 2; size <= 4; size++) {
         static int number = 5000;
         for (int i = 0; i < size; i++) {
-            box[i].first = NULL; /* letters of a run that failed are nobody's */
+            box[i].first = NULL;
             box[i].end = &box[i].first;
         }
         for (int i = 0; i < size; i++) {
@@ -280,6 +280,12 @@ static void a_failure_ends_all_processes(void **state)
             assert_false(p[i].out.r.job_broken);
             arena_destroy(p[i].out.arena);
         }
+        /* Letters of a run that failed are nobody's. */
+        for (int i = 0; i < size; i++)
+            for (struct parcel *x = box[i].first, *next; x; x = next) {
+                next = x->next;
+                free(x);
+            }
     }
 }
 

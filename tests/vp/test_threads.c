@@ -41,6 +41,9 @@ struct outcome {
     struct run_result r;
 };
 
+/* Of exchanges, for each rank: a rank that never ends frees nothing. */
+enum { MOST = 3000 };
+
 static struct outcome go(world_program *program, int nrank, int threads, uint64_t delays)
 {
     struct outcome o = {.arena = arena_create()};
@@ -48,10 +51,14 @@ static struct outcome go(world_program *program, int nrank, int threads, uint64_
     const struct record_spec record = {.links = true};
     struct err e;
     err_clear(&e);
-    const struct world_load load = {.nrank = nrank, .program = program, .nstage = 2, .stage_name = stage_name,
-                                    .largest_message = -1, .threads = threads, .delays = delays};
+    double *buffers = calloc((size_t)nrank * 2 * MOST, sizeof *buffers);
+    assert_non_null(buffers);
+    const struct world_load load = {.nrank = nrank, .program = program, .context = buffers, .nstage = 2,
+                                    .stage_name = stage_name, .largest_message = -1, .threads = threads,
+                                    .delays = delays};
     assert_null(world_alone(&m, &load, &record));
     if (!world_run(&m, &load, &record, 7, o.arena, &o.r, &e)) fail_msg("%s", e.text);
+    free(buffers);
     return o;
 }
 
@@ -87,11 +94,9 @@ static void every_number_of_threads(world_program *program, int nrank, enum run_
 /* Exchanges at all distances, of sizes of all classes, several under way between the same two ranks. */
 static void exchanges(struct comm *c, void *context)
 {
-    (void)context;
-    enum { MOST = 3000 };
     const int rank = comm_rank(c), size = comm_size(c);
     struct random r = random_make(3, (uint64_t)rank, 0);
-    double *out = calloc(MOST, sizeof *out), *in = calloc(MOST, sizeof *in);
+    double *out = (double *)context + (size_t)rank * 2 * MOST, *in = out + MOST;
     for (int step = 0; step < 12; step++) {
         const int d = 1 + (step * step * 7 + step) % (size - 1);
         const int to = (rank + d) % size, from = (rank - d + size) % size;
@@ -110,8 +115,6 @@ static void exchanges(struct comm *c, void *context)
         }
         comm_recv(c, rank, 1000 + step, in, 8);
     }
-    free(in);
-    free(out);
 }
 
 static void exchanges_are_the_same(void **state)
