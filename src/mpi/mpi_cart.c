@@ -228,26 +228,35 @@ int mpi_cart_map(struct mpi_rank *self, MPI_Comm comm, int ndims, const int dims
 /* balance: the n free numbers with product `nodes`, as close to each other as they get, the largest
  * first. Each takes the smallest divisor of what is left that is not below the root of the number
  * of those still free. */
+static bool balance(int nodes, int n, int *out);
+
+/* Whether divisor `first` may be the largest of the n; *best is the last one that was tried. Products
+ * are compared as doubles, exact far beyond any number of ranks. */
+static bool is_largest(int nodes, int n, int first, int *best, int *out)
+{
+    double power = 1;
+    for (int i = 0; i < n; i++) power *= first;
+    if (power < nodes) return false;
+    *best = first;
+    return balance(nodes / first, n - 1, out + 1) && out[1] <= first;
+}
+
 static bool balance(int nodes, int n, int *out)
 {
-    int best = -1;
+    int best = -1, step = 1;
+    bool found = false;
     if (n == 0) return nodes == 1;
     if (n == 1) {
         out[0] = nodes;
         return true;
     }
-    /* Try first factors from the n-th root upwards; the rest must not exceed it. All
-     * divisors from the root upwards: at most `nodes` steps, once in a program. Products
-     * are compared as doubles, exact far beyond any number of ranks. The last try is
-     * `nodes` itself with ones behind it, so there is always an answer. */
-    for (int first = 1; first <= nodes; first++) {
-        if (nodes % first) continue;
-        double power = 1;
-        for (int i = 0; i < n; i++) power *= first;
-        if (power < nodes) continue;
-        best = first;
-        if (balance(nodes / first, n - 1, out + 1) && out[1] <= first) break;
-    }
+    /* All divisors upwards: those up to the square root, then what they leave, so that a large
+     * prime takes no longer than its root says. The last try is `nodes` itself with ones behind
+     * it, so there is always an answer. */
+    for (; !found && step <= nodes / step; step++)
+        if (nodes % step == 0) found = is_largest(nodes, n, step, &best, out);
+    for (step--; !found && step >= 1; step--)
+        if (nodes % step == 0) found = is_largest(nodes, n, nodes / step, &best, out);
     out[0] = best;
     return true;
 }

@@ -9,10 +9,13 @@
 #include "base/text.h"
 #include "report/timeline.h"
 
+enum { MOST_RANKS = 1 << 24 };
+
 /* What the rows of three queries fill, one after the other. */
 struct reading {
     struct arena *a;
     struct run_result *r;
+    struct err *err;
     bool found;
 };
 
@@ -24,6 +27,12 @@ static bool read_run(void *context, int ncolumn, const char *const *name,
     (void)ncolumn;
     (void)name;
     g->found = true;
+    /* As many ranks as a machine can have: files with a part for each rank are written. */
+    if (value[0].integer < 1 || value[0].integer > MOST_RANKS) {
+        err_set(g->err, ERR_DATA, "table run, column P: %lld ranks; expected 1 to %d",
+                (long long)value[0].integer, MOST_RANKS);
+        return false;
+    }
     g->r->nrank = (int)value[0].integer;
     g->r->makespan_ps = value[1].integer;
     /* room for all of them, counted by the same statement */
@@ -75,12 +84,13 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
     char id[24];
     const char *const param[] = {id};
     *r = (struct run_result){0};
-    struct reading g = {.a = a, .r = r};
+    struct reading g = {.a = a, .r = r, .err = e};
     snprintf(id, sizeof id, "%lld", (long long)run_id);
     if (!store_query(s, "SELECT P, makespan_ps, (SELECT count(*) FROM span WHERE run_id = run.id)"
                         " FROM run "
                         "WHERE id = ?1", 1, param, NULL, read_run, &g, e))
         return false;
+    if (e->kind != ERR_NONE) return false;
     /* No row: there is no such run. */
     if (!g.found) return err_set(e, ERR_NO_INPUT, "there is no run %s in %s", id, store_path(s));
     if (!store_query(s, "SELECT stage, name FROM stage WHERE run_id = ?1", 1, param, NULL,

@@ -42,11 +42,11 @@ static MPI_Op op_of(uint8_t x) { return ops[x % (sizeof ops / sizeof *ops)]; }
 /* One in sixteen handles is a number that nobody gave out. */
 static MPI_Comm comm_of(const struct rank *r, uint8_t x)
 {
-    return x >= 240 ? (MPI_Comm)(intptr_t)(x * 16843009) : r->comm[x % KEPT];
+    return x >= 240 ? (MPI_Comm)(intptr_t)(x * 16843009u) : r->comm[x % KEPT];
 }
 static MPI_Datatype type_of(const struct rank *r, uint8_t x)
 {
-    return x >= 240 ? (MPI_Datatype)(intptr_t)(x * 16843009) : r->type[x % KEPT];
+    return x >= 240 ? (MPI_Datatype)(intptr_t)(x * 16843009u) : r->type[x % KEPT];
 }
 
 /* Whether `count` of the type, `times` over, lie within the room around a buffer. A wrong type has
