@@ -13,7 +13,8 @@ WITH chosen AS (
 SELECT v.P, v.stage, v.name, v.compute_mean_ps / 1e6 AS compute_us, v.send_mean_ps / 1e6 AS send_us,
        v.recv_mean_ps / 1e6 AS receive_us, v.wait_mean_ps / 1e6 AS wait_us,
        v.contention_mean_ps / 1e6 AS contention_us, v.total_mean_ps / 1e6 AS total_us,
-       v.total_max_ps / 1e6 AS total_max_us, r.makespan_ps / 1e6 AS makespan_us, v.machine, v.level, v.formulation,
+       v.total_max_ps / 1e6 AS total_max_us, r.makespan_ps / 1e6 AS makespan_us,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = v.run_id) AS machine, v.level, v.formulation,
        v.operators, v.run_id
 FROM v_stage v JOIN chosen c ON c.id = v.run_id AND c.choice = 1 JOIN run r ON r.id = v.run_id
 ORDER BY v.P, v.stage;

@@ -32,6 +32,7 @@ shown AS (
     FROM variant v JOIN nearest m ON v.operators = m.operators
     WHERE v.baseline = 'fastest serial' AND m.baseline <> 'fastest serial')
 SELECT dense_rank() OVER (ORDER BY s.series) AS series, s.why, replace(o.baseline, ',', ' –') AS baseline, o.operators, s.fraction, o.P, o.makespan_ps,
-       o.baseline_ps, o.speedup, o.parallel_fraction, o.machine, o.level, o.formulation, o.run_id
+       o.baseline_ps, o.speedup, o.parallel_fraction,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = o.run_id) AS machine, o.level, o.formulation, o.run_id
 FROM one o JOIN shown s ON s.baseline = o.baseline AND s.operators = o.operators
 ORDER BY series, o.P;

@@ -20,7 +20,8 @@ chosen AS (
     FROM point),
 shown AS (SELECT * FROM chosen WHERE choice = 1 AND panel <= 8)
 SELECT panel, dense_rank() OVER (ORDER BY baseline <> 'fastest serial', baseline_ordinal, baseline) AS series,
-       replace(baseline, ',', ' –') AS baseline, P, makespan_ps, baseline_ps, speedup, parallel_fraction, machine, level,
+       replace(baseline, ',', ' –') AS baseline, P, makespan_ps, baseline_ps, speedup, parallel_fraction,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = shown.run_id) AS machine, level,
        formulation, solver, operators, run_id
 FROM shown WHERE (SELECT count(DISTINCT panel) FROM shown) > 1 -- one machine alone is not a comparison
 ORDER BY panel, series, P;

@@ -23,7 +23,7 @@ finest AS (
 SELECT dense_rank() OVER (ORDER BY a.baseline <> 'fastest serial', a.baseline_ordinal, a.baseline) AS series, replace(a.baseline, ',', ' –') AS baseline,
        a.P, a.makespan_ps, a.baseline_ps, a.speedup, a.parallel_fraction,
        100.0 * (a.makespan_ps - b.makespan_ps) / b.makespan_ps AS contention_percent,
-       a.machine, a.level, a.formulation, a.solver, a.operators, a.run_id
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = a.run_id) AS machine, a.level, a.formulation, a.solver, a.operators, a.run_id
 FROM finest a LEFT JOIN point b ON b.choice = 1 AND b.level = 'loggp' AND a.level <> 'loggp' AND b.n = a.n
      AND b.baseline = a.baseline AND b.formulation = a.formulation AND b.solver = a.solver AND b.operators = a.operators
 ORDER BY series, a.P;

@@ -31,7 +31,8 @@ grouped AS (
 SELECT dense_rank() OVER (ORDER BY g.size) AS panel, iif(g.size = 0, 'n = P', 'n = ' || g.size) AS size,
        dense_rank() OVER (ORDER BY g.solver = 'pcr' DESC, g.method) AS series, g.method, g.n, g.P, g.stage_ps,
        s.serial_ps, c.conventional_ps, s.serial_ps / g.stage_ps AS over_serial,
-       c.conventional_ps / g.stage_ps AS over_conventional, g.machine, g.level, g.formulation, g.id AS run_id
+       c.conventional_ps / g.stage_ps AS over_conventional,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = g.id) AS machine, g.level, g.formulation, g.id AS run_id
 FROM grouped g LEFT JOIN serial s ON s.n = g.n LEFT JOIN conventional c ON c.n = g.n AND c.P = g.P
 WHERE g.P > 1
 ORDER BY panel, series, g.P;

@@ -7,7 +7,7 @@ WITH chosen AS (
     ORDER BY length(machine), formulation = 'paper' DESC, operators = 'structured' DESC, level <> 'loggp' DESC,
              level = 'link' DESC, id DESC LIMIT 1)
 SELECT s.rank, s.stage, t.name, s.kind, s.begin_ps / 1e6 AS begin_us, s.end_ps / 1e6 AS end_us, s.peer, s.bytes,
-       r.machine, r.level, r.formulation, r.operators, r.n, r.P, r.makespan_ps / 1e6 AS makespan_us, s.run_id
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = s.run_id) AS machine, r.level, r.formulation, r.operators, r.n, r.P, r.makespan_ps / 1e6 AS makespan_us, s.run_id
 FROM span s JOIN chosen c ON c.id = s.run_id JOIN run r ON r.id = s.run_id
      LEFT JOIN stage t ON t.run_id = s.run_id AND t.stage = s.stage
 ORDER BY s.rank, s.begin_ps, s.span;

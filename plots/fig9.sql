@@ -16,6 +16,7 @@ ratio AS (
     GROUP BY n / P HAVING count(DISTINCT P) >= 3 ORDER BY n / P LIMIT 8)
 SELECT CASE baseline WHEN 'fastest serial' THEN 2 ELSE 1 END AS panel,
        series, ratio AS bodies_per_processor, n, P, baseline, makespan_ps,
-       baseline_ps, speedup, parallel_fraction, machine, level, formulation, solver, operators, run_id
+       baseline_ps, speedup, parallel_fraction,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = point.run_id) AS machine, level, formulation, solver, operators, run_id
 FROM point JOIN ratio ON n / P = ratio WHERE choice = 1
 ORDER BY panel, series, P;

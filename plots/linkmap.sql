@@ -25,7 +25,8 @@ SELECT 2 * s.d + s.down + 1 AS panel, substr('xyzuvwst', s.d + 1, 1) || iif(s.do
        s.from_router % (SELECT k FROM dimension WHERE d = 0) AS x,
        s.from_router / (SELECT k FROM dimension WHERE d = 0) AS y,
        s.from_router, s.to_router, s.messages, s.sent_bytes, s.busy_ps / 1e6 AS busy_us,
-       1.0 * s.busy_ps / r.makespan_ps AS busy_share, s.queue_ps / 1e6 AS queue_us, r.machine, r.topology,
+       1.0 * s.busy_ps / r.makespan_ps AS busy_share, s.queue_ps / 1e6 AS queue_us,
+       (SELECT replace(l.name, ',', '‚') FROM v_label l WHERE l.run_id = r.id) AS machine, r.topology,
        replace(c.dims, ',', ' x') AS dims, r.level, r.kernel, r.n, r.P, r.scenario, r.id AS run_id
 FROM directed s JOIN run r ON r.id = s.run_id JOIN chosen c ON c.id = r.id
 ORDER BY panel, y, x;

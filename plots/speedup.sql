@@ -3,7 +3,7 @@
 -- needs: mimdsim run examples/ring-allreduce.yaml   (any scenario with `program: FILE`)
 -- each: SELECT DISTINCT r.kernel, 'speedup-' || r.kernel FROM run r JOIN v_setting s ON s.run_id = r.id WHERE s.key = 'program.file' AND s.value LIKE 'sha256 %' AND r.status = 'ok' ORDER BY 1
 WITH own AS (
-    SELECT r.id AS run_id, r.machine, r.level, r.P FROM run r JOIN v_setting s ON s.run_id = r.id
+    SELECT r.id AS run_id, l.name AS machine, r.level, r.P FROM run r JOIN v_label l ON l.run_id = r.id JOIN v_setting s ON s.run_id = r.id
     WHERE r.kernel = ?1 AND r.status = 'ok' AND s.key = 'program.file' AND s.value LIKE 'sha256 %'),
 parameter AS (
     SELECT own.run_id, substr(s.key, 9) AS key, s.value FROM own JOIN v_setting s ON s.run_id = own.run_id
@@ -16,7 +16,7 @@ named AS (
                    WHERE p.run_id = own.run_id AND p.key IN (SELECT key FROM varied)), '') AS curve FROM own),
 -- of several runs of one point, such as those of an older source, the last
 point AS (
-    SELECT n.run_id, n.P, replace(n.curve, ',', ' –') AS curve, s.baseline, s.speedup, s.baseline_ps, s.makespan_ps,
+    SELECT n.run_id, n.P, replace(n.curve, ',', '‚') AS curve, s.baseline, s.speedup, s.baseline_ps, s.makespan_ps,
            row_number() OVER (PARTITION BY n.curve, n.P ORDER BY n.run_id DESC, s.baseline <> 'fastest serial') AS choice
     FROM named n JOIN v_speedup s ON s.run_id = n.run_id
     WHERE s.baseline IN ('fastest serial', 'parallel code on one processor')),

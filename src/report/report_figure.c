@@ -25,6 +25,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "report/csv.h"
+#include "report/figure_rows.h"
 #include "report/figure_text.h"
 #include "report/gnuplot.h"
 #include "report/images.h"
@@ -161,6 +162,11 @@ static bool provenance(struct figure *f, struct text *out, struct err *e)
         digest_sha256_hex(hashes.s, hashes.length, hash);
         text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
     }
+    /* No figure chooses among machines in silence. */
+    struct text machines = {0};
+    ok = ok && figure_rows(f->s, f->run_ids.s, &machines, e);
+    if (machines.length > 0) text_add(out, "; %s", machines.s);
+    text_free(&machines);
     text_free(&sources);
     text_free(&hashes);
     return ok;

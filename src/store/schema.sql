@@ -349,14 +349,21 @@ SELECT r.id AS run_id, r.machine, r.machine_changes,
             WHEN r.machine_changes = '{}' THEN 'as shipped' ELSE 'changed' END AS state
 FROM run r LEFT JOIN newest w ON w.machine = r.machine;
 
--- The runs that figures show: those on a machine as shipped; where a machine and kernel has none of these, all it has.
+-- The runs that figures show: those on a machine as shipped; where a machine and kernel has none of these, those on the one
+-- changed machine that has most of them, the latest of equals. So no curve mixes two machines of one name.
 --   run_id: a run that figures show
 CREATE VIEW v_shown AS
 WITH state AS (
-    SELECT s.run_id, r.machine, r.kernel, s.state = 'as shipped' AS shipped
+    SELECT s.run_id, r.machine, r.kernel, r.machine_key, s.state = 'as shipped' AS shipped
     FROM v_machine_state s JOIN run r ON r.id = s.run_id WHERE r.status = 'ok'),
-most AS (SELECT machine, kernel, max(shipped) AS shipped FROM state GROUP BY machine, kernel)
-SELECT a.run_id FROM state a JOIN most b ON b.machine = a.machine AND b.kernel = a.kernel AND b.shipped = a.shipped;
+most AS (SELECT machine, kernel, max(shipped) AS shipped FROM state GROUP BY machine, kernel),
+one AS (
+    SELECT machine, kernel, machine_key,
+           row_number() OVER (PARTITION BY machine, kernel ORDER BY count(*) DESC, max(run_id) DESC) AS choice
+    FROM state WHERE NOT shipped GROUP BY machine, kernel, machine_key)
+SELECT a.run_id FROM state a JOIN most b ON b.machine = a.machine AND b.kernel = a.kernel AND b.shipped = a.shipped
+     LEFT JOIN one c ON c.machine = a.machine AND c.kernel = a.kernel AND c.machine_key = a.machine_key AND NOT a.shipped
+WHERE a.shipped OR c.choice = 1;
 
 -- What each run is called in legends and tables. Where one name was given to several machines, a part of the machine's
 -- fingerprint tells them apart: no two machines share a name here.
