@@ -50,12 +50,15 @@ bool text_read_stream(struct text *t, FILE *in, const char *name, struct err *e)
 {
     t->length = 0;
     /* Read until a short read: a file may have grown since it was looked at. */
-    size_t n;
-    do {
+    bool more = true;
+    while (more) {
         text_reserve(t, 65536);
-        n = fread(t->s + t->length, 1, 65536, in);
+        size_t n = fread(t->s + t->length, 1, 65536, in);
         t->length += n;
-    } while (n == 65536);
+        /* A signal is no reason to give up. */
+        more = n == 65536 || (ferror(in) && errno == EINTR);
+        if (more) clearerr(in);
+    }
     t->s[t->length] = '\0';
     /* A part of a file is no file. */
     return !ferror(in) || err_set_at(e, ERR_IO, name, 0, "cannot read: %s", strerror(errno));

@@ -54,9 +54,9 @@ bool images_check(const char *dir, const char *name, struct err *e)
     bool whole = true;
     for (int i = 0; i < FORMATS && whole; i++) {
         struct text path = {0};
-        struct err missing = {0};
         path_of(&path, dir, name, &formats[i]);
-        FILE *in = access(path.s, F_OK) == 0 ? text_open_file(path.s, &missing) : NULL;
+        FILE *in = access(path.s, F_OK) == 0 ? text_open_file(path.s, e) : NULL;
+        whole = e->kind == ERR_NONE;
         if (in != NULL) {
             there++;
             whole = has_end(in, &formats[i]);

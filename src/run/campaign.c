@@ -164,7 +164,7 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
         struct answer a = {.index = index};
         const struct run_order own = own_order(c->order, index, c->cores, heartbeat);
         a.ok = run_sharing(&c->spec[index], &own, cache, arena, &a.result, &a.error);
-        if (!send_answer(answers, &a)) break;
+        if (!send_answer(answers, &a)) _exit(err_exit_status(ERR_IO));
         arena_destroy(arena);
     }
     _exit(0);
@@ -205,7 +205,8 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
 static void give_run(struct worker *w, int index)
 {
     w->busy = index;
-    if (index >= 0) (void)write_all(w->orders, &w->busy, sizeof w->busy);
+    /* A worker without its order would be waited for for ever. */
+    if (index >= 0 && !write_all(w->orders, &w->busy, sizeof w->busy)) kill(w->pid, SIGKILL);
 }
 
 /* The next run in plan order that is to be made. */
@@ -295,7 +296,9 @@ static bool replace_worker(struct campaign *c, struct worker *w, struct answer *
                 strsignal(WTERMSIG(status)));
     else
         err_set(&a->error, ERR_INTERNAL, "its worker process ended with status %d%s", WEXITSTATUS(status),
-                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused more memory" : "");
+                WEXITSTATUS(status) == err_exit_status(ERR_INTERNAL) ? ": the system refused more memory"
+                : WEXITSTATUS(status) == err_exit_status(ERR_IO)     ? ": its answer could not be written"
+                                                                     : "");
     return start_worker(c, (int)(w - c->worker), e);
 }
 

@@ -28,6 +28,7 @@ bool store_failed(struct store *s, struct err *e)
     switch (code) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
+    case SQLITE_PROTOCOL: /* locks of its log that did not come to be for ten seconds */
         return err_set(e, ERR_BUSY,
                        "database %s is locked by another program; try again when that has finished",
                        path);

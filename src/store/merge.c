@@ -50,7 +50,8 @@ static bool attach(struct store *s, const char *from, struct err *e)
     bool ok = sqlite3_prepare_v2(s->db, "ATTACH ?1 AS other", -1, &q, NULL) == SQLITE_OK;
     if (ok) sqlite3_bind_text(q, 1, from, -1, SQLITE_STATIC);
     ok = ok && sqlite3_step(q) == SQLITE_DONE;
-    if (!ok) err_set(e, ERR_IO, "database %s: %s", from, sqlite3_errmsg(s->db));
+    /* The failure is that of the other database. */
+    if (!ok) store_failed(&(struct store){.db = s->db, .path = (char *)from}, e);
     sqlite3_finalize(q);
     return ok;
 }

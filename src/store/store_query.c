@@ -61,6 +61,8 @@ static struct store_value column_value(sqlite3_stmt *q, int column)
 static bool has_statement(struct store *s, const char *sql)
 {
     sqlite3_stmt *q = NULL;
+    /* Looked at without SQLite first, as it would refuse even nothing where there is no memory. */
+    if (sql[strspn(sql, " \t\r\n;")] == '\0') return false;
     bool more = sqlite3_prepare_v2(s->db, sql, -1, &q, NULL) != SQLITE_OK || q != NULL;
     sqlite3_finalize(q);
     return more;
@@ -81,6 +83,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
     /* SQLite runs the first statement and ignores the rest: what would be ignored must not look
      * done. */
     if (has_statement(s, rest)) {
+        if (sqlite3_errcode(s->db) == SQLITE_NOMEM) store_failed(s, e);
         err_set(e, ERR_DATA, "more than one statement: '%.60s' would not be run",
                 rest + strspn(rest, " \t\r\n"));
         sqlite3_finalize(q);

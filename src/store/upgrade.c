@@ -32,8 +32,7 @@ static bool for_each(struct store *s, sqlite3 *db, const char *sql, visit_fn *vi
     int code = sqlite3_prepare_v2(db, sql, -1, &q, NULL);
     while (ok && code == SQLITE_OK && sqlite3_step(q) == SQLITE_ROW) ok = visit(s, q, e);
     if (code == SQLITE_OK) code = sqlite3_finalize(q);
-    if (ok && code != SQLITE_OK)
-        ok = err_set(e, ERR_DATA, "database %s: %s", s->path, sqlite3_errstr(code));
+    if (ok && code != SQLITE_OK) ok = store_failed(&(struct store){.db = db, .path = s->path}, e);
     return ok;
 }
 
@@ -43,7 +42,8 @@ static bool exec_named(struct store *s, struct err *e, const char *format, const
                        const char *b)
 {
     char *sql = sqlite3_mprintf(format, a, b);
-    bool ok = sql != NULL && store_exec(s, sql, e);
+    bool ok = sql != NULL ? store_exec(s, sql, e)
+                          : err_set(e, ERR_INTERNAL, "no memory for database %s", s->path);
     sqlite3_free(sql);
     return ok;
 }
@@ -275,7 +275,10 @@ static bool copy_pages(struct store *s, sqlite3 *to, struct err *e)
     if (b != NULL) sqlite3_backup_step(b, -1);
     int code = b != NULL ? sqlite3_backup_finish(b) : sqlite3_errcode(to);
     if (code == SQLITE_OK) return true;
-    return err_set(e, code == SQLITE_BUSY ? ERR_BUSY : ERR_IO,
+    return err_set(e,
+                   code == SQLITE_BUSY    ? ERR_BUSY
+                   : code == SQLITE_NOMEM ? ERR_INTERNAL
+                                          : ERR_IO,
                    "database %s could not be copied for reading: %s", s->path,
                    sqlite3_errstr(code));
 }
