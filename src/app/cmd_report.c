@@ -61,9 +61,10 @@ static bool draw(struct report *r, char *name)
     /* The name is kept, or freed here. */
     if (drawn && !has_section(name) && r->nfigure < MOST_FIGURES) r->figure[r->nfigure++] = name;
     else free(name);
-    /* No rows: the figure is of another study. */
-    if (!drawn && e.kind != ERR_NO_INPUT) *r->e = e;
-    return drawn || e.kind == ERR_NO_INPUT;
+    /* No rows: the figure is of another study. A description that cannot be read is none of that. */
+    const bool no_rows = e.kind == ERR_NO_INPUT && e.file[0] == '\0';
+    if (!drawn && !no_rows) *r->e = e;
+    return drawn || no_rows;
 }
 
 /* Every figure that plots/ has: a new one needs no line here. */
@@ -93,6 +94,10 @@ static bool add_plan(void *context, int ncolumn, const char *const *name, const 
     if (r->nplan == MOST_SCENARIOS) return false;
     if (plan_read(&r->plan[r->nplan], value[0], &o, &ignored)) r->nplan++;
     else plan_free(&r->plan[r->nplan]);
+    /* One that is there and cannot be read is worth a word. */
+    if (ignored.file[0] && ignored.kind != ERR_DATA && ignored.kind != ERR_CONFIG)
+        fprintf(stderr, "mimdsim: the machine of scenario %s is left out of the report: %s: %s\n", value[0],
+                ignored.file, ignored.text);
     return true;
 }
 

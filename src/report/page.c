@@ -8,6 +8,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/beside.h"
 #include "base/check.h"
@@ -140,7 +141,9 @@ bool page_close(struct page *p, const char *folder, const char *name, bool keep,
         text_add(&p->list_md, "\n");
         text_add(&p->list_html, "</ul>\n</nav>\n");
     }
-    const bool ok = !keep || (write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
+    const bool whole = p->trouble.kind == ERR_NONE;
+    if (keep && !whole) *e = p->trouble;
+    const bool ok = !keep || (whole && write_file(folder, name, "md", &p->text_md, p->list_at_md, &p->list_md, e) &&
                               write_file(folder, name, "html", &p->text_html, p->list_at_html, &p->list_html, e));
     struct text *const mine[] = {&p->text_md, &p->text_html, &p->list_md, &p->list_html, &p->script};
     for (int i = 0; i < 5; i++) text_free(mine[i]);
@@ -317,7 +320,7 @@ static void put_picture_md(struct page *p, const char *name)
 }
 
 /* The picture of a drawing: HTML contains it, so that it can be sent alone. False: it was not
- * drawn, or cannot be read, which is no error of the report. */
+ * drawn, or is no picture of ours, which is no error of the report. */
 static bool put_picture(struct page *p, const char *name)
 {
     struct text path = {0}, svg = {0}, clean = {0};
@@ -330,6 +333,9 @@ static bool put_picture(struct page *p, const char *name)
     FILE *out = text_stream(&clean);
     bool ok = text_read_file(&svg, path.s, &ignored) && svg_clean(&svg, prefix, out, &ignored);
     text_stream_end(out);
+    /* One that is there and cannot be read is told at the end, the first of them. */
+    if (!ok && ignored.kind != ERR_DATA && access(path.s, F_OK) == 0 && p->trouble.kind == ERR_NONE)
+        p->trouble = ignored;
     if (ok) {
         put_picture_md(p, name);
         fwrite(clean.s, 1, clean.length, p->html);

@@ -20,6 +20,7 @@ struct page {
     bool has_contents;
     size_t list_at_md, list_at_html; /* where the list goes */
     struct text list_md, list_html;
+    struct err trouble; /* a picture that is there and could not be read */
 };
 
 /* page_open: begin a report; p->figures and p->data_dir are the caller's, set before and borrowed. The look and the

@@ -78,6 +78,14 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
     return *kept;
 }
 
+/* A loop that ends at the first step without a row would take an error for the end. */
+bool store_next(struct store *s, sqlite3_stmt *q, bool *row, struct err *e)
+{
+    const int code = sqlite3_step(q);
+    *row = code == SQLITE_ROW;
+    return *row || code == SQLITE_DONE || store_failed(s, e);
+}
+
 bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e)
 {
     bool ok = sqlite3_step(statement) == SQLITE_DONE || store_failed(s, e);

@@ -69,6 +69,10 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
 /* store_step: run a statement that returns no row, and reset it. */
 bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e);
 
+/* store_next: the next row of `q`: *row tells whether there is one. Returns false with the error set when the rows end
+ * for any other reason than that there are no more. */
+bool store_next(struct store *s, sqlite3_stmt *q, bool *row, struct err *e);
+
 /* store_failed: set *e from the database's last error: what went wrong, in which file. Returns false. */
 bool store_failed(struct store *s, struct err *e);
 

@@ -220,7 +220,8 @@ static bool take_parts(struct store *s, struct err *e)
             " WHERE m.type = 'table' AND f.\"table\" = 'run' AND f.\"from\" = 'run_id'",
             -1, &q, NULL) == SQLITE_OK;
     if (!ok) store_failed(s, e);
-    while (ok && sqlite3_step(q) == SQLITE_ROW)
+    bool row = true;
+    while (ok && (ok = store_next(s, q, &row, e)) && row)
         ok = take_rows(s, "INSERT", (const char *)sqlite3_column_text(q, 0),
                        "JOIN merge_run m ON m.old = t.run_id", e);
     sqlite3_finalize(q);

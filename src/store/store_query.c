@@ -45,15 +45,24 @@ static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
     }
 }
 
-/* The text belongs to SQLite, until the next step. */
-static struct store_value column_value(sqlite3_stmt *q, int column)
+/* The text belongs to SQLite, until the next step. One that there was no memory for is no NULL of the
+ * row: *ok becomes false. */
+static const char *column_text(sqlite3_stmt *q, int column, bool *ok)
+{
+    const bool null = sqlite3_column_type(q, column) == SQLITE_NULL;
+    const char *text = (const char *)sqlite3_column_text(q, column);
+    if (!null && text == NULL) *ok = false;
+    return text;
+}
+
+static struct store_value column_value(sqlite3_stmt *q, int column, bool *ok)
 {
     switch (sqlite3_column_type(q, column)) {
     case SQLITE_INTEGER: return store_int(sqlite3_column_int64(q, column));
     case SQLITE_FLOAT:
         return (struct store_value){.kind = STORE_REAL, .real = sqlite3_column_double(q, column)};
     case SQLITE_NULL: return store_null();
-    default: return store_text((const char *)sqlite3_column_text(q, column));
+    default: return store_text(column_text(q, column, ok));
     }
 }
 
@@ -128,8 +137,8 @@ bool store_query(struct store *s, const char *sql, int nparam, const char *const
     /* Names before the first row, so that a table without rows has a head. */
     bool more = ok && (header == NULL || header(context, ncolumn, name, NULL));
     while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
-        for (int i = 0; i < ncolumn; i++) value[i] = column_value(q, i);
-        more = row(context, ncolumn, name, value);
+        for (int i = 0; i < ncolumn; i++) value[i] = column_value(q, i, &ok);
+        more = ok ? row(context, ncolumn, name, value) : store_failed(s, e);
     }
     /* SQLITE_ROW: the row function stopped the query, which is no error of the database. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);
@@ -151,8 +160,8 @@ bool store_select(struct store *s, const char *sql, int nparam, const char *cons
     for (int i = 0; ok && i < ncolumn; i++) name[i] = sqlite3_column_name(q, i);
     bool more = ok;
     while (more && (code = sqlite3_step(q)) == SQLITE_ROW) {
-        for (int i = 0; i < ncolumn; i++) value[i] = (const char *)sqlite3_column_text(q, i);
-        more = row(context, ncolumn, name, value);
+        for (int i = 0; i < ncolumn; i++) value[i] = column_text(q, i, &ok);
+        more = ok ? row(context, ncolumn, name, value) : store_failed(s, e);
     }
     /* As in store_query: a row function that stops the query makes no error. */
     if (code != SQLITE_DONE && code != SQLITE_ROW) ok = store_failed(s, e);

@@ -147,7 +147,8 @@ static bool number_settings(struct store *s, struct err *e)
     sqlite3_stmt *all = NULL, *set = NULL;
     bool ok = prepare(s, &all, "SELECT id, key, value FROM setting", e) &&
               prepare(s, &set, "UPDATE setting SET number = ?1, unit = ?2 WHERE id = ?3", e);
-    while (ok && sqlite3_step(all) == SQLITE_ROW) {
+    bool row = true;
+    while (ok && (ok = store_next(s, all, &row, e)) && row) {
         double number;
         enum unit unit;
         const bool is = setting_number((const char *)sqlite3_column_text(all, 1),
@@ -191,7 +192,8 @@ bool upgrade_runs(struct store *s, int version, int64_t *kept, struct err *e)
     struct work w = {
         .s = s, .identity = identity_create(table, ntable), .version = version, .kept = kept};
     bool ok = open_work(&w, e);
-    while (ok && sqlite3_step(w.select) == SQLITE_ROW) {
+    bool row = true;
+    while (ok && (ok = store_next(s, w.select, &row, e)) && row) {
         struct arena *a = arena_create();
         ok = upgrade_run(&w, a, e);
         arena_destroy(a);
