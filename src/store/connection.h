@@ -44,7 +44,7 @@ enum {
     STORE_APPLICATION = 0x6d696d64, /* "mimd" */
     STORE_VERSION = 7,              /* of schema.sql, in user_version; to be raised, too, when a default changes */
     STORE_OLDEST = 4,               /* the oldest version that is upgraded */
-    STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for */
+    STORE_BUSY_MS = 2000,           /* how long another program's lock is waited for while nobody writes */
     STORE_RANK_ROWS = 256,          /* more ranks: table rank_times stays empty */
     STORE_LINK_ROWS = 16384,        /* link loads kept of one run */
     STORE_SPAN_ROWS = 20000,        /* a longer timeline is a file */
@@ -59,6 +59,7 @@ struct store {
     bool fresh;                               /* its file was made by this store_open */
     bool passing;                             /* STORE_MEMORY: what only people read is not kept */
     bool in_transaction;                      /* store_begin's */
+    int64_t busy_change, busy_since_ms;       /* when others wrote last, and since when nobody has (guard.c) */
     int64_t build_id;                         /* row of this program in table build, 0: not looked up yet */
     sqlite3_stmt *statement[STATEMENT_COUNT]; /* owned, NULL until used */
 };

@@ -11,6 +11,7 @@
 
 #include "base/text.h"
 #include "store/connection.h"
+#include "store/guard.h"
 #include "store/schema.h"
 
 /* Studies whose rows stand for themselves. Verdicts on claims and explanations are left out: they
@@ -245,14 +246,13 @@ bool store_merge(struct store *s, const char *from, struct store_merged *done, s
 {
     memset(done, 0, sizeof *done);
     if (!look_at(s, from, e) || !attach(s, from, e)) return false;
-    /* trusted_schema: functions that a stranger's view or trigger calls are refused. Checks
-     * first, then runs, then what refers to them; the last statement commits. */
-    bool ok = store_exec(s, "PRAGMA trusted_schema = OFF; BEGIN IMMEDIATE", e) &&
+    /* Checks first, then runs, then what refers to them; the last statement commits. */
+    bool ok = store_exec(s, "BEGIN IMMEDIATE", e) && guard_schema(s, "other", from, e) &&
               check_tables(s, from, e) && check_digests(s, from, e) && choose_runs(s, done, e) &&
               take_runs(s, e) && take_parts(s, e) && take_studies(s, done, e) &&
               store_exec(s, "DROP TABLE merge_run; COMMIT", e);
     if (!ok && !sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
-    sqlite3_exec(s->db, "PRAGMA trusted_schema = ON; DETACH other", NULL, NULL, NULL);
+    sqlite3_exec(s->db, "DETACH other", NULL, NULL, NULL);
     s->build_id = 0; /* its row may have been forgotten with the rest */
     return ok;
 }

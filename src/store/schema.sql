@@ -276,13 +276,18 @@ WHERE place <= 10;
 --   difference_ps: found less expected; 0 is exact
 CREATE VIEW v_accounting AS
 SELECT r.id AS run_id, r.scenario, r.n, r.P, r.makespan_ps, r.P * r.makespan_ps AS expected_ps,
-       sum(s.compute_sum_ps + s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps) AS found_ps,
-       sum(s.compute_sum_ps + s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps)
-           - r.P * r.makespan_ps AS difference_ps,
+       s.us * 1000000 + s.ps AS found_ps,
+       (s.us - r.P * (r.makespan_ps / 1000000)) * 1000000 + (s.ps - r.P * (r.makespan_ps % 1000000)) AS difference_ps,
        r.accounting_error_ps
-FROM run r JOIN stage s ON s.run_id = r.id
-WHERE r.status IN ('ok', 'invalid')
-GROUP BY r.id;
+-- us, ps: whole microseconds and the rest apart, whose sums stay within 64 bits, NULL where a stage's own sum does not
+FROM run r JOIN (SELECT run_id,
+                        iif(count(total_sum_ps) = count(*),
+                            sum(compute_sum_ps / 1000000 + send_sum_ps / 1000000 + recv_sum_ps / 1000000
+                                + wait_sum_ps / 1000000 + contention_sum_ps / 1000000), NULL) AS us,
+                        sum(compute_sum_ps % 1000000 + send_sum_ps % 1000000 + recv_sum_ps % 1000000
+                            + wait_sum_ps % 1000000 + contention_sum_ps % 1000000) AS ps
+                 FROM stage GROUP BY run_id) s ON s.run_id = r.id
+WHERE r.status IN ('ok', 'invalid');
 
 -- Checks of all runs, with what was run.
 --   run_id: the run
@@ -302,12 +307,12 @@ FROM run r JOIN error_check e ON e.run_id = r.id;
 CREATE VIEW v_indicator AS
 SELECT r.id AS run_id, r.scenario, r.machine, r.level, r.kernel, r.formulation, r.operators, r.n, r.P, r.makespan_ps,
        1.0 * r.P * r.makespan_ps
-           / nullif(sum(s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps), 0) AS rc_ratio,
-       1.0 * sum(s.compute_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS compute_share,
-       1.0 * sum(s.send_sum_ps + s.recv_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS overhead_share,
-       1.0 * sum(s.wait_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS wait_share,
-       1.0 * sum(s.contention_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS contention_share,
-       1.0 * (r.rank_compute_max_ps - r.rank_compute_min_ps) * r.P / nullif(sum(s.compute_sum_ps), 0) AS load_spread
+           / nullif(total(s.send_sum_ps + s.recv_sum_ps + s.wait_sum_ps + s.contention_sum_ps), 0) AS rc_ratio,
+       total(s.compute_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS compute_share,
+       total(s.send_sum_ps + s.recv_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS overhead_share,
+       total(s.wait_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS wait_share,
+       total(s.contention_sum_ps) / nullif(r.P * r.makespan_ps, 0) AS contention_share,
+       1.0 * (r.rank_compute_max_ps - r.rank_compute_min_ps) * r.P / nullif(total(s.compute_sum_ps), 0) AS load_spread
 FROM run r JOIN stage s ON s.run_id = r.id
 WHERE r.status = 'ok'
 GROUP BY r.id;

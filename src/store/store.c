@@ -21,6 +21,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "store/connection.h"
+#include "store/guard.h"
 #include "store/image.h"
 #include "store/rows.h"
 #include "store/schema.h"
@@ -109,6 +110,8 @@ static bool prepare_writer(struct store *s, struct err *e)
     if ((empty && !create_schema(s, e)) || !set_journal(s, e)) return false;
     if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_file, e))
         return false;
+    if (empty || s->fresh) guard_trust(s);
+    else if (version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) return false;
     /* Tables that came after the first databases of this version; a new one has them all. */
     if (!s->fresh && !store_exec(s, strstr(schema_text(), "CREATE TABLE IF NOT EXISTS"), e)) return false;
     /* A lock or a folder that cannot be written shows now, before anything is computed. */
@@ -124,6 +127,8 @@ static bool prepare_reader(struct store *s, struct err *e)
     int64_t version;
     if (!check_owner(s, &empty, &version, e)) return false;
     if (!empty && version < STORE_VERSION && !upgrade(s, (int)version, upgrade_copy, e))
+        return false;
+    if (!empty && ((version == STORE_VERSION && !guard_schema(s, "main", s->path, e)) || !guard_rows(s, e)))
         return false;
     if (!store_exec(s, "PRAGMA query_only = ON", e)) return false;
     /* Without tables every query would fail with a message about the table. */
@@ -229,22 +234,20 @@ static bool open_reader(struct store *s, struct err *e)
     if (sqlite3_db_readonly(s->db, "main") == 1 && !log_exists(s->path)) reopen_immutable(s);
     int64_t ignored;
     struct err first = {0};
-    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
+    if (!guard_begin(s, e)) return false;
     /* The first read tells whether the log's shared memory can be used. */
     bool readable = store_number(s, "SELECT count(*) FROM sqlite_schema", &ignored, &first);
     int code = sqlite3_errcode(s->db);
     if (!readable && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) && !log_exists(s->path))
         reopen_immutable(s);
-    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
-    return prepare_reader(s, e);
+    return guard_begin(s, e) && prepare_reader(s, e);
 }
 
 static bool open_writer(struct store *s, struct err *e)
 {
     if (sqlite3_open_v2(s->path, &s->db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL))
         return store_failed(s, e);
-    sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
-    return prepare_writer(s, e);
+    return guard_begin(s, e) && prepare_writer(s, e);
 }
 
 /* Nothing of it survives store_close. `passing`: rows of single ranks and settings are not even
@@ -253,6 +256,8 @@ static bool open_memory(struct store *s, bool passing, struct err *e)
 {
     if (sqlite3_open(":memory:", &s->db) != SQLITE_OK) return store_failed(s, e);
     s->passing = passing;
+    if (!guard_begin(s, e)) return false;
+    guard_trust(s);
     return (image_load(s->db) || store_failed(s, e)) &&
            store_exec(s, "PRAGMA foreign_keys = ON; PRAGMA temp_store = MEMORY", e);
 }

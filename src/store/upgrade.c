@@ -14,6 +14,7 @@
 
 #include "base/beside.h"
 #include "store/rank_times.h"
+#include "store/guard.h"
 #include "store/rows.h"
 #include "store/upgrade_runs.h"
 
@@ -139,7 +140,8 @@ static bool remake(struct store *s, sqlite3 *fresh, const char *schema, int vers
     return for_each(s, fresh, others, drop_object, e) && for_each(s, fresh, tables, put_aside, e) &&
            store_exec(s, schema, e) && for_each(s, fresh, tables, fill_table, e) &&
            (!rows || rank_times_upgrade(s, "older_rank_stage", e)) &&
-           upgrade_runs(s, version, kept, e) && store_exec(s, identity, e);
+           upgrade_runs(s, version, kept, e) && store_exec(s, identity, e) &&
+           guard_schema(s, "main", s->path, e);
 }
 
 /* A fresh database in memory is the list of what there has to be. */
@@ -192,8 +194,7 @@ static bool copy_into(struct store *s, const char *to, struct err *e)
     bool ok = sqlite3_open_v2(s->path, &reader.db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX,
                               NULL) == SQLITE_OK ||
               store_failed(&reader, e);
-    sqlite3_busy_timeout(reader.db, STORE_BUSY_MS);
-    ok = ok && store_exec(&reader, sql, e);
+    ok = ok && guard_begin(&reader, e) && store_exec(&reader, sql, e);
     sqlite3_free(sql);
     sqlite3_close(reader.db);
     return ok;
@@ -299,6 +300,7 @@ bool upgrade_copy(struct store *s, int version, struct text *told, struct err *e
     }
     sqlite3_close(s->db);
     s->db = copy;
+    if (!guard_begin(s, e)) return false;
     ok = end(s, begin(s, e) && remake_from(s, version, &kept, e), e);
     if (!ok) return false;
     text_add(told,

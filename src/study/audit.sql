@@ -96,7 +96,8 @@ FROM run r
 JOIN stage s ON s.run_id = r.id
 WHERE r.accounting_error_ps = 0
 GROUP BY r.id
-HAVING count(s.total_sum_ps) = count(*) AND sum(s.total_sum_ps) <> r.P * r.makespan_ps
+HAVING count(s.total_sum_ps) = count(*) AND abs(sum(s.total_sum_ps) - r.P *
+    r.makespan_ps) > iif(typeof(sum(s.total_sum_ps)) = 'real', 1e-12 * r.P * r.makespan_ps, 0)
 UNION ALL
 SELECT id, 'accounting_error_ps is ' || accounting_error_ps
 FROM run
@@ -183,15 +184,15 @@ JOIN run r ON r.id = s.run_id AND r.P <= (SELECT CAST(value AS INTEGER) FROM met
 LEFT JOIN rank_stage k ON k.run_id = s.run_id AND k.stage = s.stage
 WHERE EXISTS (SELECT 1 FROM rank_stage q WHERE q.run_id = s.run_id)
 GROUP BY s.run_id, s.stage
-HAVING coalesce(sum(k.compute_ps), 0) IS NOT s.compute_sum_ps OR iif(count(k.rank) < r.P, 0,
+HAVING iif(typeof(sum(k.compute_ps)) = 'real', NULL, coalesce(sum(k.compute_ps), 0)) IS NOT s.compute_sum_ps OR iif(count(k.rank) < r.P, 0,
     min(k.compute_ps)) IS NOT s.compute_min_ps OR coalesce(max(k.compute_ps), 0) IS NOT
-    s.compute_max_ps OR coalesce(sum(k.send_ps), 0) IS NOT s.send_sum_ps OR iif(count(k.rank) <
+    s.compute_max_ps OR iif(typeof(sum(k.send_ps)) = 'real', NULL, coalesce(sum(k.send_ps), 0)) IS NOT s.send_sum_ps OR iif(count(k.rank) <
     r.P, 0, min(k.send_ps)) IS NOT s.send_min_ps OR coalesce(max(k.send_ps), 0) IS NOT
-    s.send_max_ps OR coalesce(sum(k.recv_ps), 0) IS NOT s.recv_sum_ps OR iif(count(k.rank) <
+    s.send_max_ps OR iif(typeof(sum(k.recv_ps)) = 'real', NULL, coalesce(sum(k.recv_ps), 0)) IS NOT s.recv_sum_ps OR iif(count(k.rank) <
     r.P, 0, min(k.recv_ps)) IS NOT s.recv_min_ps OR coalesce(max(k.recv_ps), 0) IS NOT
-    s.recv_max_ps OR coalesce(sum(k.wait_ps), 0) IS NOT s.wait_sum_ps OR iif(count(k.rank) <
+    s.recv_max_ps OR iif(typeof(sum(k.wait_ps)) = 'real', NULL, coalesce(sum(k.wait_ps), 0)) IS NOT s.wait_sum_ps OR iif(count(k.rank) <
     r.P, 0, min(k.wait_ps)) IS NOT s.wait_min_ps OR coalesce(max(k.wait_ps), 0) IS NOT
-    s.wait_max_ps OR coalesce(sum(k.contention_ps), 0) IS NOT s.contention_sum_ps OR
+    s.wait_max_ps OR iif(typeof(sum(k.contention_ps)) = 'real', NULL, coalesce(sum(k.contention_ps), 0)) IS NOT s.contention_sum_ps OR
     iif(count(k.rank) < r.P, 0, min(k.contention_ps)) IS NOT s.contention_min_ps OR
     coalesce(max(k.contention_ps), 0) IS NOT s.contention_max_ps OR coalesce(sum(k.messages), 0)
     <> s.messages OR coalesce(sum(k.sent_bytes), 0) <> s.sent_bytes OR coalesce(sum(k.flops), 0)
