@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "app/verb.h"
+#include "base/escape.h"
 #include "base/text.h"
 #include "run/catalogue.h"
 #include "store/build.h"
@@ -108,6 +109,7 @@ static const struct verb *verb_of_name(const char *program)
 int main(int argc, char **argv)
 {
     char help_word[] = "--help";
+    escape_terminal();
     /* A limit on the size of files is an error of a write, told as such, and not the end. */
     signal(SIGXFSZ, SIG_IGN);
     /* argp's own errors end with the status for wrong usage. */

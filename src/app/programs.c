@@ -147,12 +147,12 @@ static const char *cache_folder(struct arena *a, struct err *e)
     const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     struct text t = {0};
     /* The XDG base directory specification: a relative path there is ignored. */
-    const bool given = cache != NULL && cache[0] == '/';
-    text_add(&t, "%s%s/mimdsim/programs",
-             given          ? cache
-             : home != NULL ? home
-                            : "",
-             given ? "" : "/.cache");
+    const bool given = cache != NULL && cache[0] == '/', at_home = home != NULL && home[0] == '/';
+    if (!given && !at_home) {
+        err_set(e, ERR_CONFIG, "no folder to keep compiled programs in: neither XDG_CACHE_HOME nor HOME is set to one");
+        return NULL;
+    }
+    text_add(&t, "%s%s/mimdsim/programs", given ? cache : home, given ? "" : "/.cache");
     /* Each folder on the way; those that are there already are no failure. */
     for (char *slash = strchr(t.s + 1, '/');; slash = strchr(slash + 1, '/')) {
         if (slash != NULL) *slash = '\0';

@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/escape.h"
+
 /* Short work says nothing at all; a log file gets a line now and then. */
 static const double PATIENCE = 1.0;        /* s without a word */
 static const double TTY_INTERVAL = 0.1;    /* s between lines on a terminal */
@@ -86,9 +88,12 @@ void progress_show(struct progress *p, double done)
         snprintf(state, sizeof state, "%.0f %% (%.10g of %.10g, %.3g/s), %s left",
                  100 * done / p->total, done, p->total, rate, left);
     } else snprintf(state, sizeof state, "0 of %.10g", p->total);
-    fprintf(stderr, "%s%s: %s%s%s%s", p->tty ? "\r" : "", p->what, state, p->detail ? "; " : "",
-            p->detail ? p->detail : "", p->tty ? "\033[K" : "\n");
+    /* On a terminal the line begins again and is cleared behind its end. */
+    if (p->tty) escape_raw(STDERR_FILENO, "\r", 1);
+    fprintf(stderr, "%s: %s%s%s%s", p->what, state, p->detail ? "; " : "",
+            p->detail ? p->detail : "", p->tty ? "" : "\n");
     fflush(stderr);
+    if (p->tty) escape_raw(STDERR_FILENO, "\033[K", 3);
     p->last = now;
     p->shown = true;
 }
@@ -96,6 +101,6 @@ void progress_show(struct progress *p, double done)
 /* The line is wiped out, so that what follows begins at the margin. */
 void progress_end(struct progress *p)
 {
-    if (p->shown && p->tty) fputs("\r\033[K", stderr);
+    if (p->shown && p->tty) escape_raw(STDERR_FILENO, "\r\033[K", 4);
     p->shown = false;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/escape.h"
 #include "base/memory.h"
 
 /* One whole line goes to the result, up to a limit, and to people. Ranks share the host's
@@ -16,11 +17,14 @@ static void emit(const struct guest_line *line, int rank, int stream, enum progr
     if (said != NULL && said->length < GUEST_SAID_MOST)
         text_add(said, "%d %d %.*s\n", rank, stream, line->n, line->text);
     if (output == PROGRAM_OUTPUT_KEEP) return;
-    FILE *to = stream == 2 ? stderr : stdout;
-    if (output == PROGRAM_OUTPUT_LABEL) fprintf(to, "[%d] ", rank);
-    fprintf(to, "%.*s\n", line->n, line->text);
-    /* The rank may crash in its next step: what it wrote before is seen. */
-    fflush(to);
+    struct text whole = {0};
+    if (output == PROGRAM_OUTPUT_LABEL) text_add(&whole, "[%d] ", rank);
+    text_add_bytes(&whole, line->text, (size_t)line->n);
+    text_add(&whole, "\n");
+    /* As it is, colours and all: the program is the user's. At once, as the rank may crash in its
+     * next step. */
+    escape_raw(stream == 2 ? 2 : 1, whole.s, whole.length);
+    text_free(&whole);
 }
 
 void guest_line_add(struct guest_line *line, int rank, int stream, const char *data, size_t n,

@@ -8,6 +8,7 @@
 #include "config.h"
 
 #include "base/check.h"
+#include "base/escape.h"
 #include "loader/template.h"
 
 #ifdef SANITIZERS
@@ -52,7 +53,7 @@ static void output(struct mimdsim_host *host, int stream, const char *data, size
 {
     struct loader_instance *i = instance_of(host);
     if (i->t->hooks->output) i->t->hooks->output(i->context, stream, data, n);
-    else if (fwrite(data, 1, n, stream == 2 ? stderr : stdout) != n) return;
+    else escape_raw(stream == 2 ? 2 : 1, data, n);
 }
 
 /* Destructors, and what atexit was given, from within the program. */

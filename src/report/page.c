@@ -13,20 +13,11 @@
 #include "base/beside.h"
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/escape.h"
 #include "base/text.h"
 #include "report/markup.h"
 #include "report/report.h"
 #include "report/svg.h"
-
-/* Text for Markdown: what would be taken for markup is escaped; a line break would end a table's
- * row. */
-static void escape_md(FILE *md, const char *s, bool cell)
-{
-    for (; *s; s++) {
-        if (strchr("<>*_`[]", *s) || (cell && *s == '|')) putc('\\', md);
-        putc(*s == '\n' ? ' ' : *s, md);
-    }
-}
 
 /* Base64, RFC 4648, section 4: three bytes are four digits of six bits; a short end is filled
  * with '='. */
@@ -168,7 +159,7 @@ static void list_heading(struct page *p, const char *text, const char *anchor)
 {
     struct text md = {0}, html = {0};
     FILE *to_md = text_stream(&md), *to_html = text_stream(&html);
-    escape_md(to_md, text, false);
+    escape_markdown(to_md, text, false);
     markup_escape(to_html, text);
     text_stream_end(to_md);
     text_stream_end(to_html);
@@ -185,7 +176,7 @@ void page_heading(struct page *p, int level, const char *text)
     add_anchor(&anchor, text);
     text_add(&anchor, "%s", "");
     fprintf(p->md, "%.*s ", level, "####");
-    escape_md(p->md, text, false);
+    escape_markdown(p->md, text, false);
     fputs("\n\n", p->md);
     if (level == 2) fprintf(p->html, "<h2 id=\"%s\">", anchor.s);
     else fprintf(p->html, "<h%d>", level);
@@ -197,7 +188,7 @@ void page_heading(struct page *p, int level, const char *text)
 
 void page_paragraph(struct page *p, const char *text)
 {
-    escape_md(p->md, text, false);
+    escape_markdown(p->md, text, true);
     fputs("\n\n", p->md);
     fputs("<p>", p->html);
     markup_escape(p->html, text);
@@ -224,7 +215,7 @@ void page_row(struct page *p, bool head, int n, const char *const *cell)
     for (int i = 0; i < n; i++) {
         const char *s = cell[i] ? cell[i] : "";
         putc(' ', p->md);
-        escape_md(p->md, s, true);
+        escape_markdown(p->md, s, false);
         fputs(" |", p->md);
         fprintf(p->html, head ? "<th>" : "<td%s>", cell_class(s));
         markup_escape(p->html, s);
@@ -311,7 +302,7 @@ static void put_picture_md(struct page *p, const char *name)
 {
     const char *slash = strrchr(p->figures, '/');
     fputs("![", p->md);
-    escape_md(p->md, name, false);
+    escape_markdown(p->md, name, false);
     fputs("](", p->md);
     put_target(p->md, slash && slash[1] ? slash + 1 : p->figures);
     putc('/', p->md);
@@ -353,7 +344,7 @@ static void put_caption(struct page *p, const char *caption, int drawn, int miss
         fputs("<figcaption>", p->html);
         markup_escape(p->html, caption);
         fputs("</figcaption></figure>\n", p->html);
-        escape_md(p->md, caption, false);
+        escape_markdown(p->md, caption, false);
         fputs("\n\n", p->md);
     } else page_paragraph(p, caption);
     if (missing > 0)

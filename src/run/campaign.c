@@ -430,12 +430,15 @@ static bool run_workers(struct campaign *c, int workers, const struct run_dealer
     c->slot = memory_zeroed((size_t)c->nspec, sizeof *c->slot);
     c->arena = memory_zeroed((size_t)c->nspec, sizeof *c->arena);
     /* A worker that dies must not end the parent when it is written to. */
-    signal(SIGPIPE, SIG_IGN);
+    struct sigaction ignore = {.sa_handler = SIG_IGN}, before;
+    sigaction(SIGPIPE, &ignore, &before);
     bool ok = true;
     while (ok && c->nworker < workers) ok = start_worker(c, c->nworker, e);
     if (dealer) ok = ok && serve_stream(c, dealer, e);
     else ok = ok && hand_over(c) && serve(c, e);
     stop_workers(c, !ok);
+    /* What is printed into a closed pipe later ends this process, as anybody expects. */
+    sigaction(SIGPIPE, &before, NULL);
     /* results that were never handed over */
     for (int i = 0; i < c->nspec; i++) arena_destroy(c->arena[i]);
     free(c->arena);

@@ -79,3 +79,63 @@ soon() {
     [ -L other.md ] && grep -q 'What other.db holds' elsewhere/other.md
     [ "$(stat -c %a elsewhere/other.md)" = 600 ]
 }
+
+@test "no text of a scenario, a machine, a database or the command line moves a terminal" {
+    esc=$(printf '\033')
+    mkdir -p .local "$XDG_DATA_HOME/mimdsim/scenarios"
+    printf '%s\n' 'schema_version: 1' 'question: "is it \e[31mred\e[0m, \u009b31m or \u202etxt?"' 'machine: t3e-300' \
+        'kernel: dynamics' 'n: 4' 'ranks: 2' >own.yaml
+    cp own.yaml "$XDG_DATA_HOME/mimdsim/scenarios/own.yaml"
+    printf '%s\n' 'base: t3e-300' 'title: "\e]0;title\a"' >machine.yaml
+    clean() { # COMMAND...: whatever it says and ends with, nothing of it is a command of a terminal
+        run --separate-stderr -- "$@"
+        # C0 but for line ends and tabs, DEL, C1, and the signs of direction
+        if printf '%s\n%s\n' "$output" "$stderr" | LC_ALL=C grep -qP '[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\xaa-\xae]'; then
+            echo "$*"
+            show
+            return 1
+        fi
+    }
+    for verb in check explain plan; do
+        clean mimdsim $verb own.yaml
+        clean mimdsim $verb own.yaml --json
+    done
+    clean mimdsim explain own.yaml
+    stdout_says 'is it \u001b[31mred\u001b[0m, \u009b31m or \u202etxt?'
+    clean mimdsim scenarios
+    clean mimdsim machines machine.yaml
+    clean mimdsim run own.yaml --machine machine.yaml -o t.db
+    clean mimdsim run own.yaml -o t.db
+    clean mimdsim run "no$esc[31m.yaml"
+    clean mimdsim run own.yaml --set "n=$esc[31m"
+    clean mimdsim run own.yaml --set "$esc[31m=1"
+    clean mimdsim "$esc[31m"
+    clean mimdsim query t.db "SELECT '$esc[31m' AS a, char(155) || '31m' AS b"
+    stdout_says 'u009b31m'
+    printf '%s\n' 'schema_version: 1' "bad$(printf '\302\233')key: 1" >bad.yaml
+    clean mimdsim check bad.yaml
+    sqlite3 t.db "UPDATE run SET scenario = 'a' || char(27) || '[31m', machine = 'b' || char(155)"
+    for verb in report plot links why timeline check; do clean mimdsim $verb t.db; done
+    clean mimdsim plot t.db fig6
+    # a document stays what it was: the same text comes back
+    works mimdsim query t.db 'SELECT scenario FROM run' --json
+    json_is '$[0].scenario' "a$esc[31m"
+    ! grep -q "$esc" t.md t.html
+}
+
+@test "compiled programs are kept in a folder of the user's, not in one of the root" {
+    command -v gcc >/dev/null || skip "no gcc"
+    works mimdsim new first
+    fails_with 78 env -u XDG_CACHE_HOME -u HOME "$MIMDSIM" run first.c -o t.db
+    stderr_says 'neither XDG_CACHE_HOME nor HOME is set'
+    fails_with 78 env -u XDG_CACHE_HOME HOME= "$MIMDSIM" run first.c -o t.db
+    [ ! -e /.cache/mimdsim ] && [ ! -e t.db ]
+}
+
+@test "a closed pipe ends a campaign's table as it ends any other program" {
+    set +o pipefail
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'kernel: dynamics' 'n: 4' 'ranks: [1, 2]' >own.yaml
+    status=$(sh -c '{ "$1" run own.yaml -o t.db --jobs 2 --quiet; echo $? >&3; } 3>&2 2>err | :' - "$MIMDSIM" 2>&1)
+    # 141: by the signal; a message about the output would be one too many
+    [ "$status" = 141 ] && [ ! -s err ]
+}
