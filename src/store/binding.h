@@ -21,17 +21,20 @@ static inline bool bind_start(struct store *s, enum statement which, struct bind
 
 /* bind_int, bind_count, bind_null, bind_real, bind_text, bind_int_if: the next parameter. What is not finite or not
  * known is NULL; texts are borrowed until the statement has run. */
-static inline void bind_int(struct binding *b, int64_t v) { sqlite3_bind_int64(b->statement, b->next++, v); }
+static inline void bind_int(struct binding *b, int64_t v)
+{
+    store_bound(sqlite3_bind_int64(b->statement, b->next++, v));
+}
 static inline void bind_count(struct binding *b, uint64_t v) { bind_int(b, (int64_t)v); }
-static inline void bind_null(struct binding *b) { sqlite3_bind_null(b->statement, b->next++); }
+static inline void bind_null(struct binding *b) { store_bound(sqlite3_bind_null(b->statement, b->next++)); }
 static inline void bind_real(struct binding *b, double v)
 {
-    if (isfinite(v)) sqlite3_bind_double(b->statement, b->next++, v);
+    if (isfinite(v)) store_bound(sqlite3_bind_double(b->statement, b->next++, v));
     else bind_null(b);
 }
 static inline void bind_text(struct binding *b, const char *v)
 {
-    sqlite3_bind_text(b->statement, b->next++, v, -1, SQLITE_STATIC);
+    store_bound(sqlite3_bind_text(b->statement, b->next++, v, -1, SQLITE_STATIC));
 }
 static inline void bind_int_if(struct binding *b, bool known, int64_t v)
 {

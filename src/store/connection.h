@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/check.h"
 #include "base/err.h"
 
 /* X(name, sql): the statements that store_put and store_has use again and again. Those without a text insert a row of a
@@ -69,6 +70,22 @@ sqlite3_stmt *store_statement(struct store *s, enum statement which, struct err 
 
 /* store_step: run a statement that returns no row, and reset it. */
 bool store_step(struct store *s, sqlite3_stmt *statement, struct err *e);
+
+/* store_bound: what binding a parameter has returned. One that there was no memory for would be NULL in a row; like any
+ * refused memory (memory.h), it ends the process. */
+static inline void store_bound(int code)
+{
+    if (code == SQLITE_NOMEM) check_memory(0);
+}
+
+/* store_cell: the text in `column` of the present row, until the next one; NULL is "". */
+static inline const char *store_cell(sqlite3_stmt *q, int column)
+{
+    const bool null = sqlite3_column_type(q, column) == SQLITE_NULL;
+    const char *text = (const char *)sqlite3_column_text(q, column);
+    if (text == NULL && !null) check_memory(0);
+    return text != NULL ? text : "";
+}
 
 /* store_next: the next row of `q`: *row tells whether there is one. Returns false with the error set when the rows end
  * for any other reason than that there are no more. */

@@ -234,11 +234,8 @@ bool guard_schema(struct store *s, const char *schema, const char *path, struct 
          ok = sqlite3_prepare_v2(s->db, sql.s, -1, &q, NULL) == SQLITE_OK || store_failed(s, e);
     while (ok && (ok = store_next(s, q, &row, e)) && row) {
         const char *word[3];
-        for (int i = 0; i < 3; i++) word[i] = (const char *)sqlite3_column_text(q, i);
-        if (word[0] == NULL || word[1] == NULL || word[2] == NULL)
-            ok = err_set(e, sqlite3_errcode(s->db) == SQLITE_NOMEM ? ERR_INTERNAL : ERR_DATA,
-                         "database %s is damaged: its schema has a row without a name", path);
-        else ok = check_object(&own, path, word[0], word[1], word[2], e);
+        for (int i = 0; i < 3; i++) word[i] = store_cell(q, i);
+        ok = check_object(&own, path, word[0], word[1], word[2], e);
     }
     sqlite3_finalize(q);
     text_free(&sql);
@@ -260,7 +257,7 @@ bool guard_rows(struct store *s, struct err *e)
                   ? store_next(s, q, &row, e)
                   : store_failed(s, e);
     /* "ok", or what is wrong: "NULL value in run.status", "CHECK constraint failed in span". */
-    const char *found = ok && row ? (const char *)sqlite3_column_text(q, 0) : NULL;
+    const char *found = ok && row ? store_cell(q, 0) : NULL;
     if (found != NULL && strcmp(found, "ok") != 0)
         ok = err_set(e, ERR_DATA, "database %s is damaged: %s", s->path, found);
     sqlite3_finalize(q);

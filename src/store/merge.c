@@ -49,7 +49,7 @@ static bool attach(struct store *s, const char *from, struct err *e)
 {
     sqlite3_stmt *q = NULL;
     bool ok = sqlite3_prepare_v2(s->db, "ATTACH ?1 AS other", -1, &q, NULL) == SQLITE_OK;
-    if (ok) sqlite3_bind_text(q, 1, from, -1, SQLITE_STATIC);
+    if (ok) store_bound(sqlite3_bind_text(q, 1, from, -1, SQLITE_STATIC));
     ok = ok && sqlite3_step(q) == SQLITE_DONE;
     /* The failure is that of the other database. */
     if (!ok) store_failed(&(struct store){.db = s->db, .path = (char *)from}, e);
@@ -82,7 +82,7 @@ static bool check_tables(struct store *s, const char *from, struct err *e)
                   -1, &q, NULL) == SQLITE_OK;
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
         const bool absent = sqlite3_column_type(q, 1) == SQLITE_NULL;
-        lacking += !absent || !is_optional((const char *)sqlite3_column_text(q, 0));
+        lacking += !absent || !is_optional(store_cell(q, 0));
     }
     ok = (sqlite3_finalize(q) == SQLITE_OK && ok) || store_failed(s, e);
     return ok && (lacking == 0 || err_set(e, ERR_DATA,
@@ -110,7 +110,7 @@ static bool check_digests(struct store *s, const char *from, struct err *e)
     /* One example is enough to stop. */
     if (code == SQLITE_ROW) {
         const char *text[7];
-        for (int i = 0; i < 7; i++) text[i] = (const char *)sqlite3_column_text(q, i);
+        for (int i = 0; i < 7; i++) text[i] = store_cell(q, i);
         ok = err_set(e, ERR_DATA,
                      "run %.12s, seed %s, repetition %s has digest %s in %s (build %s) and %s in "
                      "%s (build %s);"
@@ -164,9 +164,9 @@ static bool list_columns(struct store *s, const char *table, struct text *to, st
     bool ok = sqlite3_prepare_v2(
                   s->db, "SELECT name FROM pragma_table_info(?1, 'main') WHERE name <> 'id'", -1,
                   &q, NULL) == SQLITE_OK;
-    if (ok) sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC);
+    if (ok) store_bound(sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC));
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
-        const char *name = (const char *)sqlite3_column_text(q, 0),
+        const char *name = store_cell(q, 0),
                    *comma = to->length > 0 ? ", " : "", *translated = translation(name);
         text_add(to, "%s\"%s\"", comma, name);
         if (translated != NULL) text_add(from, "%s%s", comma, translated);
@@ -223,7 +223,7 @@ static bool take_parts(struct store *s, struct err *e)
     if (!ok) store_failed(s, e);
     bool row = true;
     while (ok && (ok = store_next(s, q, &row, e)) && row)
-        ok = take_rows(s, "INSERT", (const char *)sqlite3_column_text(q, 0),
+        ok = take_rows(s, "INSERT", store_cell(q, 0),
                        "JOIN merge_run m ON m.old = t.run_id", e);
     sqlite3_finalize(q);
     return ok;

@@ -154,8 +154,8 @@ static void bind_column(struct binding *b, const struct column *c, const void *r
     case VALUE_REAL: bind_real(b, v.real); break;
     /* What lies in the buffer is gone when the statement runs. */
     case VALUE_TEXT:
-        sqlite3_bind_text(b->statement, b->next++, v.text, -1,
-                          v.text == v.buffer ? SQLITE_TRANSIENT : SQLITE_STATIC);
+        store_bound(sqlite3_bind_text(b->statement, b->next++, v.text, -1,
+                          v.text == v.buffer ? SQLITE_TRANSIENT : SQLITE_STATIC));
         break;
     default: bind_int(b, v.integer); break;
     }

@@ -335,7 +335,7 @@ bool store_commit(struct store *s, struct err *e)
 
 void store_rollback(struct store *s)
 {
-    CHECK(s->in_transaction);
+    if (!s->in_transaction) return; /* it did not begin, or its end has failed */
     /* Some errors (disk full) have rolled back already. */
     if (!sqlite3_get_autocommit(s->db)) sqlite3_exec(s->db, "ROLLBACK", NULL, NULL, NULL);
     s->in_transaction = false;

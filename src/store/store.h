@@ -86,7 +86,7 @@ bool store_insert_row(struct store *s, const char *table, int n, const char *con
 bool store_delete(struct store *s, const char *table, const char *column, struct store_value value, struct err *e);
 
 /* store_begin: open one transaction around several store_put, store_insert and store_delete; store_commit makes them
- * last, store_rollback forgets them. They do not nest. */
+ * last, store_rollback forgets them, and does nothing where none is open. They do not nest. */
 bool store_begin(struct store *s, struct err *e);
 bool store_commit(struct store *s, struct err *e);
 void store_rollback(struct store *s);

@@ -48,7 +48,7 @@ bool store_has(struct store *s, const struct run_spec *spec)
     struct binding b;
     if (!bind_identity(s, spec, &b, &ignored)) return false;
     bool has = sqlite3_step(b.statement) == SQLITE_ROW &&
-               strcmp((const char *)sqlite3_column_text(b.statement, 1), "ok") == 0;
+               strcmp(store_cell(b.statement, 1), "ok") == 0;
     sqlite3_reset(b.statement);
     return has;
 }
@@ -129,9 +129,9 @@ static void bind_number(sqlite3_stmt *add, const char *key, int nkey, const char
     double number;
     enum unit unit;
     char *name = memory_text_part(key, (size_t)nkey), *text = memory_text_part(value, (size_t)nvalue);
-    if (setting_number(name, text, &number, &unit)) sqlite3_bind_double(add, 3, number);
-    else sqlite3_bind_null(add, 3);
-    sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC);
+    if (setting_number(name, text, &number, &unit)) store_bound(sqlite3_bind_double(add, 3, number));
+    else store_bound(sqlite3_bind_null(add, 3));
+    store_bound(sqlite3_bind_text(add, 4, units_si(unit), -1, SQLITE_STATIC));
     free(name);
     free(text);
 }
@@ -146,8 +146,8 @@ static bool setting_id(struct store *s, const char *key, int nkey, const char *v
         if (!bind_start(s, add ? STATEMENT_SETTING_ADD : STATEMENT_SETTING_FIND, &b, e))
             return false;
         /* Key and value as parts of the line: no copies. */
-        sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC);
-        sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC);
+        store_bound(sqlite3_bind_text(b.statement, 1, key, nkey, SQLITE_STATIC));
+        store_bound(sqlite3_bind_text(b.statement, 2, value, nvalue, SQLITE_STATIC));
         if (add) bind_number(b.statement, key, nkey, value, nvalue);
         if (!add && !find_id(s, &b, id, e)) return false;
         if (!add && *id != 0) return true;
@@ -200,7 +200,7 @@ static bool put_rank_times(struct store *s, int64_t run, const struct run_result
     if (!bind_start(s, STATEMENT_RANK_TIMES, &b, e)) return false;
     rank_times_add(r, &t);
     bind_int(&b, run);
-    sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8);
+    store_bound(sqlite3_bind_text64(b.statement, b.next, t.s, t.length, SQLITE_STATIC, SQLITE_UTF8));
     const bool ok = store_step(s, b.statement, e);
     text_free(&t);
     return ok;
@@ -297,7 +297,7 @@ static bool put_line(struct store *s, int64_t run, int number, const char *line,
     bind_int(&b, rank);
     bind_int(&b, stream);
     /* One space ends the numbers; those that follow are the program's. */
-    sqlite3_bind_text(b.statement, b.next, rest + 1, length - (int)(rest + 1 - line), SQLITE_STATIC);
+    store_bound(sqlite3_bind_text(b.statement, b.next, rest + 1, length - (int)(rest + 1 - line), SQLITE_STATIC));
     return store_step(s, b.statement, e);
 }
 

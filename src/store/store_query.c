@@ -38,10 +38,10 @@ struct store_value store_text(const char *v)
 static void bind_value(sqlite3_stmt *q, int place, const struct store_value *v)
 {
     switch (v->kind) {
-    case STORE_NULL: sqlite3_bind_null(q, place); break;
-    case STORE_INT: sqlite3_bind_int64(q, place, v->integer); break;
-    case STORE_REAL: sqlite3_bind_double(q, place, v->real); break;
-    case STORE_TEXT: sqlite3_bind_text(q, place, v->text, -1, SQLITE_STATIC); break;
+    case STORE_NULL: store_bound(sqlite3_bind_null(q, place)); break;
+    case STORE_INT: store_bound(sqlite3_bind_int64(q, place, v->integer)); break;
+    case STORE_REAL: store_bound(sqlite3_bind_double(q, place, v->real)); break;
+    case STORE_TEXT: store_bound(sqlite3_bind_text(q, place, v->text, -1, SQLITE_STATIC)); break;
     }
 }
 
@@ -118,7 +118,7 @@ static sqlite3_stmt *prepare(struct store *s, const char *sql, int nparam, const
         sqlite3_finalize(q);
         return NULL;
     }
-    for (int i = 0; i < nparam; i++) sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC);
+    for (int i = 0; i < nparam; i++) store_bound(sqlite3_bind_text(q, i + 1, param[i], -1, SQLITE_STATIC));
     return q;
 }
 

@@ -44,10 +44,10 @@ static void insert_statement(const char *name, int n, struct text *sql)
 static void bind(sqlite3_stmt *q, int at, const struct store_value *v)
 {
     switch (v->kind) {
-    case STORE_NULL: sqlite3_bind_null(q, at); break;
-    case STORE_INT: sqlite3_bind_int64(q, at, v->integer); break;
-    case STORE_REAL: sqlite3_bind_double(q, at, v->real); break;
-    case STORE_TEXT: sqlite3_bind_text(q, at, v->text, -1, SQLITE_STATIC); break;
+    case STORE_NULL: store_bound(sqlite3_bind_null(q, at)); break;
+    case STORE_INT: store_bound(sqlite3_bind_int64(q, at, v->integer)); break;
+    case STORE_REAL: store_bound(sqlite3_bind_double(q, at, v->real)); break;
+    case STORE_TEXT: store_bound(sqlite3_bind_text(q, at, v->text, -1, SQLITE_STATIC)); break;
     }
 }
 
@@ -98,7 +98,7 @@ bool store_only(struct store *s, const char *run_ids, struct err *e)
                                   -1, &q, NULL) == SQLITE_OK ||
                store_failed(s, e));
     if (ok) {
-        sqlite3_bind_text(q, 1, run_ids, -1, SQLITE_STATIC);
+        store_bound(sqlite3_bind_text(q, 1, run_ids, -1, SQLITE_STATIC));
         ok = sqlite3_step(q) == SQLITE_DONE || store_failed(s, e);
     }
     sqlite3_finalize(q);

@@ -49,7 +49,7 @@ static bool exec_named(struct store *s, struct err *e, const char *format, const
     return ok;
 }
 
-static const char *name_of(sqlite3_stmt *row) { return (const char *)sqlite3_column_text(row, 0); }
+static const char *name_of(sqlite3_stmt *row) { return store_cell(row, 0); }
 
 static bool has_column(struct store *s, const char *table, const char *column)
 {
@@ -60,7 +60,7 @@ static bool has_column(struct store *s, const char *table, const char *column)
 /* Views and indices of the schema are made anew with it; those of the user's own stay. */
 static bool drop_object(struct store *s, sqlite3_stmt *row, struct err *e)
 {
-    const bool view = strcmp((const char *)sqlite3_column_text(row, 1), "view") == 0;
+    const bool view = strcmp(store_cell(row, 1), "view") == 0;
     return exec_named(s, e, view ? "DROP VIEW IF EXISTS \"%w\"" : "DROP INDEX IF EXISTS \"%w\"",
                       name_of(row), NULL);
 }
@@ -83,11 +83,11 @@ static bool list_columns(struct store *s, const char *table, const char *older, 
                   s->db, "SELECT name, type, \"notnull\" AND dflt_value IS NULL"
                          " FROM pragma_table_info(?1)",
                   -1, &q, NULL) == SQLITE_OK;
-    if (ok) sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC);
+    if (ok) store_bound(sqlite3_bind_text(q, 1, table, -1, SQLITE_STATIC));
     while (ok && sqlite3_step(q) == SQLITE_ROW) {
         const char *name = name_of(q), *comma = to->length > 0 ? ", " : "";
         const bool there = has_column(s, older, name),
-                   text = sqlite3_stricmp((const char *)sqlite3_column_text(q, 1), "TEXT") == 0;
+                   text = sqlite3_stricmp(store_cell(q, 1), "TEXT") == 0;
         /* A column that may be NULL, or has a default, is left to SQLite. */
         if (!there && !sqlite3_column_int(q, 2)) continue;
         text_add(to, "%s\"%s\"", comma, name);

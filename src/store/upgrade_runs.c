@@ -130,8 +130,8 @@ static bool name_run(struct work *w, int64_t run, const char *text, struct err *
     struct binding b = {w->name, 1};
     struct text label = {0};
     char key[LABEL_KEY_LENGTH + 1];
-    run_label_changed((const char *)sqlite3_column_text(w->select, 3),
-                      (const char *)sqlite3_column_text(w->select, 4), &label);
+    run_label_changed(store_cell(w->select, 3),
+                      store_cell(w->select, 4), &label);
     machine_fingerprint(text, key);
     bind_text(&b, label.s);
     bind_text(&b, key);
@@ -151,12 +151,12 @@ static bool number_settings(struct store *s, struct err *e)
     while (ok && (ok = store_next(s, all, &row, e)) && row) {
         double number;
         enum unit unit;
-        const bool is = setting_number((const char *)sqlite3_column_text(all, 1),
-                                       (const char *)sqlite3_column_text(all, 2), &number, &unit);
-        if (is) sqlite3_bind_double(set, 1, number);
-        else sqlite3_bind_null(set, 1);
-        sqlite3_bind_text(set, 2, units_si(unit), -1, SQLITE_STATIC);
-        sqlite3_bind_int64(set, 3, sqlite3_column_int64(all, 0));
+        const bool is = setting_number(store_cell(all, 1),
+                                       store_cell(all, 2), &number, &unit);
+        if (is) store_bound(sqlite3_bind_double(set, 1, number));
+        else store_bound(sqlite3_bind_null(set, 1));
+        store_bound(sqlite3_bind_text(set, 2, units_si(unit), -1, SQLITE_STATIC));
+        store_bound(sqlite3_bind_int64(set, 3, sqlite3_column_int64(all, 0)));
         ok = store_step(s, set, e);
     }
     sqlite3_finalize(all);
@@ -168,8 +168,8 @@ static bool number_settings(struct store *s, struct err *e)
 static bool upgrade_run(struct work *w, struct arena *a, struct err *e)
 {
     const int64_t run = sqlite3_column_int64(w->select, 0);
-    const char *text = (const char *)sqlite3_column_text(w->select, 1);
-    const char *level = (const char *)sqlite3_column_text(w->select, 2);
+    const char *text = store_cell(w->select, 1);
+    const char *level = store_cell(w->select, 2);
     struct run_spec spec;
     char why[320];
     if (w->version < 7 && !name_run(w, run, text, e)) return false;

@@ -3,7 +3,7 @@
 # shellcheck disable=SC2154
 build=$(pwd)
 data=$(cd "${srcdir:-.}" && pwd)
-[ -s tests/faults/fail.so ] || exit 77
+[ -s tests/faults/fail.so ] && [ -x tests/faults/every ] || exit 77
 # what the program is built with
 mimdsim=${MIMDSIM:-$build/mimdsim}
 "$mimdsim" --version | grep -q sanitizers && exit 77
