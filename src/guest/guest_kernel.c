@@ -121,6 +121,7 @@ static bool kernel_prepare(struct program_run *r, struct arena *scratch, struct 
                                     .memory = scratch,
                                     .results = &g->results,
                                     .output = r->spec.program.output,
+                                    .stack_bytes = g->rank.stack_bytes,
                                     .said = &g->said};
     r->said = &g->said;
     g->job = &g->ranks;

@@ -158,6 +158,7 @@ static bool mpi_prepare(struct program_run *r, struct arena *scratch, struct err
                              .owner = m,
                              .memory = scratch,
                              .calls = &guest_calls,
+                             .stack_bytes = GUEST_STACK_BYTES,
                              .said = &m->said,
                              .cost = cost == PROGRAM_COST_DECLARED ? PROGRAM_COST_BLOCKS : cost,
                              .output = r->spec.program.output};

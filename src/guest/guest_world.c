@@ -106,7 +106,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
     if (w->image == NULL || !price_blocks(w, e) || !loader_reserve(w->image, nrank, &hooks, e))
         return false;
     /* From here on a crash, or a loop that calls nothing, is this program's. */
-    crash_watch(w->image);
+    crash_watch(w->image, w->stack_bytes);
     crash_limit(p->host_limit > 0 ? p->host_limit : PROGRAM_HOST_LIMIT);
     /* Collectives by the rules of the machine's software, unless a rank chooses one by name. */
     if (!collective_rules_parse(w->spec->machine.software.collectives, w->rule, &w->nrule, why,
@@ -119,7 +119,7 @@ bool guest_world_open(struct guest_world *w, const struct node_spec *node, int n
 void guest_world_close(struct guest_world *w)
 {
     crash_limit(0);
-    crash_watch(NULL);
+    crash_watch(NULL, 0);
     loader_close(w->image);
     w->image = NULL;
 }
@@ -213,6 +213,7 @@ bool guest_alone(struct guest_world *w, int part, int64_t stack_bytes, struct ar
     const struct machine_spec one = one_processor(&w->spec->machine);
     const struct record_spec nothing = {0};
     w->part = part;
+    w->stack_bytes = stack_bytes;
     w->alone = true;
     /* A run of its own beside the run that it belongs to; nothing of it is recorded but
      * time and work. */

@@ -28,6 +28,7 @@ struct guest_world {
     bool alone;                         /* one processor without a network: it has one stage */
     void *owner;                        /* whoever made it, for its own use */
     int part;                           /* enum guest_part */
+    int64_t stack_bytes;                /* of each rank */
     enum program_cost cost;             /* how its computing is counted */
     struct node_cost node;              /* what counted operations cost on a processor */
     const struct comm_functions *calls; /* what it may call: guest_calls */

@@ -33,6 +33,7 @@ struct guard {
     uint64_t magic;
     struct crash_record *record;
     const struct loader_template *watched;
+    int64_t stack_bytes; /* of its ranks */
     double seconds;
     struct sigaction before[NSIGNAL];
     stack_t stack_before;
@@ -105,15 +106,18 @@ note_frames(struct crash_record *r, const struct loader_instance *i, uint64_t pc
 /* An access near the stack pointer, far below the stack's beginning, to what is protected or not
  * there: its end. Where frames of many pages step over the guard page, the stack pointer is far
  * off, too. */
-static bool is_stack_overflow(const siginfo_t *info, const struct loader_instance *i, uintptr_t sp)
+static bool is_stack_overflow(const siginfo_t *info, const struct loader_instance *i, uintptr_t sp,
+                              int64_t stack_bytes)
 {
-    enum { NEAR = 1 << 20, LEAST_DEPTH = 16 * 1024 };
+    enum { NEAR = 1 << 20, MOST_DEPTH = 16 * 1024 };
+    /* Of small stacks the lower quarter is deep. */
+    const uintptr_t small = (uintptr_t)stack_bytes / 4 * 3, depth = small < MOST_DEPTH ? small : MOST_DEPTH;
     const uintptr_t at = (uintptr_t)info->si_addr;
     const char *file;
     uint64_t in_file;
     if (info->si_signo != SIGSEGV || (info->si_code != SEGV_ACCERR && info->si_code != SEGV_MAPERR))
         return false;
-    if (at > i->stack - LEAST_DEPTH || i->stack - at > MOST_STACK) return false;
+    if (at > i->stack - depth || i->stack - at > MOST_STACK) return false;
     if ((at > sp ? at - sp : sp - at) > NEAR) return false;
     return !loader_find_address(i->t, info->si_addr, NULL, &file, &in_file);
 }
@@ -128,7 +132,7 @@ static void note_rank(struct crash_record *r, const struct loader_template *t,
     const struct loader_instance *i = running_instance(t, pc, sp);
     if (!i) return;
     r->rank = i->host.rank;
-    const bool overflow = *kind == CRASH_SIGNAL && is_stack_overflow(info, i, sp);
+    const bool overflow = *kind == CRASH_SIGNAL && is_stack_overflow(info, i, sp, r->stack_bytes);
     if (overflow) *kind = CRASH_STACK;
     /* At an overflow the words at the stack pointer are not there to be read. */
     if (overflow) add_frame(r, t, pc);
@@ -155,6 +159,7 @@ static void handle(int number, siginfo_t *info, void *context)
     r->address = (uint64_t)(uintptr_t)info->si_addr;
     r->now_ps = -1;
     r->seconds = g->seconds;
+    r->stack_bytes = g->stack_bytes;
     r->nframe = 0;
     atomic_store(&r->kind, kind);
     if (g->watched) note_rank(r, g->watched, info, context, &kind);
@@ -201,10 +206,12 @@ void crash_guard_end(void)
 }
 
 /* Between runs nobody is watched: a fault is the simulator's own then. */
-void crash_watch(const struct loader_template *t)
+void crash_watch(const struct loader_template *t, int64_t stack_bytes)
 {
     struct guard *g = guard_of_process();
-    if (g) g->watched = t;
+    if (!g) return;
+    g->watched = t;
+    g->stack_bytes = stack_bytes;
 }
 
 void crash_limit(double seconds)

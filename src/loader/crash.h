@@ -26,6 +26,7 @@ struct crash_record {
     int rank;         /* -1: not in a rank */
     uint64_t address; /* the memory accessed, for SIGSEGV and SIGBUS */
     int64_t now_ps;   /* the rank's clock, -1: not known */
+    int64_t stack_bytes; /* that each rank has */
     double seconds;   /* the limit of host time that was passed [s] */
     int nframe;       /* places, innermost first: those within the program's files */
     struct {
@@ -46,9 +47,9 @@ void crash_record_destroy(struct crash_record *r);
 bool crash_guard_begin(struct crash_record *record, struct err *e);
 void crash_guard_end(void);
 
-/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks. Without a guard: no
- * effect. */
-void crash_watch(const struct loader_template *t);
+/* crash_watch: whose ranks run now, NULL: none; they are found by their stacks of `stack_bytes` each. Without a
+ * guard: no effect. */
+void crash_watch(const struct loader_template *t, int64_t stack_bytes);
 
 /* crash_limit: end the process when it takes `seconds` of processor time from now on; 0: no limit.
  * Without a guard: no effect. */

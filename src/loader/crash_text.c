@@ -30,7 +30,10 @@ static void describe(const struct crash_record *r, char *buffer, size_t size)
     const unsigned long long at = (unsigned long long)r->address;
     switch (atomic_load(&r->kind)) {
     case CRASH_STACK:
-        snprintf(buffer, size, "stack overflow (address 0x%llx)", at);
+        snprintf(buffer, size,
+                 "stack overflow (address 0x%llx) of a stack of %lld KiB, which .stack_bytes of a kernel "
+                 "makes larger,",
+                 at, (long long)r->stack_bytes / 1024);
         return;
     case CRASH_HOST_TIME:
         snprintf(buffer, size,

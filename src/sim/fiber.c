@@ -270,13 +270,14 @@ static size_t resident_depth(const unsigned char *resident, size_t npage)
     return npage - lowest;
 }
 
-int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
+int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed)
 {
     enum { BATCH = 1024 };
     size_t npage = p->stride / p->page, deepest = 0;
     /* mincore answers for a range of pages at once. In batches, the answer stays small whatever the
      * number of fibers. */
     unsigned char *resident = memory_take(size_product(npage, BATCH), 1);
+    *overflowed = -1;
     for (int first = 0; first < p->n; first += BATCH) {
         size_t n = (size_t)(p->n - first < BATCH ? p->n - first : BATCH);
         /* A kernel without mincore: report what was found so far, since this is a statistic
@@ -284,8 +285,11 @@ int64_t fiber_pool_stack_peak(const struct fiber_pool *p)
         if (mincore(p->base + p->stride * (size_t)first, p->stride * n, resident) != 0) break;
         for (size_t k = 0; k < n; k++) {
             const unsigned char *r = resident + k * npage;
-            CHECK(first + (int)k < p->nguard ||
-                  !(r[0] & 1)); /* the spare page was touched: stack overflow */
+            /* The spare page was touched: without a guard nothing stopped it. Stacks grow down, so
+             * of neighbours that follow each other it was the uppermost. */
+            const int i = first + (int)k;
+            if (i >= p->nguard && (r[0] & 1) && (*overflowed < 0 || *overflowed == i - 1))
+                *overflowed = i;
             size_t depth = resident_depth(r + 1, npage - 1);
             if (depth > deepest) deepest = depth;
         }

@@ -32,9 +32,9 @@ void fiber_prefetch(const struct fiber *f);
 /* fiber_leave: go back to the caller of fiber_enter; returns at the next fiber_enter. Called inside f. */
 void fiber_leave(struct fiber *f);
 
-/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages. CHECKs that no spare
- * page was touched, which is how an overflow shows where there is no guard. */
-int64_t fiber_pool_stack_peak(const struct fiber_pool *p);
+/* fiber_pool_stack_peak: deepest stack use of any fiber so far [B], in whole resident pages. *overflowed: the fiber
+ * whose stack was not enough, which shows in its spare page where there is no guard; -1: none. */
+int64_t fiber_pool_stack_peak(const struct fiber_pool *p, int *overflowed);
 
 /* fiber_pool_switches: number of fiber_enter calls so far. */
 int64_t fiber_pool_switches(const struct fiber_pool *p);

@@ -101,6 +101,20 @@ static void begin_heartbeat(const struct world *w, double now)
     atomic_store_explicit(&p->begin, now, memory_order_relaxed);
 }
 
+static int64_t stack_bytes(const struct world *w)
+{
+    return w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES;
+}
+
+/* What to do depends on whose program it is. */
+static void stack_text(const struct world *w, int rank, char *text, size_t size)
+{
+    snprintf(text, size, "rank %d of %d: stack overflow: it has used more than its stack of %lld KiB; %s", rank,
+             w->nrank, (long long)stack_bytes(w) / 1024,
+             w->load->foreign ? ".stack_bytes in the program's declaration gives every rank more"
+                              : "fewer bodies for each rank, thus more ranks, need less");
+}
+
 /* The digest covers events, what ranks received and when, and when they ended. */
 static void collect(struct world *w)
 {
@@ -126,7 +140,18 @@ static void collect(struct world *w)
     r->events = sim_events(w->sim);
     r->ties = sim_ties(w->sim);
     r->switches = fiber_pool_switches(w->fibers);
-    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
+}
+
+/* How deep stacks have become. Of very many ranks not every one has a guard page below its stack: one
+ * that went beyond has written over its neighbour's, and what the run has found is not worth much. */
+static void measure_stacks(struct world *w)
+{
+    struct run_result *r = w->result;
+    int rank;
+    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &rank);
+    if (rank < 0) return;
+    w->failed = true;
+    stack_text(w, rank, r->text, sizeof r->text);
 }
 
 /* The critical path ends with the rank that ends last, the first of several. Any of
@@ -191,7 +216,7 @@ static bool build(struct world *w, struct err *e)
     net_foresee(w->net, foresee);
     /* A log of its own, which only runs that ask for it pay for. */
     if (w->record->path) net_set_path(w->net, w->path = path_log_create());
-    w->fibers = fiber_pool_create(w->nrank, w->load->stack_bytes > 0 ? w->load->stack_bytes : STACK_BYTES, e);
+    w->fibers = fiber_pool_create(w->nrank, stack_bytes(w), e);
     return w->fibers != NULL;
 }
 
@@ -234,6 +259,7 @@ static void run(struct world *w, uint64_t seed)
         return;
     }
     if (w->nfinished == w->nrank && !w->failed && w->load->foreign && !w->load->leftovers) find_leftovers(w);
+    if (w->nfinished == w->nrank && !w->failed) measure_stacks(w);
     if (w->nfinished == w->nrank && !w->failed) {
         collect(w);
         copy_links(w);

@@ -52,6 +52,46 @@ END
     stderr_says "rank 2 in main (crash.c:21): still busy after 0.5 s of processor time"
 }
 
+@test "a stack that is too small is told with its rank, its size and what makes it larger, of very many ranks, too" {
+    ! mimdsim --version | grep -q sanitizers || skip "sanitizers need more than small stacks"
+    cat >deep.c <<'END'
+#include <mimdsim/program.h>
+static volatile int n;
+static int64_t depth = 1;
+static int __attribute__((noinline)) f(int64_t k)
+{
+    volatile char b[1024];
+    for (int i = 0; i < 1024; i += 64) b[i] = (char)k;
+    n = b[64];
+    return k > 1 ? f(k - 1) + b[0] : 0;
+}
+static void run(struct comm *c)
+{
+    double x = 1;
+    if (comm_rank(c) == comm_size(c) - 1) f(depth);
+    if (comm_rank(c) == 0) comm_publish(c, 0, 0, 1, &x);
+}
+static void serial(struct comm *c) { double x = 1; comm_publish(c, 0, 0, 1, &x); }
+PROGRAM(.title = "deep", .parameter = {PROGRAM_WHOLE(depth, 1, 1e9, "levels")}, .output = {"x"}, .run = run,
+        .serial = {{"one", serial}}, .tolerance = 1, .stack_bytes = 8192);
+END
+    deep() { mimdsim run deep.c -o t.db --quiet --set machine.topology.dims='[32, 32, 32]' "$@"; }
+    works deep --set depth=2 --set ranks=2
+    run --separate-stderr deep --set depth=8 --set ranks=2
+    [ "$status" -ne 0 ]
+    stderr_says "rank 1 in f (deep.c:"
+    stderr_says "stack overflow (address 0x"
+    stderr_says "of a stack of 8 KiB, which .stack_bytes of a kernel makes larger"
+    # where the system does not give every one of so many a guard page, it is told after the run
+    works deep --set depth=2 --set ranks=20001
+    for depth in 8 30; do
+        run --separate-stderr deep --set depth=$depth --set ranks=20001
+        [ "$status" -ne 0 ]
+        [[ $stderr == *"rank 20000 "*"stack overflow"*" stack of 8 KiB"*".stack_bytes"* ]] || { show; return 1; }
+    done
+    sql_is t.db "SELECT count(*) FROM run WHERE status = 'failed'" 3
+}
+
 @test "an exception that nobody catches ends the run, one that is caught does not" {
     made throws.cc <<'END'
 #include <iostream>

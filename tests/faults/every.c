@@ -347,6 +347,7 @@ static void leave(void)
 static void make_before(const struct command *c)
 {
     char lines[512];
+    setenv("MIMDSIM_GNUPLOT", all.gnuplot, 1);
     shell("rm -rf '%s/before' && mkdir '%s/before'", all.folder, all.folder);
     shell("cp '%s/tests/faults/small.yaml' '%s/before'", all.data, all.folder);
     shell("cp '%s/tests/data/vectors/closed_slidercrank.json' '%s/before/vector.json'", all.data,

@@ -123,7 +123,7 @@ bool guests_run(const char *path, int nrank, int n, char **argument, struct gues
     }
     struct fiber_pool *p = fiber_pool_create(nrank, 8 << 20, &g->error);
     assert_non_null(p);
-    crash_watch(t);
+    crash_watch(t, 1 << 20);
     struct rank rank[GUEST_RANKS];
     for (int i = 0; i < nrank; i++) {
         rank[i] = (struct rank){.g = g, .number = i, .n = n, .argument = argument};
@@ -136,7 +136,7 @@ bool guests_run(const char *path, int nrank, int n, char **argument, struct gues
         for (int i = 0; i < nrank; i++)
             if (!rank[i].over && fiber_enter(rank[i].fiber) && !rank[i].over) left++;
     }
-    crash_watch(NULL);
+    crash_watch(NULL, 0);
     fiber_pool_destroy(p);
     loader_close(t);
     return true;
