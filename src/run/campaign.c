@@ -20,6 +20,7 @@
 #include "loader/crash.h"
 #include "measure/run_heartbeat.h"
 #include "run/result_parts.h"
+#include "run/interrupt.h"
 #include "run/run.h"
 
 /* Poll this often [us], so that the progress of long runs moves although no run ends; and to ask a dealer. */
@@ -97,6 +98,7 @@ struct campaign {
     /* next: not yet given to a worker; handed: all before it have been handed over; ndone of
      * ntodo: progress. */
     int nspec, next, handed, nworker, ndone, ntodo;
+    pid_t parent; /* whose workers these are */
     int cores; /* processors for each run */
     const bool *skip; /* (nspec) not to be made; NULL: none */
     struct worker worker[MOST_WORKERS];
@@ -154,6 +156,8 @@ static _Noreturn void worker_main(const struct campaign *c, int at, int orders, 
     /* A parent that is killed takes its workers along: nobody would read their answers, and code of people may be in an
      * endless loop. */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != c->parent) _exit(0); /* it went before that was set */
+    interrupts_silent();
     struct run_heartbeat *heartbeat = c->heartbeat ? &c->heartbeat[at] : NULL;
     struct run_cache *cache = run_cache_create();
     struct err unguarded; /* a crash is then told by its signal alone */
@@ -179,6 +183,7 @@ static bool start_worker(struct campaign *c, int at, struct err *e)
     c->worker[at].crash = crash;
     if (crash) crash_record_clear(crash);
     if (pipe(orders) != 0 || pipe(answers) != 0) return err_set(e, ERR_INTERNAL, "no pipe: %s", strerror(errno));
+    c->parent = getpid();
     pid_t pid = fork();
     if (pid < 0) return err_set(e, ERR_INTERNAL, "no worker process: %s", strerror(errno));
     /* The child keeps its own two ends only: an end left open here would keep other workers from
@@ -476,7 +481,10 @@ bool run_campaign(const struct run_spec *spec, const struct run_order *order, in
     c.cores = online > workers ? online / workers : 1;
     if (!quiet) c.heartbeat = heartbeats_make();
     if (c.heartbeat && workers <= 1 && !apart) c.heartbeat->beat = show_progress, c.heartbeat->context = &c;
+    struct interrupts before;
+    interrupts_begin(&before);
     bool ok = workers <= 1 && !apart ? run_here(&c) : run_workers(&c, workers, NULL, e);
+    interrupts_end(&before);
     progress_end(&c.progress);
     if (c.heartbeat) munmap(c.heartbeat, MOST_WORKERS * sizeof *c.heartbeat);
     return ok;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "base/digest.h"
 #include "hosts/hosts_copy.h"
 #include "vp/matching.h"
@@ -124,7 +125,10 @@ bool shared_collect(struct world *w)
     const struct hosts *h = w->load->hosts;
     struct run_result *r = w->result;
     int64_t switches = fiber_pool_switches(w->fibers);
-    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers);
+    int overflowed;
+    r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &overflowed);
+    /* One process alone cannot end the run in good order: what it wrote over is not known. */
+    CHECK(overflowed < 0 && "a rank's stack was not enough");
     /* By number of the rank; only its own part on processes but 0. */
     uint64_t *digest = TAKE(w->scratch, w->nrank, uint64_t);
     for (int i = w->first; i < w->first + w->nown; i++) {

@@ -139,3 +139,21 @@ soon() {
     # 141: by the signal; a message about the output would be one too many
     [ "$status" = 141 ] && [ ! -s err ]
 }
+
+@test "a campaign that is interrupted says what stays, and goes on from there" {
+    printf '%s\n' 'schema_version: 1' 'machine: t3e-300' 'kernel: dynamics' 'n: [64, 96, 128, 160, 192]' 'ranks: [16, 32, 64]' \
+        'level: flit' >own.yaml
+    "$MIMDSIM" run own.yaml -o t.db --jobs 2 --quiet >/dev/null 2>err &
+    pid=$!
+    for _ in $(seq 200); do
+        [ -e t.db ] && [ "$(sql t.db 'SELECT count(*) FROM run' 2>/dev/null)" -ge 1 ] 2>/dev/null && break
+        sleep 0.05
+    done
+    kill -TERM $pid
+    status=0
+    wait $pid || status=$?
+    [ "$status" -eq 143 ]
+    grep -q 'interrupted: what is stored stays, and the same command goes on from there' err
+    [ "$(grep -c interrupted err)" = 1 ]
+    sql_is t.db 'PRAGMA integrity_check' ok
+}
