@@ -241,7 +241,9 @@ struct many_ranks_result many_ranks_publishing(int nrank, many_ranks_program *pr
         fiber_enter(r->fiber);
     }
     all.result.blocked = nrank - all.done;
-    all.result.stack_bytes = fiber_pool_stack_peak(all.pool);
+    int overflowed;
+    all.result.stack_bytes = fiber_pool_stack_peak(all.pool, &overflowed);
+    CHECK(overflowed < 0);
     give_back(&all);
     return all.result;
 }
