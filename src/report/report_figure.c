@@ -21,15 +21,14 @@
 #include "base/arena.h"
 #include "base/beside.h"
 #include "base/check.h"
-#include "base/digest.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "report/csv.h"
-#include "report/figure_rows.h"
 #include "report/figure_text.h"
 #include "report/gnuplot.h"
 #include "report/images.h"
 #include "report/report.h"
+#include "report/stamp.h"
 #include "report/svg.h"
 
 /* One figure in the making. */
@@ -103,75 +102,6 @@ static bool write_tables(struct figure *f, const char *sql, struct err *e)
     return true;
 }
 
-/* "version (commit)" of each program that made a run, joined by commas. */
-static bool add_source(void *context, int ncolumn, const char *const *name,
-                       const char *const *value)
-{
-    (void)ncolumn;
-    (void)name;
-    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "",
-             value[0] ? value[0] : "");
-    return true;
-}
-
-/* 64 digits each: their number is the length divided by 64. */
-static bool add_hash(void *context, int ncolumn, const char *const *name, const char *const *value)
-{
-    (void)ncolumn;
-    (void)name;
-    text_add(context, "%s", value[0] ? value[0] : "");
-    return true;
-}
-
-/* Of rows that belong to no run: "mimdsim 0.1.0 (commit)", the programs that wrote in this
- * database. */
-static bool writers(struct figure *f, struct text *out, struct err *e)
-{
-    struct text sources = {0};
-    bool ok =
-        store_select(f->s, "SELECT DISTINCT version || ' (' || git || ')' FROM build ORDER BY 1", 0,
-                     NULL, add_source, &sources, e);
-    if (sources.length > 0) text_add(out, "mimdsim %s", sources.s);
-    text_free(&sources);
-    return ok;
-}
-
-/* "mimdsim 0.1.0 (commit), 28 runs, configurations 3f2a91c07b11": from the rows that are shown. */
-static bool provenance(struct figure *f, struct text *out, struct err *e)
-{
-    if (f->run_ids.length == 0) return writers(f, out, e);
-    struct text sources = {0}, hashes = {0};
-    char hash[65];
-    /* run_ids is closed here, once all tables have been read. */
-    text_add(&f->run_ids, "]");
-    const char *const ids[] = {f->run_ids.s};
-    bool ok = store_select(f->s,
-                           "SELECT DISTINCT version || ' (' || git || ')' FROM v_provenance "
-                           "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1",
-                           1, ids, add_source, &sources, e) &&
-              store_select(f->s,
-                           "SELECT config_hash FROM run"
-                           " WHERE id IN (SELECT value FROM json_each(?1)) "
-                           "ORDER BY config_hash, seed, rep",
-                           1, ids, add_hash, &hashes, e);
-    /* One run is named by its own hash, several by a hash of all their hashes. */
-    size_t nrun = hashes.length / 64;
-    if (ok && nrun == 1 && sources.s)
-        text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
-    else if (ok && nrun > 1 && sources.s) {
-        digest_sha256_hex(hashes.s, hashes.length, hash);
-        text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
-    }
-    /* No figure chooses among machines in silence. */
-    struct text machines = {0};
-    ok = ok && figure_rows(f->s, f->run_ids.s, &machines, e);
-    if (machines.length > 0) text_add(out, "; %s", machines.s);
-    text_free(&machines);
-    text_free(&sources);
-    text_free(&hashes);
-    return ok;
-}
-
 /* Appends plots/NAME.gp. */
 static bool add_file(struct text *script, const char *plots, const char *name, struct err *e)
 {
@@ -188,7 +118,9 @@ static bool add_file(struct text *script, const char *plots, const char *name, s
 static bool write_provenance(struct figure *f, struct err *e)
 {
     struct text source = {0}, path = {0};
-    bool ok = provenance(f, &source, e);
+    /* run_ids is closed here, once all tables have been read. */
+    if (f->run_ids.length > 0) text_add(&f->run_ids, "]");
+    bool ok = stamp_make(f->s, f->run_ids.s, &source, e);
     if (source.length == 0) text_add(&source, "unknown");
     /* A database's texts must not break the line. */
     csv_plain(source.s);

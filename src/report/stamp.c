@@ -1,0 +1,129 @@
+/* stamp.c - see stamp.h.
+ *
+ * A figure travels without its database, so what a reader needs to judge it stands in it. */
+#include "report/stamp.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/digest.h"
+#include "report/figure_rows.h"
+#include "store/build.h"
+
+/* "version (commit)" of each program that made a run, joined by commas. */
+static bool add_source(void *context, int ncolumn, const char *const *name,
+                       const char *const *value)
+{
+    (void)ncolumn, (void)name;
+    text_add(context, "%s%s", ((struct text *)context)->length ? ", " : "",
+             value[0] ? value[0] : "");
+    return true;
+}
+
+/* 64 digits each: their number is the length divided by 64. */
+static bool add_hash(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    (void)ncolumn, (void)name;
+    text_add(context, "%s", value[0] ? value[0] : "");
+    return true;
+}
+
+/* One error: of all runs, of some, of none. `value`: the text of the largest. */
+static void add_error(struct text *t, const char *what, const char *value, int known, int all)
+{
+    text_add(t, "%s%s ", t->length > 0 ? ", " : "error of ", what);
+    if (known == 0) text_add(t, "not known");
+    else text_add(t, "%s", value);
+    if (known > 0 && known < all) text_add(t, " (%d of %d runs)", known, all);
+}
+
+/* runs, level error and how many know it, machine's low, high and how many, arithmetic's and how many */
+static bool add_errors(void *context, int ncolumn, const char *const *name, const char *const *value)
+{
+    struct text *t = context;
+    double x[8];
+    char text[64];
+    (void)ncolumn, (void)name;
+    for (int i = 0; i < 8; i++) x[i] = value[i] != NULL ? strtod(value[i], NULL) : 0;
+    const int all = (int)x[0];
+    /* runs without a predicted time have no error of it */
+    if (all == 0) return false;
+    snprintf(text, sizeof text, "<= %.2g %%", 100 * x[1]);
+    add_error(t, "level", text, (int)x[2], all);
+    snprintf(text, sizeof text, "%+.0f..%+.0f %%", 100 * x[3], 100 * x[4]);
+    add_error(t, "machine", text, (int)x[5], all);
+    snprintf(text, sizeof text, "<= %.1g", x[6]);
+    add_error(t, "arithmetic", text, (int)x[7], all);
+    return false;
+}
+
+/* A database of a program that did not know errors yet has no such view: nothing is said then. */
+static void known_errors(struct store *s, const char *run_ids, struct text *out)
+{
+    struct err ignored;
+    const char *const bound[] = {run_ids};
+    err_clear(&ignored);
+    (void)store_select(s,
+                       "SELECT count(*), max(level_error), count(level_error), min(machine_low),"
+                       " max(machine_high), count(machine_low), max(arithmetic_error),"
+                       " count(arithmetic_error) FROM v_known_error"
+                       " WHERE run_id IN (SELECT value FROM json_each(?1))",
+                       1, bound, add_errors, out, &ignored);
+    if (out->length > 0) text_add(out, "; ");
+}
+
+/* The commit that draws, unless its name is there already. */
+static void add_drawer(struct text *out)
+{
+    const struct build b = store_build();
+    if (out->length > 0 && strstr(out->s, b.git) == NULL) text_add(out, "; drawn by %s", b.git);
+}
+
+/* Of rows that belong to no run: "mimdsim 0.1.0 (commit)", the programs that wrote in this
+ * database. */
+static bool writers(struct store *s, struct text *out, struct err *e)
+{
+    struct text sources = {0};
+    bool ok =
+        store_select(s, "SELECT DISTINCT version || ' (' || git || ')' FROM build ORDER BY 1", 0,
+                     NULL, add_source, &sources, e);
+    if (sources.length > 0) text_add(out, "mimdsim %s", sources.s);
+    text_free(&sources);
+    add_drawer(out);
+    return ok;
+}
+
+bool stamp_make(struct store *s, const char *run_ids, struct text *out, struct err *e)
+{
+    if (run_ids == NULL) return writers(s, out, e);
+    struct text sources = {0}, hashes = {0};
+    char hash[65];
+    const char *const ids[] = {run_ids};
+    bool ok = store_select(s,
+                           "SELECT DISTINCT version || ' (' || git || ')' FROM v_provenance "
+                           "WHERE run_id IN (SELECT value FROM json_each(?1)) ORDER BY 1",
+                           1, ids, add_source, &sources, e) &&
+              store_select(s,
+                           "SELECT config_hash FROM run"
+                           " WHERE id IN (SELECT value FROM json_each(?1)) "
+                           "ORDER BY config_hash, seed, rep",
+                           1, ids, add_hash, &hashes, e);
+    if (ok) known_errors(s, run_ids, out);
+    /* One run is named by its own hash, several by a hash of all their hashes. */
+    const size_t nrun = hashes.length / 64;
+    if (ok && nrun == 1 && sources.s)
+        text_add(out, "mimdsim %s, configuration %.12s", sources.s, hashes.s);
+    else if (ok && nrun > 1 && sources.s) {
+        digest_sha256_hex(hashes.s, hashes.length, hash);
+        text_add(out, "mimdsim %s, %zu runs, configurations %.12s", sources.s, nrun, hash);
+    }
+    /* No figure chooses among machines in silence. */
+    struct text machines = {0};
+    ok = ok && figure_rows(s, run_ids, &machines, e);
+    if (machines.length > 0) text_add(out, "; %s", machines.s);
+    text_free(&machines);
+    add_drawer(out);
+    text_free(&sources);
+    text_free(&hashes);
+    return ok;
+}
