@@ -8,6 +8,7 @@
 #include "app/arguments.h"
 #include "app/campaign_mpi.h"
 #include "app/flag.h"
+#include "app/interrupt.h"
 #include "app/known_error.h"
 #include "app/levels.h"
 #include "app/run_table.h"
@@ -66,6 +67,7 @@ struct keep {
     struct run_order *order; /* in step with `run` */
     int invalid, deadlock, redundant, refined, alone; /* runs that ended so */
     int done, failed;      /* runs, failed ones among them */
+    struct interrupt interrupt;
     char reason[300];      /* of the run that was told last to have gone wrong, "": none was */
     int alike, untold;     /* runs in a row for this reason, those of them that were not told */
     int refusals, refusal; /* those that could not be made, err_kind of the first */
@@ -121,7 +123,9 @@ static bool keep_result(void *context, const struct run_spec *spec, const struct
                 spec->kernel.name, spec->model.nbody, spec->nrank, r->inner_added, r->outer_added,
                 r->twice_added ? ", twice the digits" : "",
                 r->residual_before);
-    return store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
+    const bool stored = store_put(k->store, spec, &k->order[spec - k->run], r, k->error);
+    if (stored) atomic_fetch_add(&k->interrupt.stored, 1);
+    return stored;
 }
 
 /* A launcher ends all processes when one has died, without a word from this one. So the run is stored as failed before
@@ -194,6 +198,19 @@ static bool *skipped(struct store *s, const struct plan *p, const struct run_spe
     return skip;
 }
 
+/* How many runs are left to be made; what is stored already is told, as it takes no time. */
+static int say_skipped(const struct common *c, const struct plan *p, const struct part *part, const bool *skip)
+{
+    int mine = 0, todo = 0;
+    for (int i = 0; i < p->nrun; i++) {
+        mine += shard_has(&part->shard, &p->run[i]) && is_point(part->point, &p->run[i]);
+        todo += !skip[i];
+    }
+    if (todo < mine && !c->quiet)
+        fprintf(stderr, "mimdsim: %d of %d runs are stored already (--force repeats them)\n", mine - todo, mine);
+    return todo;
+}
+
 /* Runs of its own for the settled plan, everything else is shared; and how each is executed. */
 static struct run_spec *orders_usual(const struct plan *p, struct keep *k, struct plan *settled)
 {
@@ -243,10 +260,14 @@ static bool answer(const struct common *c, const struct plan *p, const struct as
     struct run_spec *run = orders_usual(p, k, &settled);
     if (!levels_settle(k->store, run, k->order, p->nrun, c->quiet, p->arena, e)) return false;
     bool *skip = skipped(k->store, p, settled.run, &asked->part, c->force);
+    const int todo = say_skipped(c, p, &asked->part, skip);
     bool ok = call_stored(k->store, k->run, skip, p->nrun, e);
+    /* a launcher has its own way of ending a job */
+    interrupt_begin(&k->interrupt, c->database, job->on ? 0 : todo);
     if (ok && k->spread) ok = job_spread(job, p, run, k->order, skip, begin_spread, keep_result, k, e);
     else if (ok && job->on) ok = job_run(job, p, run, k->order, skip, c, keep_result, k, e);
     else if (ok) ok = run_campaign(k->run, k->order, p->nrun, skip, c->jobs, c->quiet, keep_result, k, e);
+    interrupt_end(&k->interrupt);
     free(skip);
     say_rest(k);
     /* What is known of the errors, before the rows are shown. */

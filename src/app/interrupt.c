@@ -1,0 +1,59 @@
+/* interrupt.c - see interrupt.h.
+ *
+ * A thread may print, a signal handler may not; and a handler would need a global variable. What
+ * was committed is whole whenever the process ends (store.c). */
+#include "app/interrupt.h"
+
+#include <stdio.h>
+
+/* The signals of a terminal and of kill. */
+static void fill(sigset_t *set)
+{
+    sigemptyset(set);
+    sigaddset(set, SIGINT);
+    sigaddset(set, SIGTERM);
+}
+
+/* Waits, says, and lets the signal do what it does by itself: shells look at how a process ended.
+ */
+static void *wait_for_signal(void *context)
+{
+    struct interrupt *x = context;
+    sigset_t set;
+    int number = 0;
+    fill(&set);
+    if (sigwait(&set, &number) != 0) return NULL;
+    const int stored = atomic_load(&x->stored);
+    fprintf(
+        stderr,
+        "\nmimdsim: interrupted: %d of %d runs were made and are stored in %s; the same command "
+        "goes on with the other %d\n",
+        stored, x->todo, x->database, x->todo - stored);
+    signal(number, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &set, NULL);
+    raise(number);
+    return NULL;
+}
+
+/* Blocked in this thread and all that it makes, processes included: a worker that died of the same
+ * Ctrl-C would be stored as a failed run. */
+void interrupt_begin(struct interrupt *x, const char *database, int todo)
+{
+    sigset_t set;
+    *x = (struct interrupt){.database = database, .todo = todo};
+    if (todo == 0) return;
+    fill(&set);
+    if (pthread_sigmask(SIG_BLOCK, &set, &x->before) != 0) return;
+    x->on = pthread_create(&x->thread, NULL, wait_for_signal, x) == 0;
+    if (!x->on) pthread_sigmask(SIG_SETMASK, &x->before, NULL);
+}
+
+void interrupt_end(struct interrupt *x)
+{
+    if (!x->on) return;
+    /* sigwait is where a thread can be cancelled */
+    pthread_cancel(x->thread);
+    pthread_join(x->thread, NULL);
+    pthread_sigmask(SIG_SETMASK, &x->before, NULL);
+    x->on = false;
+}
