@@ -71,6 +71,7 @@ static void mixed_classes_are_as_wide_as_the_weakest(void **state)
     (void)state;
     assert_true(uncertain_class_factor("P") == 1.15);
     assert_true(uncertain_class_factor("PR") == 1.4);
+    assert_true(uncertain_class_factor("D") == 1.6 && uncertain_class_factor("E") == 1.7);
     assert_true(uncertain_class_factor("P/PR") == 1.4);
     assert_true(uncertain_class_factor("D/E") == 1.7 && uncertain_class_factor("E/D") == 1.7);
     assert_true(uncertain_class_factor("") == 0 && uncertain_class_factor("X") == 0);
