@@ -23,6 +23,6 @@ bool audit_database(struct store *s, const struct audit_options *o, struct arena
         return false;
     /* Cheap rules first: rows of one run with each other, then each run with its configuration.
      * To make runs again takes as long as the campaign did. */
-    return audit_rows(s, r, e) && audit_configurations(s, r, e) &&
+    return audit_rows(s, r, e) && audit_settings(s, r, e) && audit_configurations(s, r, e) &&
            (o->again == 0 || audit_again(s, o, r, e));
 }

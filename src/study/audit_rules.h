@@ -10,10 +10,12 @@
 void audit_find(struct audit_report *r, int64_t run, const char *rule, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* audit_rows: the rules that are queries. audit_configurations: identity, settings, machine and
+/* audit_rows: the rules that are queries. audit_settings: numbers and units of settings, which are
+ * their texts read again. audit_configurations: identity, settings, machine and
  * serial codes of every run. audit_again: runs made again. All return false with the error of a
  * database that cannot be read. */
 bool audit_rows(struct store *s, struct audit_report *r, struct err *e);
+bool audit_settings(struct store *s, struct audit_report *r, struct err *e);
 bool audit_configurations(struct store *s, struct audit_report *r, struct err *e);
 bool audit_again(struct store *s, const struct audit_options *o, struct audit_report *r,
                  struct err *e);
