@@ -7,13 +7,18 @@
 #include <string.h>
 
 #include "app/arguments.h"
+#include "app/flag.h"
 #include "app/verb.h"
 #include "base/beside.h"
 #include "base/check.h"
+#include "base/text.h"
+#include "base/units.h"
 #include "plan/file_kind.h"
 #include "report/report.h"
+#include "report/timeline_picture.h"
 #include "report/trace.h"
 #include "run/run.h"
+#include "spec/identity.h"
 #include "store/store.h"
 
 static const char doc[] =
@@ -22,12 +27,22 @@ static const char doc[] =
     "SCENARIO, which is run for this.\n\n"
     "Example: mimdsim timeline scenarios/fig8.yaml\n"
     "         mimdsim timeline paper.db --format chrome\n"
-    "\vText goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
+    "         mimdsim timeline speedup-t3e --from \"300 us\" --to \"600 us\" --ranks 0..15\n"
+    "\v--from TIME, --to TIME: this part of the run alone, such as \"300 us\"; --ranks A..B: these "
+    "ranks alone.\n\n"
+    "Text goes to standard output, the rest into the folder: timeline.png and .svg (gnuplot), "
     "timeline.json (Chrome trace "
-    "events: ui.perfetto.dev), timeline.paje (ViTE). Traces hold at most 200000 spans and "
-    "pictures 20000, because viewers fail on more; a remark says how many are omitted.";
+    "events: ui.perfetto.dev), timeline.paje (ViTE). The picture takes any number of ranks: where "
+    "they are more than it has rows, a row is a group of ranks and shows what they do most. Over "
+    "it runs the critical path; of a stored run it is found by running it again. Traces hold at "
+    "most 200000 spans, because viewers fail on more; a remark says how many are omitted.";
 
-enum { PICTURE_SPANS = 20000 }; /* more bars than these gnuplot draws for minutes */
+/* What part of the run is shown, as it was asked for. */
+struct part {
+    int64_t begin_ps, end_ps;  /* 0, 0: all of it */
+    int first_rank, last_rank; /* with some_ranks */
+    bool some_ranks;
+};
 
 /* The run that is shown, wherever it came from. */
 struct shown {
@@ -39,7 +54,54 @@ struct shown {
     struct run_result result; /* with its spans */
     enum run_status status; /* of the run shown */
     char title[160]; /* kernel, machine, n and P */
+    struct part part;
 };
+
+/* "300 us" in picoseconds. */
+static bool read_time(const char *option, const char *text, int64_t *ps, struct err *e)
+{
+    char why[256];
+    double seconds;
+    if (!text) return true;
+    if (!units_parse(text, UNIT_TIME, &seconds, why, sizeof why))
+        return err_set(e, ERR_USAGE, "%s: %s", option, why);
+    /* A run ends within 13.3 days (int64 picoseconds). */
+    if (!(seconds >= 0 && seconds < 9e6))
+        return err_set(e, ERR_USAGE, "%s: '%s' is not a time within a run", option, text);
+    *ps = (int64_t)(seconds * 1e12 + 0.5);
+    return true;
+}
+
+/* "3..7", or "3" alone. */
+static bool read_ranks(const char *text, struct part *p, struct err *e)
+{
+    int end = 0;
+    if (!text) return true;
+    bool ok = sscanf(text, "%d..%d%n", &p->first_rank, &p->last_rank, &end) == 2 && !text[end];
+    if (!ok) {
+        ok = sscanf(text, "%d%n", &p->first_rank, &end) == 1 && !text[end];
+        p->last_rank = p->first_rank;
+    }
+    p->some_ranks = true;
+    return (ok && p->first_rank >= 0 && p->last_rank >= p->first_rank) ||
+           err_set(e, ERR_USAGE, "--ranks: '%s' is no range of ranks such as 0..15", text);
+}
+
+/* Both are known: whether the part lies in the run. */
+static bool check_part(const struct shown *t)
+{
+    const struct part *p = &t->part;
+    const struct run_result *r = &t->result;
+    if (p->some_ranks && p->last_rank >= r->nrank)
+        return err_set(t->e, ERR_USAGE, "--ranks: the run has ranks 0 to %d", r->nrank - 1);
+    if (p->end_ps > 0 && p->end_ps <= p->begin_ps)
+        return err_set(t->e, ERR_USAGE, "--to is not after --from");
+    /* A run that is stuck has no end. */
+    if (r->makespan_ps > 0 && p->begin_ps >= r->makespan_ps)
+        return err_set(t->e, ERR_USAGE, "--from: the run ends at %.6g us",
+                       (double)r->makespan_ps * 1e-6);
+    return true;
+}
 
 /* By content: a database may have any name. */
 static bool is_database(const char *path)
@@ -89,6 +151,47 @@ static bool from_database(struct shown *t)
     return trace_read(t->store, t->run_id, t->arena, &t->result, t->e);
 }
 
+/* The settings of a stored run, to make it again. */
+static bool take_config(void *context, int ncolumn, const char *const *name,
+                        const char *const *value)
+{
+    (void)ncolumn;
+    (void)name;
+    if (value[0] && value[1]) text_add(context, "%s\n%s", value[1], value[0]);
+    return false;
+}
+
+/* The critical path of a stored run is found by making the run again. That it cannot be made again
+ * is a remark: the picture is drawn without it. */
+static void find_path(struct shown *t)
+{
+    char id[24], why[256] = "it has no settings";
+    const char *const param[] = {id};
+    struct text config = {0};
+    struct run_spec spec;
+    struct run_result again;
+    struct err e;
+    err_clear(&e);
+    snprintf(id, sizeof id, "%lld", (long long)t->run_id);
+    bool ok = store_select(t->store, "SELECT config_text, rep FROM run WHERE id = ?1", 1, param,
+                           take_config, &config, &e) && config.s;
+    const char *text = ok ? strchr(config.s, '\n') + 1 : NULL;
+    ok = ok && run_from_text(&spec, text, t->arena, why, sizeof why);
+    if (ok) {
+        spec.rep = atoi(config.s);
+        spec.record.path = true;
+        ok = run_one(&spec, t->arena, &again, &e) && again.makespan_ps == t->result.makespan_ps;
+        text_copy(why, sizeof why, e.kind ? e.text : "it takes another time now");
+    }
+    if (ok) {
+        t->result.path = again.path;
+        t->result.npath = again.npath;
+    } else if (!t->common->quiet)
+        fprintf(stderr, "mimdsim: the picture has no critical path: run %s cannot be made again: %s\n",
+                id, why);
+    text_free(&config);
+}
+
 /* The first point of a scenario, run now with its spans, into a database in memory: the picture
  * is drawn by a query. */
 static bool from_scenario(struct shown *t)
@@ -99,7 +202,7 @@ static bool from_scenario(struct shown *t)
     /* The first point only: a timeline of a sweep would be unreadable. */
     struct run_spec spec = plan.run[0];
     /* Recording is switched on whatever the scenario says. */
-    spec.record.spans = true;
+    spec.record.spans = spec.record.path = true;
     snprintf(t->title, sizeof t->title, "%s on %s, n = %d, P = %d", spec.kernel.name,
              spec.machine.name, spec.model.nbody, spec.nrank);
     if (plan.nrun > 1 && !t->common->quiet)
@@ -108,7 +211,11 @@ static bool from_scenario(struct shown *t)
     t->status = t->result.status;
     if (ok && t->status != RUN_OK) fprintf(stderr, "mimdsim: %s: %s\n", t->title, t->result.text);
     t->store = ok ? store_open("timeline", STORE_MEMORY, t->e) : NULL;
-    ok = ok && t->store && store_put(t->store, &spec, NULL, &t->result, t->e);
+    /* For the picture's provenance: the row alone, as the spans are at hand. */
+    struct run_result row = t->result;
+    row.nspan = 0;
+    row.span = NULL;
+    ok = ok && t->store && store_put(t->store, &spec, NULL, &row, t->e);
     if (ok) t->run_id = store_run_id(t->store, &spec);
     plan_free(&plan);
     return ok;
@@ -119,7 +226,12 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
 {
     char path[512] = "standard output";
     int64_t left_out = 0;
-    struct trace_options o = {.title = t->title};
+    struct trace_options o = {.title = t->title,
+                              .begin_ps = t->part.begin_ps,
+                              .end_ps = t->part.end_ps,
+                              .first_rank = t->part.first_rank,
+                              .last_rank = t->part.last_rank,
+                              .some_ranks = t->part.some_ranks};
     struct beside file = {.out = stdout};
     if (ending) {
         if (!report_folder(t->common->directory, t->e)) return false;
@@ -142,21 +254,31 @@ static bool write_trace(struct shown *t, enum trace_format format, const char *e
     return ok;
 }
 
-/* The picture is figure fig8 of this one run. Reasons not to draw are remarks: the other formats
+/* The picture of the part that was asked for. Reasons not to draw are remarks: the other formats
  * are written. */
 static bool draw_picture(struct shown *t)
 {
+    const struct part *p = &t->part;
     if (t->status == RUN_DEADLOCK) {
         fprintf(stderr, "mimdsim: no picture: a run that does not end has no time axis\n");
         return true;
     }
-    if (t->result.nspan > PICTURE_SPANS) {
-        fprintf(stderr, "mimdsim: no picture: %lld spans are too many; the most is %d\n",
-                (long long)t->result.nspan, PICTURE_SPANS);
+    /* What was run now has its path already. */
+    if (t->result.npath == 0) find_path(t);
+    const struct timeline_view v = {
+        .run = &t->result,
+        .run_id = t->run_id,
+        .title = t->title,
+        .first_rank = p->some_ranks ? p->first_rank : 0,
+        .last_rank = p->some_ranks ? p->last_rank : t->result.nrank - 1,
+        .begin_ps = p->begin_ps,
+        .end_ps = p->end_ps > 0 && p->end_ps < t->result.makespan_ps ? p->end_ps
+                                                                     : t->result.makespan_ps};
+    if (v.end_ps <= v.begin_ps) {
+        fprintf(stderr, "mimdsim: no picture: the run takes no time\n");
         return true;
     }
-    bool ok = report_figure_run(t->store, plan_data_dir(), "fig8", t->run_id, "timeline",
-                                t->common->directory, t->e);
+    bool ok = timeline_picture(t->store, plan_data_dir(), &v, "timeline", t->common->directory, t->e);
     if (ok && !t->common->quiet)
         fprintf(stderr, "mimdsim: %s/timeline.png\n", t->common->directory);
     return ok;
@@ -185,15 +307,20 @@ static bool show(struct shown *t)
 int cmd_timeline(int argc, char **argv)
 {
     struct common c;
-    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_DIR | TAKES_FORMAT, "SCENARIO|DB [RUN]", doc, 1,
-                 2);
     struct err e;
     err_clear(&e);
     struct shown t = {.common = &c, .e = &e, .arena = arena_create()};
+    /* The options of this verb alone come out first. */
+    const char *from = take_value(&argc, argv, "--from"), *to = take_value(&argc, argv, "--to");
+    const char *ranks = take_value(&argc, argv, "--ranks");
+    common_parse(&c, argc, argv, TAKES_PLAN | TAKES_DIR | TAKES_FORMAT, "SCENARIO|DB [RUN]", doc, 1,
+                 2);
     /* Two arguments are a database and a run, even if the file is none: then that is the mistake
      * to tell. */
-    bool ok =
-        (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) && show(&t);
+    bool ok = read_time("--from", from, &t.part.begin_ps, &e) &&
+              read_time("--to", to, &t.part.end_ps, &e) && read_ranks(ranks, &t.part, &e) &&
+              (is_database(c.arg[0]) || c.narg > 1 ? from_database(&t) : from_scenario(&t)) &&
+              check_part(&t) && show(&t);
     store_close(t.store);
     arena_destroy(t.arena);
     if (!ok) return common_fail(&c, &e);

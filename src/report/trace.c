@@ -86,7 +86,7 @@ bool trace_write(const struct run_result *r, enum trace_format format,
     static void (*const write[])(const struct timeline *, FILE *) = {trace_chrome, trace_paje,
                                                                      trace_csv, trace_text};
     /* Ranks 0 to 0 are the default of the options, which means all. */
-    bool all = o->first_rank == 0 && o->last_rank == 0;
+    bool all = !o->some_ranks && o->first_rank == 0 && o->last_rank == 0;
     struct timeline t = {.run = r,
                          .title = o->title ? o->title : "",
                          .begin_ps = o->begin_ps,

@@ -28,7 +28,8 @@ enum { TRACE_MAX_SPANS = 200000, TRACE_COLUMNS = 100, TRACE_TEXT_RANKS = 64 };
 struct trace_options {
     const char *title;          /* one line for people: scenario, machine, n, P */
     int64_t max_spans;          /* 0: TRACE_MAX_SPANS, about 60 MB of JSON */
-    int first_rank, last_rank;  /* both 0: all */
+    int first_rank, last_rank;  /* both 0: all, unless some_ranks */
+    bool some_ranks;            /* the two are meant as they are */
     int64_t begin_ps, end_ps;   /* window; end 0: to the end */
     int columns;                /* of TRACE_TEXT; 0: TRACE_COLUMNS */
 };
