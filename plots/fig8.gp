@@ -20,7 +20,7 @@ is(kind, v) = strcol("kind") eq kind ? v : NaN
 
 unset grid; set grid xtics linecolor rgb "#e4e4e4" linewidth 0.6 linetype 1
 do for [format in formats] {
-    page_wide = 800; page_high = int(210 + 70*(last + 1))
+    page_wide = 800; page_high = int(240 + 70*(last + 1))
     if (format eq "png") { set terminal pngcairo size 2*page_wide,2*page_high font png_font linewidth 2 pointscale 3.1 dashlength 0.75 enhanced } \
     else { set terminal svg size page_wide,page_high font svg_font linewidth 1 background "#ffffff" enhanced }
     set output figure.".".format; unset title; unset xlabel; unset ylabel
@@ -29,19 +29,19 @@ do for [format in formats] {
     set lmargin at screen 0.05; set rmargin at screen 0.99; set tmargin at screen 0.9; set bmargin at screen 0.2
     unset border; unset tics; set xrange [0:1]; set yrange [0:1]
     set label 97 headline at screen 0.5,0.965 center noenhanced font large(format)
-    set label 98 subline at screen 0.5,0.933 center noenhanced textcolor rgb grey
+    set label 98 subline at screen 0.5,0.925 center noenhanced textcolor rgb grey
     set label 99 provenance at screen 0.99,0.012 right noenhanced font least(format) textcolor rgb grey
-    set key at screen 0.53,0.905 center top horizontal maxrows 1 samplen 1.2 width -1
+    set key at screen 0.53,0.898 center top horizontal maxrows 1 samplen 1.2 width -1
     plot NaN, for [j=1:5] keyentry with boxes linewidth 0.6 fillcolor rgb kind_colour[j] title kind_name[j]
     unset label 97; unset label 98; unset label 99
-    set key at screen 0.53,0.868 center top horizontal maxrows 1 samplen 1 width -2
+    set key at screen 0.53,0.858 center top horizontal maxrows 1 samplen 1 width -2
     plot NaN, for [j=1:stages+1] keyentry with boxes linewidth 0.3 fillcolor rgb stage_colour[j] title stage_name[j]
     unset key
     set border 1
-    set lmargin at screen 0.08; set rmargin at screen 0.985; set tmargin at screen 0.80; set bmargin at screen 0.14
+    set lmargin at screen 0.08; set rmargin at screen 0.985; set tmargin at screen 0.77; set bmargin at screen 0.13
     set xrange [0:total*1.001]; set yrange [last + 0.5:-0.5]
-    set xtics nomirror out scale 0.6; set ytics 1 scale 0 format "%.0f"
-    set xlabel "simulated time [µs]"; set ylabel "rank"
+    set xtics nomirror out scale 0.6 offset 0,tick_lift(format); set ytics 1 scale 0 format "%.0f"
+    set xlabel "simulated time [µs]" offset 0,name_lift(format); set ylabel "rank"
     plot for [j=1:stages+1] data using ((column("begin_us") + column("end_us"))/2): \
             (column("stage") == j-1 ? column("rank") - 0.33 : NaN):((column("end_us") - column("begin_us"))/2):(0.05) \
             with boxxyerror fillstyle solid noborder fillcolor rgb stage_colour[j], \

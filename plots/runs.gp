@@ -11,7 +11,7 @@ stats data using (p = int(column("panel")), k = int(column("series")), curve[6*p
     x = column("x"), zero = zero || x == 0, xlow = x > 0 && x < xlow ? x : xlow, xhigh = x > xhigh ? x : xhigh, \
     longest = strlen(strcol("curve")) > longest ? strlen(strcol("curve")) : longest, \
     headline = "Every run of ".strcol("kernel").(strcol("machine") eq "" ? "" : " on ".strcol("machine")), \
-    subline = sprintf("%d runs, %d curves", column("all_runs"), column("curves")).(column("left_out") > 0 ? sprintf("; %d curves with fewest points are left out", column("left_out")) : ""), \
+    subline = sprintf("%d run%s, %d curve%s", column("all_runs"), column("all_runs") == 1 ? "" : "s", column("curves"), column("curves") == 1 ? "" : "s").(column("left_out") > 0 ? sprintf("; the %d with fewest points are left out", column("left_out")) : ""), \
     axis = strcol("axis"), unit = strcol("unit"), square = column("square") == 1, measured = column("measured") == 1, 0) nooutput
 if (xlow > xhigh) { xlow = 1; xhigh = 1 }
 if (!(high > 0)) { low = 0; high = 1 }
