@@ -75,6 +75,7 @@ static bool read_time(const char *option, const char *text, int64_t *ps, struct 
 /* "3..7", or "3" alone. */
 static bool read_ranks(const char *text, struct part *p, struct err *e)
 {
+    /* The whole text must be one of the two forms: %n tells where reading stopped. */
     int end = 0;
     if (!text) return true;
     bool ok = sscanf(text, "%d..%d%n", &p->first_rank, &p->last_rank, &end) == 2 && !text[end];
@@ -90,6 +91,7 @@ static bool read_ranks(const char *text, struct part *p, struct err *e)
 /* Both are known: whether the part lies in the run. */
 static bool check_part(const struct shown *t)
 {
+    /* What a run has is known only now: messages tell it. */
     const struct part *p = &t->part;
     const struct run_result *r = &t->result;
     if (p->some_ranks && p->last_rank >= r->nrank)
@@ -165,6 +167,7 @@ static bool take_config(void *context, int ncolumn, const char *const *name,
  * is a remark: the picture is drawn without it. */
 static void find_path(struct shown *t)
 {
+    /* Settings are kept as text; the repetition decides the seed of random numbers. */
     char id[24], why[256] = "it has no settings";
     const char *const param[] = {id};
     struct text config = {0};
@@ -183,6 +186,7 @@ static void find_path(struct shown *t)
         ok = run_one(&spec, t->arena, &again, &e) && again.makespan_ps == t->result.makespan_ps;
         text_copy(why, sizeof why, e.kind ? e.text : "it takes another time now");
     }
+    /* Another time would be another path: then none is drawn. */
     if (ok) {
         t->result.path = again.path;
         t->result.npath = again.npath;
@@ -265,6 +269,7 @@ static bool draw_picture(struct shown *t)
     }
     /* What was run now has its path already. */
     if (t->result.npath == 0) find_path(t);
+    /* The part that was asked for, or all of it. */
     const struct timeline_view v = {
         .run = &t->result,
         .run_id = t->run_id,
