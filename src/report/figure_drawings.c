@@ -79,6 +79,8 @@ static bool find_description(const char *data_dir, const char *name, struct repo
 {
     char each[2000];
     text_copy(d->figure, sizeof d->figure, name);
+    /* What begins with _ draws what a verb has computed: no figure by itself. */
+    if (name[0] == '_') return figure_unknown(data_dir, name, e);
     if (figure_description(data_dir, name, sql, e)) return true;
     for (char *hyphen = strrchr(d->figure, '-'); hyphen != NULL; hyphen = strrchr(d->figure, '-')) {
         *hyphen = '\0';

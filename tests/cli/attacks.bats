@@ -77,7 +77,7 @@ attacks=$MIMDSIM_SRCDIR/tests/data/attacks
 # speedup is that of programs of one's own, which need a compiler.
 figures() {
     (cd "$MIMDSIM_DATA/plots" && for f in *.gp; do
-        case $f in style.gp) ;; speedup.gp) ! command -v gcc >/dev/null || echo speedup ;; *) echo "${f%.gp}" ;; esac
+        case $f in style.gp | _*) ;; speedup.gp) ! command -v gcc >/dev/null || echo speedup ;; *) echo "${f%.gp}" ;; esac
     done)
 }
 
@@ -96,6 +96,7 @@ every_figure() {
             --set ranks=1,2 -o all.db --quiet
     fi
     works mimdsim why small.yaml -o all.db --quiet
+    works mimdsim run small.yaml --uncertainty 8 -o all.db --quiet
     works mimdsim accuracy small.yaml -o all.db --quiet
     works mimdsim stability small.yaml -o all.db --quiet
     works mimdsim explain small.yaml --measure -o all.db --quiet

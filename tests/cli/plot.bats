@@ -147,6 +147,8 @@ cell() {
     fails_with 64 mimdsim plot --x n --y speedup
     stderr_says 'the database is missing'
     fails_with 66 mimdsim plot runs.db missing.sql
+    fails_with 66 mimdsim plot runs.db _bars
+    stderr_says "there is no figure '_bars'"
     works mimdsim plot runs.db --columns
     stdout_says makespan_s
     stdout_says 'machine.network.hop_latency'
