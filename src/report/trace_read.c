@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/picoseconds.h"
 #include "base/text.h"
 #include "report/timeline.h"
 
@@ -60,9 +61,17 @@ static bool read_span(void *context, int ncolumn, const char *const *name,
                       const struct store_value *value)
 {
     struct reading *g = context;
-    struct span *p = &g->r->span[g->r->nspan++];
+    const int64_t rank = value[0].integer, begin = value[3].integer, end = value[4].integer;
     (void)ncolumn;
     (void)name;
+    /* Formats subtract times and have a part for each rank. */
+    if (rank < 0 || rank >= g->r->nrank || begin < 0 || end < begin || end > PS_LAST)
+        return err_set(g->err, ERR_DATA,
+                       "table span, span %lld of the run: rank %lld from %lld to %lld ps; expected "
+                       "a rank below %d and times that do not fall",
+                       (long long)g->r->nspan, (long long)rank, (long long)begin, (long long)end,
+                       g->r->nrank);
+    struct span *p = &g->r->span[g->r->nspan++];
     *p = (struct span){.rank = (int)value[0].integer,
                        .stage = (int)value[1].integer,
                        .begin_ps = value[3].integer,
@@ -101,6 +110,7 @@ bool trace_read(struct store *s, int64_t run_id, struct arena *a, struct run_res
                      "ORDER BY span",
                      1, param, NULL, read_span, &g, e))
         return false;
+    if (e->kind != ERR_NONE) return false;
     /* A run without spans was not recorded: the message says how to record it. */
     return r->nspan > 0 ||
            err_set(e, ERR_NO_INPUT,
