@@ -24,11 +24,11 @@ static void *wait_for_signal(void *context)
     fill(&set);
     if (sigwait(&set, &number) != 0) return NULL;
     const int stored = atomic_load(&x->stored);
-    fprintf(
-        stderr,
-        "\nmimdsim: interrupted: %d of %d runs were made and are stored in %s; the same command "
-        "goes on with the other %d\n",
-        stored, x->todo, x->database, x->todo - stored);
+    /* as campaigns of other verbs say it (run/interrupt.c), with the counts that this one knows */
+    fprintf(stderr,
+            "\nmimdsim: interrupted: what is stored stays, and the same command goes on from there "
+            "(%d of %d runs were made, into %s)\n",
+            stored, x->todo, x->database);
     signal(number, SIG_DFL);
     pthread_sigmask(SIG_UNBLOCK, &set, NULL);
     raise(number);

@@ -232,12 +232,13 @@ static bool choose_columns(const struct columns *c, const struct run_table_look 
 /* The width of the terminal; 0: none is looked at, or it is not known. */
 static int terminal_width(FILE *out)
 {
-    /* a file or a pipe takes lines of any length */
     struct winsize size;
     const char *columns = getenv("COLUMNS");
+    /* a file or a pipe takes lines of any length */
     if (!isatty(fileno(out))) return 0;
-    if (ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-    return columns != NULL ? atoi(columns) : 0;
+    /* shells do not export it: who does means it */
+    if (columns != NULL && atoi(columns) > 0) return atoi(columns);
+    return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 /* Both are options of this verb alone. */

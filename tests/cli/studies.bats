@@ -206,7 +206,7 @@ documented() {
     command -v script >/dev/null || skip 'no script(1)'
     works mimdsim run speedup-t3e --only 'n >= 96' -o t.db --quiet
     for width in 130 80 50; do
-        script -qec "stty cols $width; '$MIMDSIM' run speedup-t3e --only 'n >= 96' -o t.db --quiet" /dev/null </dev/null |
+        COLUMNS=$width script -qec "'$MIMDSIM' run speedup-t3e --only 'n >= 96' -o t.db --quiet" /dev/null </dev/null |
             tr -d '\r' >out
         [ "$(awk '{ if (length($0) > n) n = length($0) } END { print n }' out)" -le "$width" ] || { cat out; return 1; }
         grep -q 1269.97 out
@@ -310,8 +310,8 @@ documented() {
     done
     cat err
     [ "$status" -eq 130 ]
-    grep -Eq '^mimdsim: interrupted: ([0-9]+) of 16 runs were made and are stored in c.db; the same command goes on with the other [0-9]+$' err
-    stored=$(sed -nE 's/^mimdsim: interrupted: ([0-9]+) of.*/\1/p' err)
+    grep -Eq '^mimdsim: interrupted: what is stored stays, and the same command goes on from there \([0-9]+ of 16 runs were made, into c.db\)$' err
+    stored=$(sed -nE 's/^mimdsim: interrupted: .*\(([0-9]+) of.*/\1/p' err)
     sql_is c.db "SELECT count(*) - $stored IN (0, 1), min(status = 'ok') FROM run" '1|1'
     works mimdsim "${command[@]:0:${#command[@]}-1}"
     stderr_says "of 16 runs are stored already (--force repeats them)"
