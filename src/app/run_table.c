@@ -235,10 +235,11 @@ static int terminal_width(FILE *out)
     struct winsize size;
     const char *columns = getenv("COLUMNS");
     /* a file or a pipe takes lines of any length */
-    if (!isatty(fileno(out))) return 0;
+    const int fd = out == stdout ? STDOUT_FILENO : fileno(out); /* stdout may be a filter: escape.h */
+    if (!isatty(fd)) return 0;
     /* shells do not export it: who does means it */
     if (columns != NULL && atoi(columns) > 0) return atoi(columns);
-    return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+    return ioctl(fd, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 /* Both are options of this verb alone. */
