@@ -13,14 +13,35 @@ made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 cd "$made"
 
-# figure NAME AS: from figures.db
+# figure AS ARGUMENT...: what plot draws of figures.db with these arguments
 figure() {
-    "$MIMDSIM" plot figures.db "$1" --dir drawn --quiet >/dev/null
-    cp "drawn/$1.svg" "$into/$2.svg"
+    as=$1
+    shift
+    rm -rf drawn
+    "$MIMDSIM" plot figures.db "$@" --dir drawn --quiet >/dev/null
+    cp drawn/*.svg "$into/$as.svg"
 }
 
 "$MIMDSIM" run speedup-t3e -o figures.db --quiet >/dev/null
-figure fig6 speedup-t3e
+figure speedup-t3e fig6
 rm figures.db
 "$MIMDSIM" run speedup-t3e --only 'level == loggp and n >= 8 and log2(n / 8) % 2 == 0' --uncertainty 32 -o figures.db --quiet >/dev/null
-figure uncertainty-speedup-t3e uncertainty-speedup-t3e
+figure uncertainty-speedup-t3e uncertainty
+
+# those of tutorial.md, by its commands
+rm figures.db
+"$MIMDSIM" run speedup-t3e --set n=16,32,64,128 --set level=link -o figures.db --quiet >/dev/null
+"$MIMDSIM" why speedup-t3e --set n=128 --set level=link -o figures.db --quiet >/dev/null
+figure tutorial-why why
+"$MIMDSIM" run speedup-t3e --set n=16,32,64,128 --set level=link --set machine.software.send.overhead="2 us" \
+    --set machine.software.recv.overhead="2 us" --name "T3E, fast messages" -o figures.db --quiet >/dev/null
+figure tutorial-what-if --x P --y speedup --by name
+cat >my.yaml <<'END'
+schema_version: 1
+base: t3e-300
+title: T3E with a fat tree and faster links
+topology: {family: fat-tree, dims: [16, 2]}
+network: {link: {bandwidth: 960 MB/s}}
+END
+"$MIMDSIM" run speedup-t3e -m my.yaml --set n=16,32,64,128 --set level=link -o figures.db --quiet >/dev/null
+figure tutorial-machines --x P --y makespan_s --by name
