@@ -112,10 +112,16 @@ every_figure() {
     cp all.db "$BATS_FILE_TMPDIR/"
 }
 
-# text_columns: TABLE.COLUMN of every text column of every table.
+# text_columns: TABLE.COLUMN of every text column of every table that may hold any text.
 text_columns() {
     sql all.db "SELECT m.name || '.' || c.name FROM sqlite_schema m, pragma_table_info(m.name) c
-                WHERE m.type = 'table' AND c.type = 'TEXT' ORDER BY 1"
+                WHERE m.type = 'table' AND c.type = 'TEXT' AND m.sql NOT LIKE '%CHECK (' || c.name || ' IN (%' ORDER BY 1"
+}
+
+# word_columns: of those that may hold certain words alone.
+word_columns() {
+    sql all.db "SELECT m.name || '.' || c.name FROM sqlite_schema m, pragma_table_info(m.name) c
+                WHERE m.type = 'table' AND c.type = 'TEXT' AND m.sql LIKE '%CHECK (' || c.name || ' IN (%' ORDER BY 1"
 }
 
 # add_to FILE COLUMNS: each text of COLUMNS gets what FILE holds at its end. A column under a CHECK takes it all the same.
@@ -154,7 +160,7 @@ draw_all() {
             setting.key span.kind claim.verdict claim.variant claim.id ladder.ladder ladder.quantity ladder.method ladder.rung
             ladder.status ladder.at ladder.scenario ladder_choice.ladder stability.precision stability.algorithm
             stability.status omission.class run_omission.class setting.value run.config_text
-            explain_map.subject explain_answer.subject explain_judged.claim'
+            explain_map.subject explain_answer.subject explain_judged.claim uncertainty.quantity uncertainty_share.quantity'
     shown=
     for column in $(text_columns); do case " $(echo $chosen) " in *" $column "*) ;; *) shown="$shown $column" ;; esac; done
     shown="$shown run.machine stage.name claim.id claim.statement ladder.method stability.algorithm"
@@ -193,6 +199,13 @@ draw_all() {
     add_to text "$(text_columns)"
     draw_all 0 65 66 69
     works mimdsim report bad.db --dir drawn
+    # a database whose words are none of ours is not read at all
+    for column in $(word_columns); do
+        add_to text "$column"
+        [ "$(sql bad.db "SELECT count(*) FROM ${column%.*}")" -gt 0 ] || continue
+        fails_with 65 mimdsim report bad.db --dir drawn
+        stderr_says 'CHECK constraint failed in'
+    done
     [ -z "$(find "$BATS_TEST_TMPDIR" -name 'PWNED?')" ]
 }
 
