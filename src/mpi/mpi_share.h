@@ -50,7 +50,10 @@ struct mpi_type *mpi_type_basic(const void *handle);
 MPI_Datatype mpi_type_handle(const struct mpi_type *t);
 bool mpi_type_is_basic(const struct mpi_type *t);
 struct mpi_type *mpi_type_make(struct mpi_rank *r, int combiner, int npiece);
-void mpi_type_finish(struct mpi_type *t);
+/* how far a type may reach [B]; beyond it the run ends by name */
+#define MPI_TYPE_REACH (INT64_C(1) << 56)
+int64_t mpi_type_bytes(int64_t a, int64_t b);
+void mpi_type_finish(struct mpi_rank *r, struct mpi_type *t);
 void mpi_type_remember(struct mpi_rank *r, struct mpi_type *t, int ninteger, int naddress,
                        int ntype);
 int64_t mpi_count_at(struct mpi_counts c, int64_t i);

@@ -36,6 +36,24 @@ void mpi_type_drop(struct mpi_rank *r, struct mpi_type *t)
     mpi_give(r->world, t);
 }
 
+/* mpi_type_bytes: a times b, at most MPI_TYPE_REACH either way: what a program asks for may be
+ * larger than any number, and wrapped it would be a small type. */
+int64_t mpi_type_bytes(int64_t a, int64_t b)
+{
+    int64_t c;
+    const bool wraps = __builtin_mul_overflow(a, b, &c);
+    if (wraps || c > MPI_TYPE_REACH || c < -MPI_TYPE_REACH)
+        return (a < 0) == (b < 0) ? MPI_TYPE_REACH : -MPI_TYPE_REACH;
+    return c;
+}
+
+/* No type reaches further than any memory; sums of a few such numbers still fit. */
+static void check_reach(struct mpi_rank *r, int64_t bytes)
+{
+    if (bytes >= MPI_TYPE_REACH || bytes <= -MPI_TYPE_REACH)
+        mpi_fail(r, "a datatype reaches over more than 2^56 bytes");
+}
+
 /* What bounds are made of; empty until something was put in. */
 struct bounds {
     int64_t low, high, true_low, true_high;
@@ -60,7 +78,8 @@ static void include(struct bounds *b, int64_t at, const struct mpi_type *of)
 static void include_piece(struct bounds *b, const struct mpi_piece *p)
 {
     if (p->count == 0 || p->length == 0) return;
-    int64_t last = (p->count - 1) * p->stride, end = (p->length - 1) * p->of->extent;
+    int64_t last = mpi_type_bytes(p->count - 1, p->stride),
+            end = mpi_type_bytes(p->length - 1, p->of->extent);
     include(b, p->at, p->of);
     include(b, p->at + last, p->of);
     include(b, p->at + end, p->of);
@@ -72,15 +91,15 @@ static void include_piece(struct bounds *b, const struct mpi_piece *p)
 static bool is_run(const struct mpi_piece *p, int64_t *end)
 {
     if (!p->of->dense) return false;
-    int64_t block = p->length * p->of->size;
+    int64_t block = mpi_type_bytes(p->length, p->of->size);
     if (p->count > 1 && p->stride != block) return false;
-    *end = p->at + p->count * block;
+    *end = p->at + mpi_type_bytes(p->count, block);
     return true;
 }
 
 /* mpi_type_finish: sums and bounds out of the pieces. A struct's end is aligned as its strictest
  * element. */
-void mpi_type_finish(struct mpi_type *t)
+void mpi_type_finish(struct mpi_rank *r, struct mpi_type *t)
 {
     /* Dense means that the bytes lie in the order of packing, from 0 on and without a
      * gap, so that neither packing nor unpacking is needed. */
@@ -93,9 +112,12 @@ void mpi_type_finish(struct mpi_type *t)
      * of the type map, and they have none). */
     for (int i = 0; i < t->npiece; i++) {
         const struct mpi_piece *p = &t->piece[i];
-        int64_t n = p->count * p->length;
-        t->size += n * p->of->size;
-        t->basics += n * p->of->basics;
+        int64_t n = mpi_type_bytes(p->count, p->length);
+        check_reach(r, p->at);
+        t->size += mpi_type_bytes(n, p->of->size);
+        t->basics += mpi_type_bytes(n, p->of->basics);
+        check_reach(r, t->size);
+        check_reach(r, t->basics);
         /* Section 5.1.6: the extent is rounded up as a C compiler would pad a struct.
          * Only structs do so, so that arrays of elements keep their places. */
         if (n && p->of->align > t->align) t->align = p->of->align;
@@ -104,6 +126,10 @@ void mpi_type_finish(struct mpi_type *t)
         run = run && p->at == end && is_run(p, &next);
         if (run) end = next;
     }
+    check_reach(r, b.low);
+    check_reach(r, b.high);
+    check_reach(r, b.true_low);
+    check_reach(r, b.true_high);
     /* A type without data has all bounds 0. */
     t->lb = b.low;
     t->extent = b.high - b.low;
@@ -145,9 +171,9 @@ static bool negative(struct mpi_rank *r, const char *what, int64_t n)
     return true;
 }
 
-static int finish(struct mpi_type *t, MPI_Datatype *newtype)
+static int finish(struct mpi_rank *r, struct mpi_type *t, MPI_Datatype *newtype)
 {
-    mpi_type_finish(t);
+    mpi_type_finish(r, t);
     *newtype = mpi_handle(t);
     return MPI_SUCCESS;
 }
@@ -175,7 +201,7 @@ int mpi_type_contiguous(struct mpi_rank *self, MPI_Count count, MPI_Datatype old
     struct mpi_piece piece = {.count = 1, .length = count, .of = of};
     struct mpi_type *t = one_piece(self, MPI_COMBINER_CONTIGUOUS, piece, 1, 0);
     t->integer[0] = count;
-    return finish(t, newtype);
+    return finish(self, t, newtype);
 }
 
 /* A vector's stride counts extents of the old type, an hvector's counts bytes. */
@@ -186,13 +212,13 @@ static int vector(struct mpi_rank *r, int combiner, int64_t count, int64_t lengt
     if (!of || negative(r, "count", count) || negative(r, "blocklength", length)) return r->code;
     bool in_bytes = combiner == MPI_COMBINER_HVECTOR;
     struct mpi_piece piece = {.count = count, .length = length, .of = of};
-    piece.stride = in_bytes ? stride : stride * of->extent;
+    piece.stride = in_bytes ? stride : mpi_type_bytes(stride, of->extent);
     struct mpi_type *t = one_piece(r, combiner, piece, in_bytes ? 2 : 3, in_bytes);
     t->integer[0] = count;
     t->integer[1] = length;
     if (in_bytes) t->address[0] = stride;
     else t->integer[2] = stride;
-    return finish(t, newtype);
+    return finish(r, t, newtype);
 }
 
 int mpi_type_vector(struct mpi_rank *self, MPI_Count count, MPI_Count blocklength, MPI_Count stride,
@@ -238,12 +264,14 @@ static int indexed(struct mpi_rank *r, int combiner, int64_t count, int64_t leng
         if (in_bytes) t->address[i] = place;
         else t->integer[1 + nlength + i] = place;
         t->piece[i] =
-            (struct mpi_piece){.at = in_bytes ? place : place * of->extent, .count = 1, .of = of};
+            (struct mpi_piece){.at = in_bytes ? place : mpi_type_bytes(place, of->extent),
+                               .count = 1,
+                               .of = of};
         t->piece[i].length = lengths.at ? mpi_count_at(lengths, i) : length;
     }
     t->type[0] = of;
     mpi_type_use(of);
-    return finish(t, newtype);
+    return finish(r, t, newtype);
 }
 
 /* Blocks of one length need no array. */
@@ -311,7 +339,7 @@ static int structure(struct mpi_rank *r, int64_t count, struct mpi_counts length
             (struct mpi_piece){.at = places[i], .count = 1, .length = t->integer[1 + i], .of = of};
         mpi_type_use(of);
     }
-    return finish(t, newtype);
+    return finish(r, t, newtype);
 }
 
 int mpi_type_create_struct(struct mpi_rank *self, MPI_Count count,
@@ -343,7 +371,9 @@ int mpi_type_create_resized(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Cou
     t->address[0] = lb;
     /* Whatever the bounds were, the program's count. True bounds stay those of the data. */
     t->address[1] = extent;
-    mpi_type_finish(t);
+    check_reach(self, lb);
+    check_reach(self, extent);
+    mpi_type_finish(self, t);
     t->lb = lb;
     t->extent = extent;
     t->dense = of->dense && lb == 0 && extent == t->size;
@@ -359,7 +389,7 @@ int mpi_type_dup(struct mpi_rank *self, MPI_Datatype oldtype, MPI_Datatype *newt
     if (!of) return self->code;
     struct mpi_piece piece = {.count = 1, .length = 1, .of = of};
     struct mpi_type *t = one_piece(self, MPI_COMBINER_DUP, piece, 0, 0);
-    mpi_type_finish(t);
+    mpi_type_finish(self, t);
     t->lb = of->lb;
     t->extent = of->extent;
     t->dense = of->dense;

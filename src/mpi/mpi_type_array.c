@@ -19,16 +19,19 @@ static struct mpi_type *dimension(struct mpi_rank *r, struct mpi_type *of, int64
 {
     struct mpi_type *t = mpi_type_make(r, MPI_COMBINER_RESIZED, 2);
     t->piece[0] = (struct mpi_piece){
-        .at = x->first * of->extent, .count = x->count, .length = x->length, .of = of};
-    t->piece[0].stride = x->stride * of->extent;
+        .at = mpi_type_bytes(x->first, of->extent),
+        .count = x->count,
+        .length = x->length,
+        .of = of};
+    t->piece[0].stride = mpi_type_bytes(x->stride, of->extent);
     t->piece[1] = (struct mpi_piece){
-        .at = x->rest_first * of->extent, .count = 1, .length = x->rest, .of = of};
-    mpi_type_finish(t);
+        .at = mpi_type_bytes(x->rest_first, of->extent), .count = 1, .length = x->rest, .of = of};
+    mpi_type_finish(r, t);
     /* Finishing set the bounds by what is there; a part of an array has those of the
      * whole, so that the next dimension, or the next element, lies behind all of it. */
     t->lb = 0;
     t->dense = of->dense && x->first == 0 && x->count == 1 && x->length == whole;
-    t->extent = whole * of->extent;
+    t->extent = mpi_type_bytes(whole, of->extent);
     mpi_type_remember(r, t, 0, 0, 1);
     t->type[0] = of;
     return t;
@@ -43,7 +46,7 @@ static int outermost(struct mpi_rank *r, struct mpi_type *t, struct mpi_type *of
      * and not a type for each dimension. */
     struct mpi_type *whole = mpi_type_make(r, combiner, 1);
     whole->piece[0] = (struct mpi_piece){.count = 1, .length = 1, .of = t};
-    mpi_type_finish(whole);
+    mpi_type_finish(r, whole);
     whole->lb = t->lb;
     whole->extent = t->extent;
     whole->dense = t->dense;

@@ -29,9 +29,10 @@ for name in $harnesses; do
     extra=
     [ ! -d "$build/fuzz/found/$name" ] || extra=$build/fuzz/found/$name
     LLVM_PROFILE_FILE=$name.profraw timeout 900 tests/fuzz/fuzz_"$name" "$source/tests/fuzz/corpus/$name" $extra || true
-    objects="$objects -object tests/fuzz/fuzz_$name"
+    objects="$objects ${objects:+-object} tests/fuzz/fuzz_$name"
 done
 "$profdata" merge -sparse *.profraw -o all.profdata
-(cd "$source" && ls $files) | sed "s|^|$source/|" >sources
-"$cov" report $objects -instr-profile=all.profdata $(cat sources) 2>/dev/null |
-    awk -v top="$source/" '{ sub(top, "") } /^(Filename|TOTAL|src)/ { print $1, $9, $10, $13 }' | column -t
+(cd "$source" && ls $files) >sources
+echo 'file lines branches'
+"$cov" report $objects -instr-profile=all.profdata 2>/dev/null | sed 's|^.*/src/|src/|' |
+    awk 'NR == FNR { wanted[$1]; next } $1 in wanted { print $1, $10, $13 }' sources -
