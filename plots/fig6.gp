@@ -6,7 +6,7 @@ stats data using "P" nooutput
 pmin = STATS_min; pmax = STATS_max
 stats data using "speedup" nooutput
 smin = STATS_min
-array name[last]
+array name[last + 1]; name[last + 1] = "" # gnuplot evaluates the first element of an empty loop, too
 excess = 1
 stats data using (name[int(column("series"))] = strcol("baseline"), \
     headline = "Speedup of the complete dynamics, n = P, on ".strcol("machine"), \

@@ -267,7 +267,7 @@ solver() {
     sed -n 's/^- \[.*(#\(.*\))$/\1/p' planted.md | sort >linked.md
     sed -n 's/^## //p' planted.md | grep -v -e Abstract -e Contents | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9\n_-' | sort >there.md
     diff there.md linked.md
-    grep -o 'href="#[^"]*' planted.html | sed 's/.*#//' | sort >linked.html
+    grep -o '<a href="#[^"]*' planted.html | sed 's/.*#//' | sort >linked.html
     grep -o 'h2 id="[^"]*' planted.html | sed 's/.*"//' | grep -v -e abstract -e contents | sort >there.html
     diff there.html linked.html
     [ "$(wc -l <linked.html)" -gt 5 ]
