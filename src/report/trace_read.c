@@ -17,6 +17,7 @@ struct reading {
     struct arena *a;
     struct run_result *r;
     struct err *err;
+    int64_t room; /* for so many spans */
     bool found;
 };
 
@@ -37,7 +38,8 @@ static bool read_run(void *context, int ncolumn, const char *const *name,
     g->r->nrank = (int)value[0].integer;
     g->r->makespan_ps = value[1].integer;
     /* room for all of them, counted by the same statement */
-    g->r->span = TAKE(g->a, value[2].integer + 1, struct span);
+    g->room = value[2].integer;
+    g->r->span = TAKE(g->a, g->room + 1, struct span);
     return false;
 }
 
@@ -56,33 +58,41 @@ static bool read_stage(void *context, int ncolumn, const char *const *name,
     return true;
 }
 
-/* One span. NULL as peer or message is -1. */
+/* Kinds are stored as words; -1: it is none of them. */
+static int kind_of(const char *word)
+{
+    for (int k = SPAN_COMPUTE; word != NULL && k <= SPAN_BARRIER; k++)
+        if (strcmp(word, timeline_kind((enum span_kind)k)) == 0) return k;
+    return -1;
+}
+
+/* One span. NULL as peer or message is -1. Formats subtract times, have a part for each rank, and
+ * there is room for as many as the first query counted, which a damaged index may contradict. */
 static bool read_span(void *context, int ncolumn, const char *const *name,
                       const struct store_value *value)
 {
     struct reading *g = context;
     const int64_t rank = value[0].integer, begin = value[3].integer, end = value[4].integer;
+    const int kind = kind_of(value[2].text);
     (void)ncolumn;
     (void)name;
-    /* Formats subtract times and have a part for each rank. */
-    if (rank < 0 || rank >= g->r->nrank || begin < 0 || end < begin || end > PS_LAST)
+    if (rank < 0 || rank >= g->r->nrank || begin < 0 || end < begin || end > PS_LAST || kind < 0 ||
+        g->r->nspan == g->room)
         return err_set(g->err, ERR_DATA,
-                       "table span, span %lld of the run: rank %lld from %lld to %lld ps; expected "
-                       "a rank below %d and times that do not fall",
-                       (long long)g->r->nspan, (long long)rank, (long long)begin, (long long)end,
-                       g->r->nrank);
-    struct span *p = &g->r->span[g->r->nspan++];
-    *p = (struct span){.rank = (int)value[0].integer,
-                       .stage = (int)value[1].integer,
-                       .begin_ps = value[3].integer,
-                       .end_ps = value[4].integer,
-                       .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
-                       .bytes = value[6].integer,
-                       .message = value[7].kind == STORE_INT ? value[7].integer : -1};
-    /* Kinds are stored as words. */
-    for (int k = SPAN_COMPUTE; k <= SPAN_BARRIER; k++)
-        if (strcmp(value[2].text, timeline_kind((enum span_kind)k)) == 0)
-            p->kind = (enum span_kind)k;
+                       "table span, span %lld of the run: rank %lld, kind '%.20s', %lld to %lld ps; "
+                       "expected a rank below %d, a known kind, times that do not fall",
+                       (long long)g->r->nspan, (long long)rank,
+                       value[2].text != NULL ? value[2].text : "NULL", (long long)begin,
+                       (long long)end, g->r->nrank);
+    g->r->span[g->r->nspan++] =
+        (struct span){.rank = (int)rank,
+                      .stage = (int)value[1].integer,
+                      .kind = (enum span_kind)kind,
+                      .begin_ps = begin,
+                      .end_ps = end,
+                      .peer = value[5].kind == STORE_INT ? (int)value[5].integer : -1,
+                      .bytes = value[6].integer,
+                      .message = value[7].kind == STORE_INT ? value[7].integer : -1};
     return true;
 }
 
