@@ -76,7 +76,8 @@ static bool take_question(struct lab *l, const struct node *q, const char *path,
     const char *value[4];
     for (int i = 0; i < 4; i++) {
         value[i] = document_text(q, wanted[i]);
-        if (i < 3 && value[i][0] == '\0') /* a question may be one of theory alone */
+        /* A question may be one of theory alone. */
+        if (value[i][0] == '\0' && strcmp(wanted[i], "simulated") != 0)
             return err_set_at(e, ERR_DATA, path, q->line, "question '%s' has no '%s'", q->key,
                               wanted[i]);
     }

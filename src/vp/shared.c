@@ -128,7 +128,7 @@ bool shared_collect(struct world *w)
     int overflowed;
     r->stack_peak_bytes = fiber_pool_stack_peak(w->fibers, &overflowed);
     /* One process alone cannot end the run in good order: what it wrote over is not known. */
-    CHECK(overflowed < 0 && "a rank's stack was not enough");
+    if (overflowed >= 0) check_failed(__FILE__, __LINE__, "a rank's stack was not enough");
     /* By number of the rank; only its own part on processes but 0. */
     uint64_t *digest = TAKE(w->scratch, w->nrank, uint64_t);
     for (int i = w->first; i < w->first + w->nown; i++) {
