@@ -12,6 +12,12 @@
     X("run", "limit", "SECONDS", "processor time that a run of your own program may take (default 600)")      \
     X("run", "keep-all", NULL, "also compute what the scene does not need")                                   \
     X("run", "campaign", "WAY", "mpi: the processes that mpirun started share the plan")                      \
+    X("run", "spread", "WAY", "mpi: the processes that mpirun started share the ranks of each run")           \
+    X("run", "threads", "N|auto", "host threads for each run (default auto)")                                 \
+    X("run", "uncertainty", "N", "draw the machine's uncertain parameters N times: bands and shares")         \
+    X("run", "bands-only", NULL, "with --uncertainty: without the shares of the variance")                    \
+    X("run", "columns", "NAME,...", "columns of the table, or all")                                           \
+    X("run", "csv", NULL, "print all columns with commas, for programs")                                      \
     X("plan", "shards", "N", "also the shard that each run belongs to")                                       \
     X("plan", "format", "FORMAT", "lines (default) or json")                                                  \
     X("paper", "paper-only", NULL, "without the five scenes of accuracy, stability and omissions")            \
@@ -31,10 +37,14 @@
     X("accuracy", "within", "ERROR", "recommend the cheapest way within this error, such as 2%")              \
     X("netcheck", "within", "PERCENT", "require every error to be within this, such as 2%")                   \
     X("netcheck", "stated", NULL, "print the stated accuracies and run nothing")                              \
+    X("timeline", "from", "TIME", "begin there, such as 1.2 ms")                                              \
+    X("timeline", "to", "TIME", "end there")                                                                  \
+    X("timeline", "ranks", "A..B", "these ranks alone")                                                       \
     X("explain", "measure", NULL, "also run with each omission undone, and tell what it saves")               \
     X("why", "brief", NULL, "the path and the contributions alone, from one run")                             \
     X("check", "again", "K", "of a database: make K of its runs (or all) again and compare every number")     \
     X("check", "seed", "S", "which runs --again takes (default 1)")                                           \
+    X("lab", "variant", "STUDENT", "choose the numbers of the lesson by this name")                           \
     X("scenarios", "keys", NULL, "all keys of scenarios, machine files and --set")                            \
     X("query", "upgrade", NULL, "make the database one of this version")                                      \
     X("query", "schema", NULL, "print every table, view and column")
