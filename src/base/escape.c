@@ -12,8 +12,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "config.h"
+
 #include "base/check.h"
 #include "base/memory.h"
+
+#ifdef SANITIZERS
+#include <sanitizer/lsan_interface.h>
+#endif
 
 /* One character of UTF-8 on its way, whose end is not there yet. */
 struct guard {
@@ -112,6 +118,9 @@ static FILE *guarded(int descriptor, int buffering)
     g->descriptor = descriptor;
     FILE *stream = fopencookie(g, "w", (cookie_io_functions_t){.write = guard_write});
     if (stream == NULL) check_memory(BUFSIZ);
+#ifdef SANITIZERS
+    __lsan_ignore_object(g); /* the stream's, as long as the process lives */
+#endif
     setvbuf(stream, NULL, buffering, BUFSIZ);
     return stream;
 }

@@ -21,8 +21,9 @@ enum { MOST_LENGTH = 256 << 20, MOST_STATEMENT = 4 << 20 };
 
 /* --- sum ------------------------------------------------------------------------------------- */
 
-/* 128 bits hold 2^64 numbers of 64 bits. */
-struct sum {
+/* 128 bits hold 2^64 numbers of 64 bits. SQLite's memory is aligned to 8 bytes only, which is what
+ * the compiler is told: it might use instructions that want 16. */
+struct __attribute__((packed, aligned(8))) sum {
     __int128 whole;
     double real; /* of those that are no whole numbers */
     int64_t n, nreal;

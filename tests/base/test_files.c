@@ -20,6 +20,8 @@
 #include <cmocka.h>
 
 #include "../support/scratch.h"
+#include "config.h"
+
 #include "base/beside.h"
 #include "base/memory.h"
 #include "base/text.h"
