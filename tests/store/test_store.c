@@ -316,7 +316,7 @@ static void every_view_answers_on_an_empty_database(void **state)
     static const char *const view[] = {"v_speedup",    "v_stage",    "v_accounting", "v_errors",
                                        "v_indicator",  "v_setting",  "v_itervar",    "v_claims",
                                        "v_provenance", "v_link_top", "v_repetition", "v_machine_state",
-                                       "v_shown", "rank_stage", "v_label", "v_run"};
+                                       "v_shown", "rank_stage", "v_label", "v_run", "v_known_error"};
     for (size_t i = 0; i < sizeof view / sizeof *view; i++) {
         char sql[64];
         snprintf(sql, sizeof sql, "SELECT count(*) FROM %s", view[i]);
